@@ -39,7 +39,7 @@ HEAD = """# Bodies with a wing
 <!-- made by python benchmarks/bench_aircraft.py --airfoils FOLDER --page docs/benchmarks/aircraft.md -->
 
 Use this page to find for how many random bodies with a wing a grid is made, how good these grids are and how
-long they take. For their use see [a body with a wing](../guide/aircraft.md).
+long they take. For their use see [a body with wings](../guide/aircraft.md).
 
 Each of {count} aircraft has a fuselage with a round nose and a slender tail, and a wing of one of {files}
 real sections, 10 to 20 % thick, half a body radius below to half above the axis, with a taper of 0.3 to 0.7,

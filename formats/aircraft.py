@@ -13,10 +13,15 @@
     [[wings]]                       # half of it, z >= 0, from the inside of the body
     on = "fuselage"
     file = "wing.toml"              # or [[wings.sections]], as in the file of a wing
+
+    [[wings]]                       # others before or behind it
+    name = "tail"                   # of its patch
+    file = "tail.toml"
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -36,20 +41,18 @@ def read_aircraft(data: Table, source: Source) -> Aircraft:
     """Return the aircraft that a table of TOML describes, in a `source` beside which its files are.
 
     Raises InputError: a key that is not known, a value that does not fit, with its place; files that cannot
-    be read; other than one body and one wing.
+    be read; other than one body.
     """
     data.only("kind", "name", "bodies", "wings", "half")
     folder = source.path.parent if source.path else Path()
     bodies, wings = data.rows("bodies"), data.rows("wings")
-    for rows, what in ((bodies, "bodies"), (wings, "wings")):
-        if len(rows) > 1:
-            raise rows[1].error("name", f"a second one of {what}", "give one body with one wing")
+    if len(bodies) > 1:
+        raise bodies[1].error("name", "a second one of bodies", "give one body")
     body = _body(bodies[0], folder)
-    on = wings[0].text("on", body.name)
-    if on != body.name:
-        raise wings[0].error("on", f"{printable(on)} is no body", f"use {body.name}")
+    wing, *others = [_wing(row, folder, body) for row in wings]
     name = data.text("name", source.stem or "aircraft")
-    return Aircraft(body, _wing(wings[0], folder), name, data.flag("half", default=True))
+    half = data.flag("half", default=True)
+    return Aircraft(body, wing, name, half, tuple(others))
 
 
 def _body(row: Table, folder: Path) -> Body:
@@ -72,11 +75,15 @@ def _from_file(row: Table, folder: Path) -> Floats:
     return blocks[0]
 
 
-def _wing(row: Table, folder: Path) -> Stack:
+def _wing(row: Table, folder: Path, body: Body) -> Stack:
+    on = row.text("on", body.name)
+    if on != body.name:
+        raise row.error("on", f"{printable(on)} is no body", f"use {body.name}")
     if "file" not in row.data:
         with row.located():
             return stack_table(row, folder, "wing", ("on",))
-    row.only("on", "file")
+    row.only("on", "name", "file")
     source = open_source(str(folder / row.text("file")))
     with in_source(source.name):
-        return stack_table(toml_table(source), source.path.parent if source.path else folder, "wing")
+        wing = stack_table(toml_table(source), source.path.parent if source.path else folder, "wing")
+    return replace(wing, name=row.text("name", wing.name))

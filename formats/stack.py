@@ -24,7 +24,7 @@
     dihedral = 5               # dihedral from the previous section in degrees; or y = 0.26
 
 With ``kind = "row"`` it is a row of blades (`meshonet.formats.rows.read`), with ``kind = "aircraft"`` a body
-with a wing (`meshonet.formats.aircraft`).
+with wings (`meshonet.formats.aircraft`).
 """
 
 from __future__ import annotations

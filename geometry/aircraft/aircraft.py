@@ -1,4 +1,4 @@
-"""A body with a wing: what the grid of an aircraft is made from."""
+"""A body with wings: what the grid of an aircraft is made from."""
 
 from __future__ import annotations
 
@@ -9,34 +9,33 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
-PATCHES = "wing", "tip", "symmetry", "farfield"
-"""Patches of a grid beside that of the body."""
-
 _TAPER = 0.02
 """Least chord over the longest one: around a wing that ends in a point there are no cells of equal counts."""
 
 
 @dataclass(frozen=True, eq=False)
 class Aircraft:
-    """A body of revolution and a wing that begins inside of it: the half z >= 0, or both halves.
+    """A body of revolution and wings that begin inside of it: the half z >= 0, or both halves.
 
     Parameters
     ----------
     body : Body
         The fuselage.
     wing : Stack
-        Sections from the inside of the body to the tip.
+        Sections from the inside of the body to the tip. Its longest chord is the unit of the grid's lengths.
     name : str, optional
         Of the aircraft.
     half : bool, optional
         Whether the grid ends in the plane of symmetry; otherwise it is joined there to its mirror image,
         whose patches have the same names.
+    others : tuple of Stack, optional
+        Further wings before or behind it, such as a tail plane or canards, each with a name of its own.
 
     Raises
     ------
     InputError
-        A stack that is no wing, has outlines in place of airfoils, or nearly ends in a point; a body with the
-        name of another patch.
+        A stack that is no wing, has outlines in place of airfoils, or nearly ends in a point; a body or wing
+        with the name of another patch.
 
     Examples
     --------
@@ -54,22 +53,49 @@ class Aircraft:
     wing: Stack
     name: str = "aircraft"
     half: bool = True
+    others: tuple[Stack, ...] = ()
 
     def __post_init__(self) -> None:
-        if self.wing.kind != "wing":
-            raise InputError(f"a {self.wing.kind} is no wing", "leave it out", place="wings[0].kind")
-        if self.wing.tip == "open":
-            raise InputError("a wing of an aircraft has a tip", "make it round or flat", place="wings[0].tip")
-        for number, section in enumerate(self.wing.sections):
-            if not isinstance(section.shape, Airfoil):
-                problem = "a closed curve has no trailing edge"
-                at = f"wings[0].sections[{number}].outline"
-                raise InputError(problem, "give an airfoil", place=at)
-        chords = [section.chord for section in self.wing.sections]
-        if min(chords) < _TAPER * max(chords):
-            at = f"wings[0].sections[{chords.index(min(chords))}].chord"
-            remedy = f"use at least {_TAPER:g} of the longest, {max(chords):g}"
-            raise InputError(f"a chord of {min(chords):g}", remedy, place=at)
-        if self.body.name in PATCHES:
-            remedy = "give the body another name"
-            raise InputError(f"{self.body.name} is the name of another patch", remedy, place="bodies[0].name")
+        taken = ["symmetry", "farfield"]
+        for number, (wing, names) in enumerate(zip(self.wings, self.patches, strict=True)):
+            at = f"wings[{number}]"
+            _refuse_no_wing(wing, at)
+            _refuse_name(names[0], [*taken, "tip"], f"{at}.name")
+            taken += names
+        _refuse_name(self.body.name, taken, "bodies[0].name")
+
+    @property
+    def wings(self) -> tuple[Stack, ...]:
+        """The wing and the others."""
+        return (self.wing, *self.others)
+
+    @property
+    def patches(self) -> tuple[tuple[str, str], ...]:
+        """Names of the patches of each wing and of its tip."""
+        first = self.wing.name or "wing"
+        return ((first, "tip"), *((each.name, f"{each.name}-tip") for each in self.others))
+
+
+def _refuse_no_wing(wing: Stack, at: str) -> None:
+    """Raise InputError for a stack that is no wing with a tip, of airfoils."""
+    if wing.kind != "wing":
+        raise InputError(f"a {wing.kind} is no wing", "leave it out", place=f"{at}.kind")
+    if wing.tip == "open":
+        raise InputError("a wing of an aircraft has a tip", "make it round or flat", place=f"{at}.tip")
+    for number, section in enumerate(wing.sections):
+        if not isinstance(section.shape, Airfoil):
+            problem, place = "a closed curve has no trailing edge", f"{at}.sections[{number}].outline"
+            raise InputError(problem, "give an airfoil", place=place)
+    chords = [section.chord for section in wing.sections]
+    if min(chords) < _TAPER * wing.chord:
+        place = f"{at}.sections[{chords.index(min(chords))}].chord"
+        remedy = f"use at least {_TAPER:g} of the longest, {wing.chord:g}"
+        raise InputError(f"a chord of {min(chords):g}", remedy, place=place)
+
+
+def _refuse_name(name: str, taken: list[str], place: str) -> None:
+    """Raise InputError for a name that another patch has, or that is none."""
+    if not name or not name.isprintable():
+        raise InputError(f"{name!r} is no name", "give letters and digits", place=place)
+    if name in taken:
+        raise InputError(f"{name} is the name of another patch", "give it another name", place=place)

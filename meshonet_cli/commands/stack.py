@@ -35,7 +35,7 @@ def stack(
         help="File with at least two sections, or - for standard input. Each section of a wing or blade has "
         "an airfoil (a file or naca:2412), a chord, its position z and, where needed, x, y and twist, or "
         "sweep and dihedral. Sections of a duct have an outline instead: circle:RADIUS or a file with a "
-        "closed curve. A row of blades has profiles, hub and shroud instead, an aircraft a body and a wing.",
+        "closed curve. A row of blades has profiles, hub and shroud instead, an aircraft a body and wings.",
     )],
     files: VolumeFiles,
     run: o.RunOptions,

@@ -19,10 +19,11 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.halves import with_image
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.aircraft.body_map import BodyMap
-from meshonet.solvers.aircraft.body_plane import LevelPlan, level_patches
+from meshonet.solvers.aircraft.body_plane import WING_PATCHES, level_patches
 from meshonet.solvers.aircraft.exact_cells import at_height, between_walls
-from meshonet.solvers.aircraft.plan import GROWTH, plan_of
+from meshonet.solvers.aircraft.plan import GROWTH, AircraftPlan, plan_of
 from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.aircraft.tip_fill import tip_patches
 from meshonet.solvers.aircraft.wall_normals import off_body, off_wing
@@ -30,12 +31,10 @@ from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.blocking.layers.attach import sampled
 from meshonet.solvers.rows.columns import arcs_of, resampled, with_first
 from meshonet.solvers.rows.span_lines import SpanLines
-from meshonet.solvers.rows.span_spacing import Ends, line_parts, spaced_cells, two_sided
+from meshonet.solvers.rows.span_spacing import SAMPLES, Ends, line_parts, spaced_cells, two_sided
 
 _UNBOUNDED = 1e9
 """Length of the last cells of lines, which nothing limits but their growth."""
-LEVEL_PATCHES = 7
-"""Patches of a level (`level_patches`)."""
 _FLAT = 1e-13
 """Distance from the plane of symmetry in lengths of the body, within which nodes are in it."""
 _ABOVE = 1e-3
@@ -52,32 +51,46 @@ _FINE = 129
 def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, tuple[str, ...]]:
     """Return the grid of an aircraft or its half, and notes.
 
-    Raises InputError: a wing that does not begin inside the body or does not leave it.
+    Raises InputError: a wing that does not begin inside the body or does not leave it; wings that are too
+    close to each other.
     """
     chord = aircraft.wing.chord
     first, growth = request.height() * chord, request.growth or GROWTH
     space = BodyMap(aircraft.body, request.far_field * chord + 0.5 * aircraft.body.extent)
     plan, notes = plan_of(aircraft, request, space)
-    wing, sections, scales = plan.wing, plan.sections, plan.scales
-    levels = [_level(space, plan.levels, *each, first) for each in zip(sections, scales, strict=True)]
+    levels = [_level(space, plan, k, first) for k in range(SAMPLES)]
     shapes = [patch.shape[:2] for patch in levels[0]]
     table = np.stack([np.concatenate([patch.reshape(-1, 3) for patch in level]) for level in levels])
-    ring = np.arange(shapes[0][0] * shapes[0][1]).reshape(shapes[0])
-    beside = _along_wing(space, wing, table, ring, plan.span, first, growth)
-    caps = _cap(space, wing, first)
+    rings = _rings(shapes, len(plan.wings))
+    beside = _along_wings(space, plan, table, rings, first, growth)
+    caps = [cap for wing in plan.wings for cap in _cap(space, wing, first)]
     tip = np.concatenate([beside[-1], *(patch.reshape(-1, 3) for patch in caps)])
     beyond = _beyond_tip(space, tip, first, growth)
     shapes += [patch.shape[:2] for patch in caps]
-    flat = () if aircraft.wing.tip == "flat" else ("the tip of the wing is flat",)
     normal = at_height(space, beside[0], beside[0] + [0.0, 0.0, _ABOVE], first)
     low = _flat(space.points(beside), aircraft)
-    low = off_body(low, space.points(normal), ring, first)
-    low = off_wing(low, ring, first)
-    wall, near = ring[:, 0], ring[:, 1]
-    low[1, near] = between_walls((low[1, wall], low[0, near]), low[1, near], first)
+    low = off_body(low, space.points(normal), rings, first)
+    for ring in rings:
+        low = off_wing(low, ring, first)
+        wall, near = ring[:, 0], ring[:, 1]
+        low[1, near] = between_walls((low[1, wall], low[0, near]), low[1, near], first)
     high = _flat(space.points(beyond), aircraft)
-    half = _joined(aircraft, shapes, low, high)
-    return half if aircraft.half else with_image(half), (*notes, *flat)
+    half = _joined(aircraft, plan, shapes, low, high)
+    return half if aircraft.half else with_image(half), (*notes, *_flat_tips(aircraft))
+
+
+def _flat_tips(aircraft: Aircraft) -> Iterator[str]:
+    """Yield notes on tips that are flat, though the file says otherwise."""
+    for wing, (name, _) in zip(aircraft.wings, aircraft.patches, strict=True):
+        if wing.tip != "flat":
+            yield f"the tip of the {name} is flat"
+
+
+def _rings(shapes: Sequence[tuple[int, int]], wings: int) -> list[Indices]:
+    """Return the columns (n, m) of the collar of each wing."""
+    starts = np.cumsum([0, *(ni * nj for ni, nj in shapes)])
+    numbers = range(0, WING_PATCHES * wings, WING_PATCHES)
+    return [starts[k] + np.arange(shapes[k][0] * shapes[k][1]).reshape(shapes[k]) for k in numbers]
 
 
 def _flat(points: Floats, aircraft: Aircraft) -> Floats:
@@ -86,20 +99,20 @@ def _flat(points: Floats, aircraft: Aircraft) -> Floats:
     return points
 
 
-def _level(space: BodyMap, plan: LevelPlan, section: Floats, scale: Floats, first: float) -> list[Floats]:
-    """Return the patches (ni, nj, 3) of s, theta, zeta of the level on which a section (n, 3) lies."""
-    mean = float(section[:, 2].mean())
-    patches = [
-        np.concatenate([patch, np.full((*patch.shape[:2], 1), mean)], axis=-1)
-        for patch in level_patches(plan, section[:, :2], scale)
-    ]
-    ring = patches[0]
-    ring[..., 2] = mean + (section[:, None, 2] - mean) * _fade(ring[..., :2] * scale)
-    for _ in range(2):
-        steps = norms(np.diff(space.points(ring), axis=1))
-        ring = resampled(ring, steps, with_first(steps, np.full(len(steps), first)))
-    ring[:, 0], ring[:, -1], ring[-1] = patches[0][:, 0], patches[0][:, -1], ring[0]
-    patches[0] = ring
+def _level(space: BodyMap, plan: AircraftPlan, k: int, first: float) -> list[Floats]:
+    """Return the patches (ni, nj, 3) of s, theta, zeta of the key level `k`."""
+    holes = [each[k] for each in plan.holes]
+    patches = level_patches(plan.levels, holes)
+    for number, (hole, sections) in enumerate(zip(holes, plan.sections, strict=True)):
+        made = patches[WING_PATCHES * number]
+        lift = sections[k][:, None, 2] - hole.zeta
+        made[..., 2] = hole.zeta + lift * _fade(made[..., :2] * hole.scale)
+        ring = made
+        for _ in range(2):
+            steps = norms(np.diff(space.points(ring), axis=1))
+            ring = resampled(ring, steps, with_first(steps, np.full(len(steps), first)))
+        ring[:, 0], ring[:, -1], ring[-1] = made[:, 0], made[:, -1], ring[0]
+        patches[WING_PATCHES * number] = ring
     return patches
 
 
@@ -110,20 +123,22 @@ def _fade(columns: Floats) -> Floats:
     return np.asarray(1.0 - arcs / arcs[:, -1:])
 
 
-def _along_wing(
-    space: BodyMap, wing: WingLines, table: Floats, ring: Floats, cells: int, first: float, growth: float
+def _along_wings(
+    space: BodyMap, plan: AircraftPlan, table: Floats, rings: Sequence[Indices], first: float, growth: float
 ) -> Floats:
-    """Return places (cells + 1, p, 3) on the levels from body to tip, given those of key levels."""
-    parts = line_parts(space.points(table), (first, first), growth, cells)
+    """Return places (cells + 1, p, 3) on the levels from body to tips, given those of key levels."""
+    parts = line_parts(space.points(table), (first, first), growth, plan.span)
     places = SpanLines.through(table).at(parts)
     places[0], places[-1] = table[0], table[-1]
-    on_wing = space.places(wing.points(wing.with_first(parts[:, ring[:, 0]], first)), places[:, ring[:, 0]])
-    moved = on_wing - places[:, ring[:, 0]]
-    moved[0] = 0.0
-    places[:, ring] += moved[:, :, None] * _fade(table[0, ring])[..., None]
-    wall, near = ring[:, 0], ring[:, 1]
-    rest = np.setdiff1d(np.arange(places.shape[1]), wall)
-    places[:, near] = at_height(space, places[:, wall], places[:, near], first)
+    walls = [ring[:, 0] for ring in rings]
+    for wing, ring in zip(plan.wings, rings, strict=True):
+        wall, near = ring[:, 0], ring[:, 1]
+        on_wing = space.places(wing.points(wing.with_first(parts[:, wall], first)), places[:, wall])
+        moved = on_wing - places[:, wall]
+        moved[0] = 0.0
+        places[:, ring] += moved[:, :, None] * _fade(table[0, ring])[..., None]
+        places[:, near] = at_height(space, places[:, wall], places[:, near], first)
+    rest = np.setdiff1d(np.arange(places.shape[1]), np.concatenate(walls))
     height = norms(space.points(places[1]) - space.points(places[0]))
     uneven = rest[np.abs(height[rest] - first) > _UNEVEN * first]
     if len(uneven):
@@ -168,10 +183,12 @@ def _beyond_tip(space: BodyMap, tip: Floats, first: float, growth: float) -> Flo
     return places
 
 
-def _joined(aircraft: Aircraft, shapes: Sequence[tuple[int, int]], low: Floats, high: Floats) -> Grid:
-    """Return the grid of points (k, p, 3) from the body to the tip, and from there to the far field.
+def _joined(
+    aircraft: Aircraft, plan: AircraftPlan, shapes: Sequence[tuple[int, int]], low: Floats, high: Floats
+) -> Grid:
+    """Return the grid of points (k, p, 3) from the body to the tips, and from there to the far field.
 
-    The first seven of `shapes` are patches of all levels, the others fill the section beyond the tip.
+    The first of `shapes` are patches of all levels, the others fill the sections beyond the tips.
     """
     tip = len(low) - 1
     blocks: list[Block] = []
@@ -180,12 +197,12 @@ def _joined(aircraft: Aircraft, shapes: Sequence[tuple[int, int]], low: Floats, 
         columns = slice(start, start + ni * nj)
         start += ni * nj
         nodes = high[:, columns]
-        if number < LEVEL_PATCHES:
+        if number < plan.levels.patches:
             nodes = np.concatenate([low[:-1, columns], nodes])
         blocks.append(_right_handed(np.moveaxis(nodes.reshape(len(nodes), ni, nj, 3), 0, 2)))
     connections = find_connections(blocks)
     joined = with_equal_nodes(blocks, connections)
-    return Grid(joined, tuple(_patches(joined, tip, aircraft)), connections, aircraft.name)
+    return Grid(joined, tuple(_patches(joined, plan, tip, aircraft)), connections, aircraft.name)
 
 
 def _right_handed(nodes: Floats) -> Block:
@@ -196,15 +213,18 @@ def _right_handed(nodes: Floats) -> Block:
     return Block(np.ascontiguousarray(nodes if float((np.cross(i, j) * k).sum()) > 0.0 else nodes[::-1]))
 
 
-def _patches(blocks: tuple[Block, ...], tip: int, aircraft: Aircraft) -> Iterator[Patch]:
-    """Yield the patches: body, wing, tip, far field and plane of symmetry."""
+def _patches(blocks: tuple[Block, ...], plan: AircraftPlan, tip: int, aircraft: Aircraft) -> Iterator[Patch]:
+    """Yield the patches: body, wings, tips, far field and plane of symmetry."""
+    tips = dict(aircraft.patches)
+    names = [wing.name for wing in plan.wings]
     for number, block in enumerate(blocks):
         ni, nj, nk = (count - 1 for count in block.counts)
-        inside = number >= LEVEL_PATCHES
-        yield Patch("tip" if inside else aircraft.body.name, "bottom", 0, ni, (0, nj), number, "wall")
+        inside = number - plan.levels.patches
+        name = aircraft.body.name if inside < 0 else tips[names[inside // 2]]
+        yield Patch(name, "bottom", 0, ni, (0, nj), number, "wall")
         yield Patch("farfield", "top", 0, ni, (0, nj), number)
-        if number == 0:
-            yield Patch("wing", "south", 0, ni, (0, tip), number, "wall")
+        if number in range(0, WING_PATCHES * len(names), WING_PATCHES):
+            yield Patch(names[number // WING_PATCHES], "south", 0, ni, (0, tip), number, "wall")
         for side in ("west", "east", "south", "north"):
             if not face_of(block.nodes[..., 2], side).any():
                 yield Patch("symmetry", side, 0, ni if side in ("south", "north") else nj, (0, nk), number)

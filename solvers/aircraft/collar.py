@@ -22,7 +22,6 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.cubic import CubicTable, cubic_spline
 from meshonet.geometry.elementary import exp, power
-from meshonet.geometry.errors import InputError
 from meshonet.geometry.ties import first_least
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.rows.columns import arcs_of
@@ -59,18 +58,16 @@ class Rectangle:
     high: float
 
 
-def rectangle(section: Floats, length: float, scale: Floats) -> Rectangle:
+def rectangle(section: Floats, within: tuple[float, float], scale: Floats) -> Rectangle:
     """Return the rectangle around a section (n, 2) of s and theta, in lengths in space.
 
-    Raises InputError: the section meets the plane of symmetry.
+    It takes at most half of the way to the least and largest s `within` which the section lies.
     """
     (front, low), (back, high) = (section * scale).min(axis=0), (section * scale).max(axis=0)
-    end, girth = length * float(scale[0]), np.pi * float(scale[1])
+    begin, end = (s * float(scale[0]) for s in within)
+    girth = np.pi * float(scale[1])
     margin = MARGIN * (back - front)
-    if low <= 0.0 or high >= girth or front <= 0.0 or back >= end:
-        problem = "the wing meets the plane of symmetry above or below the body, or its nose or tail"
-        raise InputError(problem, "move the wing, or make it smaller", place="wings")
-    ways = [way * _SHARE for way in (front, end - back, low, girth - high)]
+    ways = [way * _SHARE for way in (front - begin, end - back, low, girth - high)]
     margin = max(margin, math.sqrt(margin * min(ways)))
     before, behind, below, above = (min(margin, way) for way in ways)
     return Rectangle(float(front - before), float(back + behind), float(low - below), float(high + above))

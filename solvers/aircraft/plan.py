@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.spacing.growth import cells_for_growth
 from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.body_plane import LevelPlan, planned
+from meshonet.solvers.aircraft.collar_level import Hole
+from meshonet.solvers.aircraft.holes import holes_of
 from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.rows.span_lines import key_heights
@@ -32,17 +34,17 @@ class AircraftPlan:
 
     Parameters
     ----------
-    wing : lines along the span.
-    sections : (SAMPLES, n, 3) s, theta and zeta around the wing on the key levels.
-    scales : (SAMPLES, 2) lengths in space of units of s and theta there.
+    wings : lines along the span of each wing, from nose to tail.
+    sections : of each wing, (SAMPLES, n, 3) s, theta and zeta around it on the key levels.
+    holes : of each wing, on the key levels.
     levels : counts that levels share.
-    span, beyond : cells from the body to the tip, and from there to the far field.
+    span, beyond : cells from the body to the tips, and from there to the far field.
     halves : 2 if the grid has both halves of the aircraft, else 1.
     """
 
-    wing: WingLines
-    sections: Floats
-    scales: Floats
+    wings: tuple[WingLines, ...]
+    sections: tuple[Floats, ...]
+    holes: tuple[tuple[Hole, ...], ...]
     levels: LevelPlan
     span: int
     beyond: int
@@ -50,28 +52,42 @@ class AircraftPlan:
 
     @classmethod
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> AircraftPlan:
-        """Return the plan for `around` nodes around the wing.
+        """Return the plan for `around` nodes around each wing.
 
-        Raises InputError: a wing that does not begin inside the body or does not leave it.
+        Raises InputError: a wing that does not begin inside the body or does not leave it; wings that are too
+        close to each other.
         """
         chord = aircraft.wing.chord
         first, growth = request.height() * chord, request.growth or GROWTH
-        wing = WingLines.of(aircraft, around, request.base)
-        sections = space.places(wing.points(key_heights(SAMPLES)[:, None] + np.zeros(len(wing.roots))))
-        sections[0, :, 2] = 0.0
-        scales = _scales(space, sections)
-        known = [(sections[k][:, :2], scales[k]) for k in _PLANNED]
+        wings = [
+            WingLines.of(wing, name, aircraft.body, around, request.base)
+            for wing, (name, _) in zip(aircraft.wings, aircraft.patches, strict=True)
+        ]
+        wings.sort(key=lambda wing: float(wing.points(np.zeros((1, len(wing.roots))))[..., 0].mean()))
+        sections = [_on_keys(space, wing) for wing in wings]
+        holes = holes_of(space, wings, sections)
+        known = [[each[k] for k in _PLANNED] for each in holes]
         levels = planned(known, aircraft.body.length, first, growth)
-        span = spaced_cells(wing.length, (first, first), growth, wing.length / (request.span - 1), 8)
+        length = max(wing.length for wing in wings)
+        span = spaced_cells(length, (first, first), growth, length / (request.span - 1), 8)
         beyond = cells_for_growth(first, request.far_field * chord, growth)
-        return cls(wing, sections, scales, levels, span, beyond, 1 if aircraft.half else 2)
+        halves = 1 if aircraft.half else 2
+        return cls(tuple(wings), tuple(sections), tuple(holes), levels, span, beyond, halves)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was changed of the sections."""
+        return tuple(dict.fromkeys(note for wing in self.wings for note in wing.notes))
 
     @property
     def cells(self) -> int:
-        """About how many cells there will be; the fill of the wing's section beyond its tip is left out."""
-        each, around = self.levels, self.sections.shape[1] - 1
-        columns = around * each.rows + (around // 2 - each.edge - each.nose) * (each.low + each.top)
-        for end in each.ends:
+        """About how many cells there will be; sections of wings beyond their tips are left out."""
+        around, columns = self.sections[0].shape[1] - 1, 0
+        for each in self.levels.collars:
+            columns += around * each.rows + (around // 2 - each.edge - each.nose) * each.bands
+        for each, cells in zip(self.levels.collars, self.levels.between, strict=False):
+            columns += cells * (2 * each.edge + each.bands)
+        for end in self.levels.ends:
             a, b = end.core.nodes.shape[:2]
             columns += (len(end.theta) - 1) * (len(end.core.rows) - 1 + end.cells) + (a - 1) * (b - 1)
         return self.halves * columns * (self.span + self.beyond)
@@ -86,21 +102,19 @@ def plan_of(
     """
     if request.cells is None:
         plan = AircraftPlan.of(aircraft, request, space, request.around)
-        return plan, plan.wing.notes
+        return plan, plan.notes
     few, many = (AircraftPlan.of(aircraft, request, space, nodes) for nodes in _TRIED)
     slope = (many.cells - few.cells) / (_TRIED[1] - _TRIED[0])
     half = max(0, round(0.5 * (request.cells - few.cells) / slope)) if slope > 0.0 else 0
     plan = AircraftPlan.of(aircraft, request, space, _TRIED[0] + 2 * half) if half else few
     if plan.cells <= _ENOUGH * request.cells:
-        return plan, plan.wing.notes
+        return plan, plan.notes
     note = f"layers need about {plan.cells} cells, more than {request.cells}"
-    return plan, (*plan.wing.notes, note)
+    return plan, (*plan.notes, note)
 
 
-def _scales(space: BodyMap, sections: Floats) -> Floats:
-    """Return the lengths in space (k, 2) of units of s and theta, the means over sections (k, n, 3)."""
-    points = space.points(sections)
-    radius = np.hypot(points[..., 1] - space.body.y, points[..., 2]).mean(axis=1)
-    half = (sections.shape[1] - 1) // 2
-    chord = norms(points[:, 0] - points[:, half])
-    return np.stack([chord / np.abs(sections[:, 0, 0] - sections[:, half, 0]), radius], axis=1)
+def _on_keys(space: BodyMap, wing: WingLines) -> Floats:
+    """Return s, theta and zeta (SAMPLES, n, 3) around a wing on the key levels."""
+    sections = space.places(wing.points(key_heights(SAMPLES)[:, None] + np.zeros(len(wing.roots))))
+    sections[0, :, 2] = 0.0
+    return sections

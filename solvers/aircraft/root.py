@@ -15,7 +15,7 @@ _PASSES = 6
 """Times that the interval around a crossing is divided into `_PLACES` parts."""
 
 
-def root_heights(stack: Stack, unit: Floats, body: Body) -> Floats:
+def root_heights(stack: Stack, name: str, unit: Floats, body: Body) -> Floats:
     """Return the heights z (n,) at which lines along the span of a wing leave a body.
 
     `unit` (sections, n, 2) are the nodes around the sections, the first of them inside the body.
@@ -29,18 +29,18 @@ def root_heights(stack: Stack, unit: Floats, body: Body) -> Floats:
             z = np.linspace(low, high, _PLACES)
             out = body.outside(stack.lofted(unit[:, k : k + 1], z)[:, 0])
             if out[0] >= 0.0:
-                raise _error(stack, unit[:, k], low, body, "begins outside of")
+                raise _error(stack, name, unit[:, k], low, body, "begins outside of")
             first = np.flatnonzero(out >= 0.0)
             if not len(first):
-                raise _error(stack, unit[:, k], high, body, "does not leave")
+                raise _error(stack, name, unit[:, k], high, body, "does not leave")
             at = int(first[0])
             low, high = float(z[at - 1]), float(z[at])
         heights[k] = low + (high - low) * out[at - 1] / (out[at - 1] - out[at])
     return heights
 
 
-def _error(stack: Stack, unit: Floats, z: float, body: Body, what: str) -> InputError:
+def _error(stack: Stack, name: str, unit: Floats, z: float, body: Body, what: str) -> InputError:
     x, y, z = stack.lofted(unit[:, None], np.array([z]))[0, 0]
-    problem = f"a line of the wing {what} the {body.name} at x={x:.6g}, y={y:.6g}, z={z:.6g}"
+    problem = f"a line of the {name} {what} the {body.name} at x={x:.6g}, y={y:.6g}, z={z:.6g}"
     remedy = "give a first section inside the body, such as in z = 0, and a last one outside"
     return InputError(problem, remedy, place="wings")

@@ -9,36 +9,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.elementary import exp
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.rows.columns import arcs_of
 
 _WAY = 0.6
 """Length over which a line is moved, over its distance from another wall."""
 
 
-def off_body(points: Floats, normal: Floats, ring: Floats, first: float) -> Floats:
+def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: float) -> Floats:
     """Return points (k, p, 3) of lines from a body, row k = 0, whose first cells, `first` high, are normal.
 
-    `normal` (p, 3) are points at the height `first` above the body, `ring` (n, m) the columns of the collar
-    from the wing outwards.
+    `normal` (p, 3) are points at the height `first` above the body, `rings` (n, m) the columns of collars
+    from each wing outwards.
     """
     turned = (normal - points[1]) / first
     turned[points[0, :, 2] == 0.0, 2] = 0.0
-    apart = arcs_of(norms(np.diff(points[0, ring], axis=1)))
-    most = float(apart[:, -1].min())
+    away = [arcs_of(norms(np.diff(points[0, ring], axis=1))) for ring in rings]
+    most = min(float(apart[:, -1].min()) for apart in away)
     beside = np.full(points.shape[1], most)
-    beside[ring] = np.minimum(apart, most)
-    beside[ring[:, :2]] = 0.0
+    for ring, apart in zip(rings, away, strict=True):
+        beside[ring] = np.minimum(apart, most)
+        beside[ring[:, :2]] = 0.0
     out = points + turned * _moved(points, beside)[..., None]
     at = beside > 0.0
     out[1, at] = _at(points[0, at], out[1, at], first)
     return out
 
 
-def off_wing(points: Floats, ring: Floats, first: float) -> Floats:
+def off_wing(points: Floats, ring: Indices, first: float) -> Floats:
     """Return points (k, p, 3), with lines of the collar `ring` (n, m) at right angles to the wing's span."""
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.aircraft.body import Body
 from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.sections.stack import Stack
 from meshonet.solvers.aircraft.root import root_heights
 from meshonet.solvers.stacking.section_nodes import GAP, around, unit_nodes
 
@@ -23,34 +24,35 @@ class WingLines:
 
     Parameters
     ----------
-    aircraft : what the wing belongs to.
+    wing : the sections.
+    name : of the wing.
     unit : (sections, n, 2) nodes around the sections, from the middle of the base over the upper side.
     roots : (n,) heights z where lines leave the body.
     notes : what was changed of the sections.
     """
 
-    aircraft: Aircraft
+    wing: Stack
+    name: str
     unit: Floats
     roots: Floats
     notes: tuple[str, ...]
 
     @classmethod
-    def of(cls, aircraft: Aircraft, nodes: int, base: float = GAP) -> WingLines:
+    def of(cls, wing: Stack, name: str, body: Body, nodes: int, base: float = GAP) -> WingLines:
         """Return `nodes` lines, of a wing with trailing edges of at least `base` chords.
 
         Raises InputError: too few nodes, a wing that does not begin in the body or does not leave it.
         """
-        wing = aircraft.wing
         plan = around(nodes, gap=base, base=_BASE, edge=wing.te_spacing, nose=wing.le_spacing)
         units, notes = zip(*(unit_nodes(section, plan) for section in wing.sections), strict=True)
         unit = np.stack(units)
-        roots = root_heights(wing, unit[:, :-1], aircraft.body)
+        roots = root_heights(wing, name, unit[:, :-1], body)
         changes = (*wing.notes, *dict.fromkeys(filter(None, notes)))
-        return cls(aircraft, unit, np.append(roots, roots[0]), changes)
+        return cls(wing, name, unit, np.append(roots, roots[0]), changes)
 
     def points(self, parts: Floats) -> Floats:
         """Return points (k, n, 3) at parts (k, n) of the way along the lines, in z."""
-        wing = self.aircraft.wing
+        wing = self.wing
         z = self.roots + parts * (wing.z[-1] - self.roots)
         columns = [wing.lofted(self.unit[:, k : k + 1], z[:, k])[:, 0] for k in range(z.shape[1])]
         return np.stack(columns, axis=1)

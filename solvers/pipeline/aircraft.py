@@ -43,8 +43,8 @@ def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) ->
 
 
 def _refuse_thick_cells(aircraft: Aircraft, first: float) -> None:
-    """Raise InputError for first cells that are high beside a section of the wing."""
-    shortest = min(section.chord for section in aircraft.wing.sections)
+    """Raise InputError for first cells that are high beside a section of a wing."""
+    shortest = min(section.chord for wing in aircraft.wings for section in wing.sections)
     if first > _HIGHEST * shortest:
         problem = f"first cells are {first:g} high at a wing with a chord of {shortest:g}"
         raise InputError(problem, f"use at most {_HIGHEST:g} of it", parameter="first_cell")
@@ -52,11 +52,13 @@ def _refuse_thick_cells(aircraft: Aircraft, first: float) -> None:
 
 def _refuse_far_tip(aircraft: Aircraft, far: float) -> None:
     """Raise InputError for a wing whose tip is not far enough from a far field at this distance."""
-    tip, body = aircraft.wing.sections[-1], aircraft.body
+    body = aircraft.body
     middle = 0.5 * float(body.meridian[0, 0] + body.meridian[-1, 0])
-    away = math.hypot(tip.x - middle, tip.y - body.y, tip.z)
-    if away > _REACH * far:
-        problem = (
-            f"the tip of the wing is {away:.6g} from the middle of the body, and the far field {far:.6g}"
-        )
-        raise InputError(problem, "put it further away", parameter="far_field")
+    for wing, (name, _) in zip(aircraft.wings, aircraft.patches, strict=True):
+        tip = wing.sections[-1]
+        away = math.hypot(tip.x - middle, tip.y - body.y, tip.z)
+        if away > _REACH * far:
+            at = f"the tip of the {name} is {away:.6g} from the middle of the body"
+            raise InputError(
+                f"{at}, and the far field {far:.6g}", "put it further away", parameter="far_field"
+            )

@@ -44,3 +44,12 @@ def test_meridian_and_wing_may_be_files_beside_it(tmp_path: Path) -> None:
     assert np.array_equal(jet.body.meridian, same.body.meridian)
     assert (jet.body.name, jet.body.y) == ("hull", 0.2)
     assert np.array_equal(jet.wing.z, same.wing.z)
+
+
+def test_further_wings_have_names_of_their_own(tmp_path: Path) -> None:
+    (tmp_path / "tail.toml").write_text(SECTIONS.replace("wings.sections", "sections"))
+    jet = read(tmp_path, BODY + WING + '[[wings]]\nname = "tail"\nfile = "tail.toml"\n')
+    assert jet.patches == (("wing", "tip"), ("tail", "tail-tip"))
+    assert [wing.name for wing in jet.wings] == ["wing", "tail"]
+    named = read(tmp_path, BODY + WING.replace("on =", 'name = "left"\non ='))
+    assert named.patches == (("left", "tip"),)

@@ -32,6 +32,10 @@ def tip(**values: object) -> dict[str, str]:
     return texts(wing=f"{ROOT}[[wings.sections]]\n{lines}")
 
 
+def two_wings(more: str) -> dict[str, str]:
+    return {"jet.toml": texts()["jet.toml"] + f"[[wings]]\n{more}\n{ROOT}{TIP}"}
+
+
 JET = "jet.toml: "
 LINE = JET + r"bodies\[0\].meridian"
 WING = JET + r"wings\[0\]."
@@ -93,7 +97,12 @@ REFUSED = {
     "two lines in a name": (texts(body=MERIDIAN + 'name = "a\\nb"'), JET + r"bodies\[0\].name: 'a\\nb' has"),
     "two bodies": ({"jet.toml": texts()["jet.toml"] + f"[[bodies]]\n{MERIDIAN}"}, JET + r"bodies\[1\]"),
     # the wing
-    "two wings": ({"jet.toml": texts()["jet.toml"] + f"[[wings]]\n{ROOT}{TIP}"}, JET + r"wings\[1\]"),
+    "two wings of one name": (two_wings(""), JET + r"wings\[1\].name: wing is the name of another patch"),
+    "a wing called as the body": (two_wings('name = "fuselage"'), JET + r"bodies\[0\].name: fuselage is the"),
+    "a wing called tip": (two_wings('name = "tip"'), JET + r"wings\[1\].name: tip is the name of another"),
+    "a wing with an escape": (two_wings('name = "a\\u001b"'), JET + r"wings\[1\].name: 'a\\x1b' is no name"),
+    "a fault in the second wing": (
+        two_wings('name = "tail"\ntip = "open"'), JET + r"wings\[1\].tip: a wing of an aircraft has a tip"),
     "a wing on a number": (texts(wing=f"on = 3\n{ROOT}{TIP}"), WING + "on: 3 is no text"),
     "a wing on another body": (
         texts(wing=f'on = "hull"\n{ROOT}{TIP}'), WING + "on: hull is no body; use fuselage"),

@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from aircraft_shapes import aircraft, body
+from aircraft_shapes import aircraft, body, unclaimed_faces, wall
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.aircraft.body import Body
-from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -25,20 +24,6 @@ SMALL = AircraftRequest(around=65, span=9, first_cell=FIRST, far_field=8.0)
 @pytest.fixture(scope="module")
 def grid() -> Grid:
     return aircraft_grid(aircraft(y=-0.1), SMALL)[0]
-
-
-def wall(grid: Grid, name: str) -> list[tuple[Floats, Floats]]:
-    """The nodes on a wall and those next to them, of each of its patches."""
-    found = []
-    for patch in grid.patches:
-        if patch.name == name:
-            nodes = grid.blocks[patch.block].nodes
-            if patch.side == "south":
-                nodes = np.moveaxis(nodes, 1, 2)
-                assert patch.across is not None
-                nodes = nodes[:, patch.across[0] : patch.across[1] + 1]
-            found.append((nodes[:, :, 0], nodes[:, :, 1]))
-    return found
 
 
 def test_no_cell_is_folded(grid: Grid) -> None:
@@ -64,21 +49,8 @@ def test_nodes_lie_on_body_and_wing(grid: Grid) -> None:
     assert np.abs(on_wing - straight).max() < 1e-9
 
 
-def test_every_face_is_in_a_patch_or_joined_to_another(grid: Grid) -> None:
-    def faces(ranges: tuple[tuple[int, int], ...]) -> int:
-        return int(np.prod([abs(b - a) for a, b in ranges]))
-
-    cells = [[count - 1 for count in block.counts] for block in grid.blocks]
-    every = sum(2 * (a * b + b * c + c * a) for a, b, c in cells)
-    named = sum(
-        faces(each.range(face_of(grid.blocks[each.block].nodes, each.side).shape[:2]))
-        for each in grid.patches
-    )
-    assert named + sum(2 * faces(each.range) for each in grid.connections) == every
-    for connection in grid.connections:
-        for axis in range(3):
-            own, other = connection.pairs([block.nodes[..., axis] for block in grid.blocks])
-            assert np.array_equal(own, other)
+def test_every_face_is_in_a_patch_or_joined_to_another_by_equal_nodes(grid: Grid) -> None:
+    assert unclaimed_faces(grid) == 0
 
 
 def test_the_plane_of_symmetry_is_flat(grid: Grid) -> None:

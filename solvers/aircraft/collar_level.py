@@ -1,0 +1,229 @@
+"""The collar of a wing on one level, and the sizes of cells around it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.solvers.aircraft.collar import (
+    Rectangle,
+    collar,
+    corner_nodes,
+    lengths,
+    outer_cells,
+    outer_loop,
+    rectangle,
+)
+from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
+from meshonet.solvers.stacking.tip import least_sine
+
+_CORNER = 4
+"""Least number of nodes from the middle of a nose or edge to the corners of the rectangle."""
+FEWEST = 6
+"""Least number of cells between a collar and the plane of symmetry."""
+_AHEAD = 1.2
+"""Largest outermost cell of a collar, over that of cells which grow by a constant ratio."""
+_EVEN = 1.15
+"""Largest ratio of neighbouring outermost cells of a collar."""
+WIDEST = 1.25
+"""Growth of cells from a collar to nose, tail, keel and crown."""
+_STRAIGHT = 0.0, 0.3, 0.6, 1.0
+"""Shares of straight lines in collars that are tried, until no angle has a sine below the next number.
+
+Elliptic grids may fold at a thin trailing edge that lies far from the middle of the rectangle.
+"""
+_SINE = 0.15
+
+
+@dataclass(frozen=True, eq=False)
+class Hole:
+    """The section of a wing on a level.
+
+    Parameters
+    ----------
+    section : (n, 2) s and theta around it.
+    scale : (2,) lengths in space of units of s and theta there.
+    zeta : of the level beside it.
+    within : least and largest s of its collar, if that took all of the way.
+    """
+
+    section: Floats
+    scale: Floats
+    zeta: float
+    within: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class CollarPlan:
+    """Counts of the collars of a wing, which all levels share.
+
+    Parameters
+    ----------
+    edge, nose : nodes from the middles of trailing edge and nose to the corners of a collar's rectangle.
+    rows : cells across a collar.
+    low, top : cells from keel and crown to a collar.
+    first : height of the cells at the wing.
+    straight : of the lines of collars (`collar`).
+    """
+
+    edge: int
+    nose: int
+    rows: int
+    low: int
+    top: int
+    first: float
+    straight: float = 0.0
+
+    @property
+    def bands(self) -> int:
+        """Cells above and below."""
+        return self.low + self.top
+
+
+def planned_collar(holes: list[Hole], first: float, growth: float) -> tuple[CollarPlan, list[CollarLevel]]:
+    """Return the plan for some `holes` of a wing, from the root on, and their levels, with narrow bands."""
+    boxes = [rectangle(hole.section, hole.within, hole.scale) for hole in holes]
+    planes = [hole.section * hole.scale for hole in holes]
+    corners = [corner_nodes(plane, box, _CORNER) for plane, box in zip(planes, boxes, strict=True)]
+    edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
+    plan = CollarPlan(edge, nose, 4, FEWEST, FEWEST, first)
+    for plane, box in zip(planes, boxes, strict=True):
+        away = float(lengths(plane, outer_loop(plane, box, (edge, nose))).max())
+        last = min(outer_cells(box, (edge, nose)))
+        plan = replace(plan, rows=max(plan.rows, smooth_cells(away, (first, last), growth, 4)))
+    for straight in _STRAIGHT:
+        plan = replace(plan, straight=straight)
+        levels = [CollarLevel.of(plan, hole) for hole in holes]
+        if all(level.sine > _SINE for level in levels):
+            break
+    low, top = (
+        max(smooth_cells(level.bands[k], (level.last[1 + k], None), WIDEST, FEWEST) for level in levels)
+        for k in (0, 1)
+    )
+    return replace(plan, low=low, top=top), levels
+
+
+@dataclass(frozen=True, eq=False)
+class CollarLevel:
+    """One level: its collar, and the sizes of cells around it.
+
+    Parameters
+    ----------
+    plan, box, scale : counts, the rectangle, lengths in space of units of s and theta.
+    zeta : of the level beside the section.
+    ring : (n, rows + 1, 2) the collar, in lengths in space.
+    last : lengths in space of its outermost cells at the front, below, above and at the back.
+    """
+
+    plan: CollarPlan
+    box: Rectangle
+    scale: Floats
+    zeta: float
+    ring: Floats
+    last: tuple[float, float, float, float]
+
+    @classmethod
+    def of(cls, plan: CollarPlan, hole: Hole) -> CollarLevel:
+        """Return the level of a hole."""
+        scale = hole.scale
+        plane = hole.section * scale
+        box = rectangle(hole.section, hole.within, scale)
+        edge, nose, half = plan.edge, plan.nose, (len(plane) - 1) // 2
+        outer = outer_loop(plane, box, (edge, nose))
+        behind, before = outer_cells(box, (edge, nose))
+        share = np.abs(np.arange(len(plane)) - half) / half
+        last = before + (behind - before) * share
+        for way, side, cells in (
+            (box.low, slice(half + nose, -edge), plan.low),
+            (np.pi * float(scale[1]) - box.high, slice(edge, half - nose + 1), plan.top),
+        ):  # the band there may be short
+            last[side] = np.minimum(last[side], way * (1.0 - 1.0 / WIDEST) / (1.0 - math.pow(WIDEST, -cells)))
+        grown = smooth_arcs(lengths(plane, outer), (plan.first, None), plan.rows)
+        last = _graded(np.minimum(last, _AHEAD * (grown[:, -1] - grown[:, -2])))
+        ring = collar(plane, outer, plan.rows, plan.first, last, plan.straight)
+        step = norms(ring[:, -1] - ring[:, -2])
+        parts = (
+            step[half - nose + 1 : half + nose], step[half + nose : -edge - 1],
+            step[edge + 1 : half - nose + 1], np.concatenate([step[:edge], step[-edge:]]),
+        )  # fmt: skip
+        return cls(plan, box, scale, hole.zeta, ring, tuple(float(np.median(part)) for part in parts))  # type: ignore[arg-type]
+
+    @property
+    def sine(self) -> float:
+        """The least sine of an angle in the collar."""
+        return least_sine(np.pad(self.ring[::-1], ((0, 0), (0, 0), (0, 1))))
+
+    @property
+    def sides(self) -> tuple[float, float]:
+        """Least and largest s of the rectangle."""
+        unit = float(self.scale[0])
+        return self.box.front / unit, self.box.back / unit
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Lengths in s of the cells before and behind the rectangle.
+
+        They lie between those of the collar and those of the bands above and below it.
+        """
+        behind, before = outer_cells(self.box, (self.plan.edge, self.plan.nose))
+        ahead, aft = (math.sqrt(a * b) for a, b in ((self.last[0], before), (self.last[3], behind)))
+        return ahead / float(self.scale[0]), aft / float(self.scale[0])
+
+    @property
+    def bands(self) -> tuple[float, float]:
+        """Lengths in space from the rectangle to keel and crown."""
+        return self.box.low, np.pi * float(self.scale[1]) - self.box.high
+
+    @cached_property
+    def low_and_top(self) -> tuple[Floats, Floats]:
+        """Theta of the lines from the keel to the rectangle, and from there to the crown."""
+        out = []
+        for cells, way, step in zip((self.plan.low, self.plan.top), self.bands, self.last[1:3], strict=True):
+            out.append(smooth_arcs(np.array([way]), (step, None), cells)[0])
+        rho = float(self.scale[1])
+        low, top = (self.box.low - out[0][::-1]) / rho, (self.box.high + out[1]) / rho
+        low[0], top[-1] = 0.0, np.pi
+        return low, top
+
+    @property
+    def across(self) -> tuple[Floats, Floats]:
+        """Theta of the lines before and behind the rectangle, from keel to crown."""
+        outer, half, rho = self.ring[:, -1, 1], (len(self.ring) - 1) // 2, float(self.scale[1])
+        edge, nose = self.plan.edge, self.plan.nose
+        low, top = self.low_and_top
+        front = outer[half + nose : half - nose - 1 : -1] / rho
+        back = np.concatenate([outer[2 * half - edge : 2 * half], outer[: edge + 1]]) / rho
+        ahead, behind = (np.concatenate([low, side[1:-1], top]) for side in (front, back))
+        return ahead, behind
+
+    def patches(self) -> list[Floats]:
+        """Return the collar, and the patches above and below it (ni, nj, 2) of s and theta."""
+        ring, half = self.ring / self.scale, (len(self.ring) - 1) // 2
+        edge, nose = self.plan.edge, self.plan.nose
+        low, top = self.low_and_top
+        upper, lower = ring[edge : half - nose + 1, -1, 0], ring[half + nose : 2 * half - edge + 1, -1, 0]
+        return [ring, _lattice(upper, top), _lattice(lower, low)]
+
+
+def _graded(sizes: Floats) -> Floats:
+    """Return sizes (n,) around a closed loop, made smaller until neighbours differ little."""
+    for _ in range(len(sizes)):
+        least = _EVEN * np.minimum(np.roll(sizes[:-1], 1), np.roll(sizes[:-1], -1))
+        sizes = np.minimum(sizes, np.append(least, least[:1]))
+    return sizes
+
+
+def _lattice(s: Floats, theta: Floats) -> Floats:
+    """Return nodes (m, n, 2) of s (m,) and theta (n,)."""
+    return np.stack(np.broadcast_arrays(s[:, None], theta[None]), axis=-1)
+
+
+def lines_between(s: Floats, before: Floats, after: Floats) -> Floats:
+    """Return nodes (n, m, 2) at s (m,) on lines whose theta goes from one (n,) smoothly to another."""
+    t = (s - s[0]) / (s[-1] - s[0])
+    across = before[:, None] + (after - before)[:, None] * (t * t * (3.0 - 2.0 * t))
+    return np.stack(np.broadcast_arrays(s, across), axis=-1)
