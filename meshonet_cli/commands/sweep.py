@@ -40,7 +40,8 @@ def sweep(
     files: SectionFiles,
     res: Annotated[str | None, _sampling(
         "--res", metavar="N|NIxNJ",
-        help="Number of nodes along the sides of a four-sided section. [default: 65x33]",
+        help="Number of nodes along the sides of a four-sided section. [default: 65x33, with a first cell as "
+        "many as --growth needs]",
     )] = None,
     around: Annotated[int | None, _sampling(
         "--around", metavar="N",
@@ -93,7 +94,9 @@ def sweep(
     length: o.Length = None,
     growth: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
         "--growth", metavar="G",
-        help="Largest ratio of neighbouring cells along a grid line away from walls. [default: 1.2]",
+        help="Largest ratio of neighbouring cells along a grid line away from walls. Without --res, or with "
+        "--res NI, it determines the rows of a four-sided section. [default: 1.2, or the ratio that follows "
+        "from --res]",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,

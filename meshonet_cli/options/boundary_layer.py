@@ -75,8 +75,8 @@ class LayerOptions:
     growth: Annotated[float | None, _option(
         "--growth", metavar="G",
         help="Largest ratio of the heights of neighbouring cells along a grid line away from the wall, e.g. "
-        "1.15. Without --res it determines the number of rows. [default: 1.2 for many blocks, else the "
-        "ratio that follows from the number of rows]",
+        "1.15. It determines the number of rows, unless --res gives it as NJ; then it is a limit. [default: "
+        "1.2 for many blocks, else the ratio that follows from the number of rows]",
     )] = None
     constant_layers: Annotated[int | None, _option(
         "--constant-layers", metavar="K", min=1,

@@ -37,5 +37,5 @@ class GridOptions(RunOptions, SamplingOptions, LayerOptions, CheckOptions, GateO
         given = {name: value for name, value in settings.items() if value is not None}
         percentiles = self.criteria().percentiles
         return GridRequest(
-            self.placed(), method, given, percentiles=percentiles, threads=self.threads, **more
+            self.placed(more), method, given, percentiles=percentiles, threads=self.threads, **more
         )

@@ -8,7 +8,11 @@ from meshonet.geometry.spacing.laws import LAWS
 from meshonet_cli.options.groups import SAMPLING, bad_value, option_of, values_of
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import Any
+
     from meshonet.geometry.spacing.sampling import Sampling
+    from meshonet.solvers.pipeline.parameters import Counts
 
     SpacingName: TypeAlias = str
 else:
@@ -21,8 +25,9 @@ _option = option_of(SAMPLING)
 Resolution = Annotated[str | None, _option(
     "--res", metavar="N|NIxNJ[xNK]",
     help="Number of nodes along each direction: N for all directions, or NI along xi (around a body), NJ "
-    "along eta (away from it) and NK along zeta (volumes). For many blocks, number of cells along the "
-    "longest extent. [default: the nodes of the input, or 200x100 for curves]",
+    "along eta (away from it) and NK along zeta (volumes). Where --growth determines the rows, N is NI. For "
+    "many blocks, number of cells along the longest extent. [default: the nodes of the input, or 200x100 for "
+    "curves]",
 )]
 
 
@@ -94,31 +99,30 @@ class SamplingOptions:
         "--normalise", help="Move the leading edge to (0, 0) and the trailing edge to (1, 0).",
     )] = False
 
-    def placed(self) -> "Sampling":
-        """Return the options as `Sampling`. Raises InputError: an invalid value."""
-        from meshonet.geometry.spacing.sampling import Sampling
+    def placed(self, layers: "Mapping[str, Any] | None" = None) -> "Sampling":
+        """Return the options as `Sampling`, with those of layers. Raises InputError: an invalid value."""
+        from meshonet.solvers.pipeline.parameters import sampling_of
 
-        ni, nj, nk = (None, None, None) if self.res is None else resolution(self.res)
         given = values_of(SamplingOptions, self)
-        del given["res"]
-        corners = None if self.corners == "auto" else four_corners(self.corners)
-        return Sampling(ni, nj, nk=nk, **given | {"corners": corners})
+        res = given.pop("res")
+        given["corners"] = None if self.corners == "auto" else four_corners(self.corners)
+        return sampling_of(None if res is None else resolution(res), given | dict(layers or {}))
 # fmt: on
 
 
-def resolution(text: str) -> tuple[int, int, int | None]:
-    """Return the node counts (ni, nj, nk) of ``N``, ``NIxNJ`` or ``NIxNJxNK``. Raises InputError: other text.
+def resolution(text: str) -> "Counts":
+    """Return the node counts of ``N``, ``NIxNJ`` or ``NIxNJxNK``. Raises InputError: other text.
 
     >>> resolution("200"), resolution("400x100"), resolution("33x33x65")
-    ((200, 200, None), (400, 100, None), (33, 33, 65))
+    (200, (400, 100), (33, 33, 65))
     """
     count = r"\s*(\d{1,9})\s*"
     match = re.fullmatch(rf"{count}(?:[xX]{count}(?:[xX]{count})?)?", text, re.ASCII)
     if match is None:
         remedy = "use N, NIxNJ or NIxNJxNK, e.g. 200 or 400x100"
         raise bad_value(text, "a number of nodes", remedy, "res")
-    ni = int(match[1])
-    return ni, int(match[2] or ni), int(match[3]) if match[3] else None
+    first, *more = (int(count) for count in match.groups() if count)
+    return (first, *more) if more else first  # type: ignore[return-value] # two or three
 
 
 def four_corners(text: str) -> tuple[int, int, int, int]:

@@ -19,7 +19,7 @@ from meshonet.geometry.notes import change_facts
 from meshonet.geometry.quality.criteria import Criteria
 from meshonet.geometry.sections.stack import Stack, Tip
 from meshonet.geometry.shapes.shape import Shape
-from meshonet.solvers.pipeline.parameters import grid_request
+from meshonet.solvers.pipeline.parameters import Counts, grid_request
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.stacked import Sections, make_stacked, stacked_surface, with_tip
 from meshonet.solvers.pipeline.sweeps import make_sweep
@@ -87,11 +87,11 @@ def _swept(
     return reported(item, make_sweep(item.what, path, request, settings, around), criteria)
 
 
-def _counts(text: str) -> tuple[int, int]:
-    ni, nj, nk = resolution(text)
-    if nk is not None:
+def _counts(text: str) -> Counts:
+    counts = resolution(text)
+    if not isinstance(counts, int) and len(counts) == 3:
         raise bad_value(text, "the nodes of a section", "use NIxNJ, and {planes} along the path", "res")
-    return ni, nj
+    return counts
 
 
 def _shared(parameters: Mapping[str, Any], batch: Batch) -> dict[str, Any]:

@@ -51,6 +51,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
     growth than allowed.
     """
     check_fit(heights, boundary)
+    check_columns(boundary, heights)
     grid = solution.grid
     nodes = grid.nodes
     if heights.west or heights.east:
@@ -130,6 +131,15 @@ def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights, more: int) -
     return out, ratio
 
 
+def check_columns(boundary: Boundary, heights: Heights) -> None:
+    """Raise InputError if the columns of `boundary` do not suffice for heights off west and east."""
+    ends = heights.west, heights.east
+    for edge in (boundary.south, boundary.north) if any(ends) else ():
+        curve = Curve(edge)
+        _, ratio = arcs_in_layers(curve, boundary.ni, *ends, heights)
+        _check_ratio(ratio, boundary.ni, curve.length, ends, heights)
+
+
 def _check_ratio(
     ratio: float, count: int, length: float, ends: tuple[float, float], heights: Heights
 ) -> None:
@@ -151,8 +161,7 @@ def _along_xi(nodes: Floats, boundary: Boundary, heights: Heights) -> Floats:
     for j, edge in ((0, boundary.south), (-1, boundary.north)):
         curve = Curve(edge)
         ends = heights.west, heights.east
-        arcs, ratio = arcs_in_layers(curve, ni, *ends, heights)
-        _check_ratio(ratio, ni, curve.length, ends, heights)
+        arcs, _ = arcs_in_layers(curve, ni, *ends, heights)
         kinks = curve.corners[(curve.corners > arcs[1]) & (curve.corners < arcs[-2])]
         arcs = on_corners(arcs, kinks, fixed=(1, ni - 2))
         maps.append(monotone_cubic(curve.knots, index, arcs))

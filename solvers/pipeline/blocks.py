@@ -96,7 +96,7 @@ def block_request(request: GridRequest) -> BlockRequest:
     own = [each.name for each in fields(BlockRequest) if each.name != "res"]
     values = {name: getattr(request, name) for name in own}
     sampling = request.sampling
-    if sampling.ni != sampling.nj:
+    if sampling.nj not in (None, sampling.ni):
         problem = f"{sampling.ni} x {sampling.nj} nodes for many blocks"
         raise InputError(problem, "give one number: cells along the longest extent", parameter="res")
     return BlockRequest(res=sampling.ni, **values)

@@ -116,9 +116,10 @@ class Layered(Wrapper):
         """Return the grid of `boundary` with layers; its time includes all stages."""
         from meshonet.solvers.elliptic import steger_sorenson  # noqa: F401 - loaded before the clock starts
         from meshonet.solvers.layers import slide_nodes  # noqa: F401
-        from meshonet.solvers.layers.redistribute import spread
+        from meshonet.solvers.layers.redistribute import check_columns, spread
 
         begun = perf_counter()
+        check_columns(boundary, heights)
         solution = self._even(boundary, heights, start)
         if heights.any:
             edges = solution.boundary or boundary

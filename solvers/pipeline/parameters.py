@@ -24,7 +24,8 @@ def grid_request(method: str = "best", *, res: Counts | None = None, **parameter
     method : str, optional
         As in `GridRequest`.
     res : int or tuple of int, optional
-        Number of nodes along xi, eta and, for volumes, zeta; one number for all.
+        Number of nodes along xi, eta and, for volumes, zeta; one number for all, or along xi alone where
+        ``growth`` determines the number of rows.
     **parameters
         Fields of `Sampling` and `GridRequest`, and settings of the method; a setting that is None is ignored.
         ``wall_spacing`` is another name of ``first_cell``.
@@ -61,15 +62,22 @@ def grid_request(method: str = "best", *, res: Counts | None = None, **parameter
 
 
 def sampling_of(res: Counts | None, parameters: dict[str, Any]) -> Sampling:
-    """Return the sampling with counts `res`; its other fields are removed from `parameters`."""
+    """Return the sampling with counts `res`; its other fields are removed from `parameters`.
+
+    One number leaves the rows to the growth ratio among the `parameters`, if there is one.
+    """
     counts: dict[str, Any] = {}
     if res is not None:
-        counts = dict(zip(COUNTED, (res, res) if isinstance(res, int) else res, strict=False))
+        rows_by_growth = parameters.get("growth") and any(parameters.get(name) for name in _OFF_WALLS)
+        alone = (res,) if rows_by_growth else (res, res)
+        counts = dict(zip(COUNTED, alone if isinstance(res, int) else res, strict=False))
     return Sampling(**counts, **{name: parameters.pop(name) for name in SAMPLED if name in parameters})
 
 
 SAMPLED = tuple(each.name for each in fields(Sampling) if each.name not in (*COUNTED, "viscous"))
 """Parameters of the sampling, without node counts and without fields that follow from first cells."""
+_OFF_WALLS = ("first_cell", "y_plus", "spacing_south", "spacing_north")
+"""Parameters that prescribe first cells at the ends of lines along eta."""
 _LIKENESS = 0.75
 """Least similarity of a suggested name: ``polish`` is a setting of other methods, and not ``poles``."""
 REQUESTED = tuple(

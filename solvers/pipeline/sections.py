@@ -18,8 +18,9 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.circle import Circle
 from meshonet.geometry.shapes.domain_shape import DomainShape, four_sided
 from meshonet.geometry.shapes.outline import Outline
-from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.first_cell import FirstCell
+from meshonet.solvers.layers.first_cells import Heights, cells_needed
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.uses import GIVEN_SECTION, refuse
@@ -62,12 +63,8 @@ def section_grid(
     if isinstance(inside, DomainShape) and inside.many:
         request = _walled(inside, request)
     elif request.at_walls and not request.asks_for_blocks:
-        h = request.height()
-        request = replace(
-            request, first_cell=None, slide=False, spacing_south=h, spacing_north=h, spacing_west=h,
-            spacing_east=h,
-        )  # fmt: skip
-    if isinstance(inside, Outline) and request.sampling.ni is None and not request.asks_for_blocks:
+        request = _four_walls(inside, request)
+    elif isinstance(inside, Outline) and request.sampling.ni is None and not request.asks_for_blocks:
         request = replace(request, sampling=replace(request.sampling, ni=_SIDES[0], nj=_SIDES[1]))
     result = make_grid(inside, request)
     return result.grid, (*notes, *result.notes)
@@ -112,6 +109,21 @@ def _inside(shape: Shape) -> Shape:
     if isinstance(shape, Outline) and shape.topology == "quad" and four_sided(domain):
         return shape
     return DomainShape(domain)
+
+
+def _four_walls(inside: Shape, request: GridRequest) -> GridRequest:
+    """Return the request with layers at the four sides; growth decides the numbers that are left open."""
+    h, sampling, growth = request.height() or 0.0, request.sampling, request.growth
+    if sampling.ni is None and isinstance(inside, Outline):
+        growth = growth or GROWTH
+        edges = edges_of(inside, sampling)
+        across = max(Curve(side).length for side in (edges.south, edges.north))
+        needed = cells_needed(1.001 * across, h, h, Heights(growth=growth)) + 1
+        sampling = replace(sampling, ni=max(_SIDES[0], needed))
+    return replace(
+        request, first_cell=None, slide=False, spacing_south=h, spacing_north=h, spacing_west=h,
+        spacing_east=h, growth=growth, sampling=sampling,
+    )  # fmt: skip
 
 
 def _loop(curve: Curve) -> Loop:

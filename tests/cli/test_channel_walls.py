@@ -149,7 +149,7 @@ def test_growth_in_a_channel_takes_the_rows_it_needs(meshonet: Meshonet, tmp_pat
             ("--spacing-south", "1e-3", "--growth", "0.5"),
             "a growth of 0.5; give the ratio",
         ),
-        (("--spacing-south", "1e-3", "--growth", "1.01", "--res", "21"), "more than 1.01; use"),
+        (("--spacing-south", "1e-3", "--growth", "1.01", "--res", "21x21"), "more than 1.01; use"),
     ],
 )
 def test_heights_that_make_no_sense_get_a_line(

@@ -72,6 +72,23 @@ def test_a_closed_curve_is_filled_with_blocks_and_a_four_sided_one_with_one(mesh
     assert first == pytest.approx(np.full(first.shape, 0.004), rel=1e-6)
 
 
+@pytest.mark.parametrize(("words", "counts"), [("", (65, 53)), ("--res 81 --growth 1.15", (81, 65))])
+def test_growth_is_a_limit_in_four_sided_sections_too(
+    meshonet: Meshonet, words: str, counts: tuple[int, int]
+) -> None:
+    Path("straight.csv").write_text("0,0,0\n0,0,3\n")
+    Path("wide.csv").write_text("0,0\n2,0\n2,1\n0,1\n")
+    box = swept(meshonet, "wide.csv", "straight.csv", "--planes", "3", "--first-cell", "1e-3", *words.split())
+    assert box.blocks[0].counts[:2] == counts
+    steps = np.linalg.norm(np.diff(box.blocks[0].nodes[:, :, 0], axis=1), axis=-1)
+    growth = steps[:, 1:] / steps[:, :-1]
+    assert np.maximum(growth, 1 / growth).max() <= float((words or "1.2").split()[-1])
+    refused = meshonet("sweep", "wide.csv", "straight.csv", "--first-cell", "1e-3", "--res", "41",
+                       "--growth", "1.2", "-o", "g.h5")  # fmt: skip
+    assert (refused.code, Path("g.h5").exists()) == (2, False)
+    assert "41 nodes across 2 need cells that grow by 1.34, more than 1.2; use 60 or more" in refused.err
+
+
 def test_a_domain_with_a_hole_keeps_the_names_of_its_loops(meshonet: Meshonet) -> None:
     grid = swept(meshonet, "rings.wkt", "bend.toml", "--cells", "200")
     assert {patch.name for patch in grid.patches} == {"wall", "body", "inlet", "outlet"}

@@ -13,6 +13,13 @@ SECTION = "naca:2412"
 LAYER_COMMANDS = ("solve-pde", "infer")
 
 
+def growth_off_the_wall(nodes: np.ndarray) -> float:
+    """Return the largest ratio of neighbouring cells along the lines (ni, nj, 2) that leave south."""
+    steps = np.linalg.norm(np.diff(nodes, axis=1), axis=-1)
+    ratio = steps[:, 1:] / steps[:, :-1]
+    return float(np.maximum(ratio, 1 / ratio).max())
+
+
 @pytest.mark.parametrize("command", LAYER_COMMANDS)
 def test_wall_spacing_is_the_height_of_every_first_cell(meshonet: Meshonet, command: str) -> None:
     words = (command, SECTION, "--res", "120x70", "--wall-spacing", "1e-5", "-o", "g.h5", "--json")
@@ -63,6 +70,36 @@ def test_growth_takes_few_more_rows_than_it_needs(meshonet: Meshonet, command: s
     )
     assert refusal is not None
     assert 1 <= made["nj"] - int(refusal[1]) <= 4
+
+
+@pytest.mark.parametrize(
+    ("shape", "nodes"),
+    [
+        (f"{SECTION} --topology o", "81"),
+        (f"{SECTION} --topology c", "301"),
+        ("naca:2412-sharp", "121"),
+        ("box.csv", "41"),
+    ],
+)
+def test_one_number_of_nodes_is_along_xi_where_growth_chooses_the_rows(
+    meshonet: Meshonet, shape: str, nodes: str
+) -> None:
+    Path("box.csv").write_text("0,0\n2,0\n2,1\n0,1\n")
+    words = ("infer", *shape.split(), "--first-cell", "1e-3", "--growth", "1.2", "-o", "{name}.h5", "--json")
+    for res, rows in ((nodes, range(25, 60)), (f"{nodes}x75", (75,))):
+        made = meshonet(*words, "--res", res)
+        assert made.code == 0, made.err
+        (grid,) = read_grids(made.only["output"])
+        ni, nj = grid.blocks[0].counts
+        assert (ni, nj in rows) == (int(nodes), True)
+        assert growth_off_the_wall(grid.blocks[0].nodes) <= 1.2
+
+
+def test_growth_counts_rows_of_walls_along_eta_alone(meshonet: Meshonet) -> None:
+    Path("box.csv").write_text("0,0\n2,0\n2,1\n0,1\n")
+    words = ("tfi", "box.csv", "--res", "65", "--spacing-west", "1e-3", "--growth", "1.2", "-o", "g.h5")
+    made = meshonet(*words, "--json").only
+    assert (made["ni"], made["nj"]) == (65, 65)
 
 
 @pytest.mark.parametrize("command", LAYER_COMMANDS)
