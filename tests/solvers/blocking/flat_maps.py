@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
-from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import shapely
@@ -14,7 +13,7 @@ from scipy.spatial import Delaunay
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
-from meshonet.solvers.blocking.decomposition.surface.surface import TriangleSurface
+from meshonet.solvers.blocking.decomposition.surface.surface import Triangulation
 
 
 def seamless_of(
@@ -34,12 +33,10 @@ def seamless_of(
     z = points[:, 0] + 1j * points[:, 1]
     w = coordinates(z[triangles], z[triangles].mean(axis=1, keepdims=True))
     near, edge = triangulation.neighbours, triangulation.neighbour_edge
-    turns, axis = np.zeros_like(near), np.full_like(near, -1)
+    turns = np.zeros_like(near)
     for f, e in np.ndindex(near.shape):
         step = w[f, (e + 1) % 3] - w[f, e]
-        if near[f, e] < 0:
-            axis[f, e] = round(np.angle(step) / (np.pi / 2)) % 4
-        else:
+        if near[f, e] >= 0:
             other = w[near[f, e], edge[f, e]] - w[near[f, e], (edge[f, e] + 1) % 3]
             turns[f, e] = round(np.angle(other / step) / (np.pi / 2)) % 4
     inside = np.angle((np.roll(w, 1, axis=1) - w) / (np.roll(w, -1, axis=1) - w))
@@ -52,19 +49,16 @@ def seamless_of(
             corner_cells[own[np.argmin(np.abs(triangulation.arc[own] - arc))]] = cells
     on_wall = np.arange(len(points)) < walls
     return SeamlessMap(
-        surface=TriangleSurface(cast(Any, triangulation)),
+        surface=triangulation,
         corner_coords=np.ascontiguousarray(w),
         turns=turns,
-        wall_axis=axis,
         boundary_cells=around[:walls],
         corner_cells=corner_cells,
         valence=np.where(on_wall, 0, around),
-        sizes=np.ones(len(triangles)),
-        jacobians=np.ones(len(triangles)),
     )
 
 
-def triangulated(domain: Domain, count: int, seed: int, *, centre: bool) -> Any:
+def triangulated(domain: Domain, count: int, seed: int, *, centre: bool) -> Triangulation:
     """Return a Delaunay triangulation of about so many random points, corners among them."""
     rng = np.random.default_rng(seed)
     size = np.sqrt(domain.area / count)
@@ -101,7 +95,7 @@ def triangulated(domain: Domain, count: int, seed: int, *, centre: bool) -> Any:
     left = _area(x)
     triangles[left < 0] = triangles[left < 0][:, ::-1]
     near, edge = _neighbours(triangles)
-    return SimpleNamespace(
+    return Triangulation(
         domain=domain,
         points=every,
         triangles=triangles,

@@ -9,7 +9,6 @@ from meshonet.solvers.blocking.decomposition import decompose as decomposition
 from meshonet.solvers.blocking.decomposition.collapse.collapse import irregular_inside
 from meshonet.solvers.blocking.decomposition.decompose import decompose
 from meshonet.solvers.blocking.decomposition.field.cross_field import CrossField, cross_field
-from meshonet.solvers.blocking.decomposition.surface.surface import TriangleSurface
 from meshonet.solvers.blocking.decomposition.surface.triangulation import triangulate
 
 NEXT = np.array([1, 2, 0])
@@ -29,16 +28,16 @@ def holes() -> Domain:
 
 def fields(of: Domain) -> tuple[CrossField, CrossField]:
     """Return the field with all its singular points, and that with fewer."""
-    surface = TriangleSurface(triangulate(of, 1500))
+    surface = triangulate(of, 1500)
     return cross_field(surface, fewer=False), cross_field(surface)
 
 
 def energy(field: CrossField) -> float:
     """Return half the integral of the squared gradient of the phase, of linear pieces in each triangle."""
     surface, phase = field.surface, np.angle(field.crosses)
-    steps = phase[surface.vertices[:, NEXT]] - phase[surface.vertices]
+    steps = phase[surface.triangles[:, NEXT]] - phase[surface.triangles]
     steps -= 2.0 * np.pi * np.round(steps / (2.0 * np.pi))
-    x, y = np.moveaxis(surface.triangulation.points[surface.triangulation.triangles], 2, 0)
+    x, y = np.moveaxis(surface.points[surface.triangles], 2, 0)
     cotangents = []
     for k in range(3):
         u = np.stack([x[:, k] - x[:, k - 1], y[:, k] - y[:, k - 1]])

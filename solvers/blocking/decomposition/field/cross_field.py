@@ -21,7 +21,7 @@ from meshonet.solvers.blocking.decomposition.field.wall_directions import (
     wall_directions,
 )
 from meshonet.solvers.blocking.decomposition.surface.laplacian import Laplacian, solve_complex
-from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIOUS, TriangleSurface
+from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIOUS, Triangulation
 
 _STEPS, _AFTER = 6, 3
 """Number of diffusion steps, and of further ones after pairs of singular points have been removed.
@@ -38,7 +38,7 @@ more than 431, with ten times as much 26 more but better angles.
 class CrossField:
     """A cross field on a surface, and the number of cells that it implies at each vertex."""
 
-    surface: TriangleSurface
+    surface: Triangulation
     walls: WallDirections
     crosses: Complexes
     """(n,) exp(4 i theta) at vertices."""
@@ -49,7 +49,7 @@ class CrossField:
     quarters: Indices
     """(t, 3) number of quarter turns between the frame and that across each edge."""
     wall_axis: Indices
-    """(w,) quarter turns from the frame to each wall edge, in the order of `TriangleSurface.walls`."""
+    """(w,) quarter turns from the frame to each wall edge, in the order of `Triangulation.walls`."""
     valence: Indices
     """(n,) number of cells that meet at interior vertices, 0 at wall vertices."""
     boundary_cells: Indices
@@ -61,7 +61,7 @@ class CrossField:
         return np.flatnonzero((self.valence != 4) & (self.valence > 0))
 
 
-def cross_field(surface: TriangleSurface, fewer: bool = True) -> CrossField:
+def cross_field(surface: Triangulation, fewer: bool = True) -> CrossField:
     """Return a smooth cross field that is aligned with the walls of a surface.
 
     It starts from a harmonic u, followed by steps of normalisation and diffusion (Viertel, Osting, SIAM J.
@@ -72,7 +72,7 @@ def cross_field(surface: TriangleSurface, fewer: bool = True) -> CrossField:
     """
     walls = wall_directions(surface)
     crosses, shears = _smooth(surface, walls, fewer)
-    angles = angle(crosses[surface.vertices].sum(axis=1)) / 4.0
+    angles = angle(crosses[surface.triangles].sum(axis=1)) / 4.0
     inner = surface.neighbours >= 0
     lag = (angles[:, None] - angles[surface.neighbours]) / QUARTER
     quarters = np.where(inner, np.round(lag), 0.0).astype(np.intp)
@@ -84,7 +84,7 @@ def cross_field(surface: TriangleSurface, fewer: bool = True) -> CrossField:
     return field
 
 
-def _smooth(surface: TriangleSurface, walls: WallDirections, fewer: bool) -> tuple[Complexes, Complexes]:
+def _smooth(surface: Triangulation, walls: WallDirections, fewer: bool) -> tuple[Complexes, Complexes]:
     """Return the crosses (n,), unit numbers, and the harmonic shears."""
     crosses = np.where(surface.on_wall, exp(4j * walls.vertices), 0.0)
     free = ~surface.on_wall
@@ -114,14 +114,14 @@ def _unit(z: Complexes) -> Complexes:
 
 
 def _around_vertices(
-    surface: TriangleSurface, walls: WallDirections, quarters: Indices, wall_axis: Indices
+    surface: Triangulation, walls: WallDirections, quarters: Indices, wall_axis: Indices
 ) -> tuple[Indices, Indices]:
     """Return the cells (n,) that meet at inner and at wall vertices."""
     # crossed counter-clockwise around a corner's vertex is the edge that arrives at it
     turned = np.round(surface.gather(quarters[:, PREVIOUS].astype(np.float64))).astype(np.intp)
     valence = np.where(surface.on_wall, 0, 4 - turned)
     triangle, edge = surface.walls
-    leaving, arriving = surface.vertices[triangle, edge], surface.vertices[triangle, NEXT[edge]]
+    leaving, arriving = surface.triangles[triangle, edge], surface.triangles[triangle, NEXT[edge]]
     own, between = walls.edges - walls.offsets, walls.inside.copy()
     between[leaving] += own
     between[arriving] -= own

@@ -89,7 +89,7 @@ def frame_sizes(field: CrossField) -> Floats:
     satisfies this in the least-squares sense.
     """
     surface = field.surface
-    corner = angle(field.crosses)[surface.vertices] / 4.0
+    corner = angle(field.crosses)[surface.triangles] / 4.0
     steps = corner[:, NEXT] - corner
     steps -= QUARTER * np.round(steps / QUARTER)
     steps[np.abs(steps.sum(axis=1)) > 1e-6] = 0.0  # a singularity is inside
@@ -101,4 +101,4 @@ def frame_sizes(field: CrossField) -> Floats:
     size = np.zeros(surface.size)
     size[free] = Laplacian(surface, free).factor().solve(right[free])
     size = np.clip(size - middle(size), -_LARGEST, _LARGEST)
-    return np.asarray(exp(size[surface.vertices].mean(axis=1)))
+    return np.asarray(exp(size[surface.triangles].mean(axis=1)))

@@ -55,7 +55,7 @@ class Parametrisation:
         )
         direction, shear = (
             sizes * exp(1j * frames.angles),
-            frames.field.shears[surface.vertices].mean(axis=1),
+            frames.field.shears[surface.triangles].mean(axis=1),
         )
         self._wanted = sizes**2 * (1.0 - modulus(shear) ** 2)
         wanted = (

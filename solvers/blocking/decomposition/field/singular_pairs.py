@@ -21,7 +21,7 @@ from meshonet.geometry.arrays import Complexes, Floats, complex_of
 from meshonet.geometry.elementary import angle, exp, modulus, product, times
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.surface.laplacian import Laplacian
-from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, TriangleSurface
+from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, Triangulation
 from meshonet.solvers.sparse import Factor
 
 CORE = 1.0
@@ -48,7 +48,7 @@ class _Lines:
 
 
 def without_pairs(
-    surface: TriangleSurface, laplacian: Laplacian, factor: Factor, crosses: Complexes
+    surface: Triangulation, laplacian: Laplacian, factor: Factor, crosses: Complexes
 ) -> Complexes:
     """Return the crosses (n,) without the pairs of singular points that cost more energy than they save.
 
@@ -56,7 +56,7 @@ def without_pairs(
     pair is removed, the given array is returned.
     """
     phase = angle(crosses)
-    steps = phase[surface.vertices[:, NEXT]] - phase[surface.vertices]
+    steps = phase[surface.triangles[:, NEXT]] - phase[surface.triangles]
     steps -= _TURN * np.round(steps / _TURN)
     turns = np.round(steps.sum(axis=1) / _TURN).astype(np.intp)
     lines = _lines(surface, np.flatnonzero(turns > 0), np.flatnonzero(turns < 0))
@@ -64,7 +64,7 @@ def without_pairs(
         return crosses
     halves, jumps = _jumps(surface, lines)
     triangle, edge = np.divmod(halves, 3)
-    here, there = surface.vertices[triangle, edge], surface.vertices[triangle, NEXT[edge]]
+    here, there = surface.triangles[triangle, edge], surface.triangles[triangle, NEXT[edge]]
     twin = surface.neighbours[triangle, edge], surface.neighbour_edge[triangle, edge]
     weight = -surface.edge_weights[triangle, edge] - surface.edge_weights[twin]
     jumped = weight[:, None] * jumps
@@ -87,15 +87,15 @@ def without_pairs(
     return np.where(laplacian.free, exp(1j * phase), crosses)
 
 
-def _divergence(surface: TriangleSurface, steps: Floats) -> Floats:
+def _divergence(surface: Triangulation, steps: Floats) -> Floats:
     """Return what steps (t, 3) of the phase along edges give on the right of Laplace's equation (n,)."""
     flow = (-surface.edge_weights * steps).ravel()
-    leaving = np.bincount(surface.vertices.ravel(), flow, surface.size)
-    arriving = np.bincount(surface.vertices[:, NEXT].ravel(), flow, surface.size)
+    leaving = np.bincount(surface.triangles.ravel(), flow, surface.size)
+    arriving = np.bincount(surface.triangles[:, NEXT].ravel(), flow, surface.size)
     return np.asarray(leaving - arriving)
 
 
-def _jumps(surface: TriangleSurface, lines: _Lines) -> tuple[Indices, Floats]:
+def _jumps(surface: Triangulation, lines: _Lines) -> tuple[Indices, Floats]:
     """Return the edges (e,) that lines cross, as 3 t + i, and jumps (e, k) of the phase along them."""
     across = 3 * surface.neighbours + surface.neighbour_edge
     half = 3 * lines.triangle + lines.edge
@@ -122,9 +122,9 @@ def _taken(ends: Indices, gain: Floats, products: Floats) -> list[int]:
         change[(ends == ends[best]).any(axis=1)] = np.inf
 
 
-def _lines(surface: TriangleSurface, first: Indices, second: Indices) -> _Lines:
+def _lines(surface: Triangulation, first: Indices, second: Indices) -> _Lines:
     """Return the lines from the middles of `first` triangles to those of `second`, the shortest."""
-    points = complex_of(surface.triangulation.points[surface.triangulation.triangles])
+    points = complex_of(surface.points[surface.triangles])
     middle = points.mean(axis=1)
     ends = np.stack([np.repeat(first, len(second)), np.tile(second, len(first))], axis=1)
     apart = modulus(middle[ends[:, 1]] - middle[ends[:, 0]])

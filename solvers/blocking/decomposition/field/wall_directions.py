@@ -13,7 +13,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import angle as angle_of
 from meshonet.geometry.elementary import exp, tan, times
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, TriangleSurface
+from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, Triangulation
 
 Flags: TypeAlias = NDArray[np.bool_]
 
@@ -39,14 +39,14 @@ class WallDirections:
     Without it, the map would vanish in the corner like a power of the distance.
     """
     edges: Floats
-    """(w,) angle of each wall edge, in the order of `TriangleSurface.walls`."""
+    """(w,) angle of each wall edge, in the order of `Triangulation.walls`."""
     offsets: Floats
     """(w,) difference from the edge's own angle."""
     inside: Floats
     """(n,) angle between the two walls of a wall vertex."""
 
 
-def wall_directions(surface: TriangleSurface) -> WallDirections:
+def wall_directions(surface: Triangulation) -> WallDirections:
     """Return directions along the walls of a surface.
 
     At a corner with the angle alpha and k cells, either wall is rotated by half of k 90 degrees - alpha, less
@@ -54,39 +54,37 @@ def wall_directions(surface: TriangleSurface) -> WallDirections:
     cells is a boundary condition. Elsewhere the direction is the mean of both edges.
     """
     triangle, edge = surface.walls
-    start = surface.vertices[triangle, edge]
+    start = surface.triangles[triangle, edge]
     own = angle_of(surface.edges[triangle, edge])
     inside = surface.gather(surface.angles)
     cells, after, before, acute = _corner_offsets(surface, np.where(surface.on_wall, inside, 0.0))
-    places = surface.triangulation.triangles
-    leaving, arriving = after[places[triangle, edge]], before[places[triangle, NEXT[edge]]]
+    leaving, arriving = after[start], before[surface.triangles[triangle, NEXT[edge]]]
     angle = np.zeros(surface.size)
     angle[start] = own - 0.5 * (np.pi - inside[start])
     here = cells[start] > 0
     angle[start[here]] = own[here]
     angle[start] += leaving
     shears = np.zeros(surface.size, dtype=np.complex128)
-    sheared = np.where(acute[places[triangle, edge]], tan(leaving), 0.0)
+    sheared = np.where(acute[start], tan(leaving), 0.0)
     shears[start] = times(-1j * sheared, exp(2j * angle[start]))
     offsets = 0.5 * (leaving + arriving)
     inside = np.where(surface.on_wall, inside, 0.0)
     return WallDirections(cells, angle, shears, own + offsets, offsets, inside)
 
 
-def _corner_offsets(surface: TriangleSurface, inside: Floats) -> tuple[Indices, Floats, Floats, Flags]:
+def _corner_offsets(surface: Triangulation, inside: Floats) -> tuple[Indices, Floats, Floats, Flags]:
     """Return cells wanted (b,), offsets (b,) of walls that leave vertices and of those that arrive.
 
     And whether (b,) the nearest corner is acute: less than 90 degrees, and one cell is wanted.
     """
-    triangulation = surface.triangulation
-    count = len(triangulation.arc)
+    count = len(surface.arc)
     cells = np.zeros(count, dtype=np.intp)
     after, before, acute = np.zeros(count), np.zeros(count), np.zeros(count, dtype=bool)
-    for number, loop in enumerate(triangulation.domain.loops):
+    for number, loop in enumerate(surface.domain.loops):
         if not loop.corners:
             continue
-        mine = np.flatnonzero(triangulation.loop == number)
-        arcs = triangulation.arc[mine]
+        mine = np.flatnonzero(surface.loop == number)
+        arcs = surface.arc[mine]
         at = mine[_nearest(loop.corner_arcs, arcs, loop.length)]
         wanted = loop.corner_cells
         cells[at] = wanted

@@ -94,9 +94,9 @@ def _trace(seamless: SeamlessMap, joined: Indices) -> _Traced:
     for ray in starts:
         late = ray[0] >= count - len(joined)
         ray[5] = 2 if late else int((int(ray[0]), int(ray[1])) not in chosen)
-    room, rays_traced = 40 * len(seamless.surface.vertices) + 1000, None
+    room, rays_traced = 40 * len(seamless.surface.triangles) + 1000, None
     while rays_traced is None:
-        rays_traced = trace_rays(*common, starts, 4 * len(seamless.surface.vertices), room)
+        rays_traced = trace_rays(*common, starts, 4 * len(seamless.surface.triangles), room)
         room *= 4
     if np.any(rays_traced[0][:, 0] == TOO_LONG):
         raise BlockingError("a line of the map does not end")

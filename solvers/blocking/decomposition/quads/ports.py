@@ -53,9 +53,9 @@ def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
     entry, owner = _fans(seamless, vertex)
     face, corner = np.divmod(entry, 3)
     port, margin = _directions(seamless, face, corner, owner, quarters, on_wall)
-    node_at = np.full(seamless.surface.vertices.shape, -1, dtype=np.intp)
+    node_at = np.full(seamless.surface.triangles.shape, -1, dtype=np.intp)
     node_at[face, corner] = owner
-    port_at = np.full((*seamless.surface.vertices.shape, 4), -1, dtype=np.intp)
+    port_at = np.full((*seamless.surface.triangles.shape, 4), -1, dtype=np.intp)
     port_at[face, corner] = np.where(margin > -SLACK, port, -1)
     late = np.arange(len(vertex)) >= len(vertex) - len(joined)
     shoots = late | ~on_wall | (quarters != 2)
@@ -65,11 +65,11 @@ def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
 
 def _fans(seamless: SeamlessMap, vertex: Indices) -> tuple[Indices, Indices]:
     """Return the corners (e,) around the vertices, and for each the node that it belongs to."""
-    fans = [seamless.fan(int(v)) for v in vertex]
-    if not fans:
-        return np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp)
-    owner = np.repeat(np.arange(len(fans)), [len(fan) for fan in fans])
-    return np.concatenate(fans).astype(np.intp), owner.astype(np.intp)
+    start, corners = seamless.surface.fans
+    count = start[vertex + 1] - start[vertex]
+    owner = np.repeat(np.arange(len(vertex)), count)
+    before = np.cumsum(count) - count
+    return corners[np.arange(len(owner)) + (start[vertex] - before)[owner]], owner
 
 
 def _directions(

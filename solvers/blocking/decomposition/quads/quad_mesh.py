@@ -34,7 +34,7 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None 
     mesh = t_mesh(motorcycle_graph(seamless))
     wanted = _plane_lengths(mesh, sizes)
     if sizes is None:
-        wanted = wanted / np.sqrt(seamless.triangulation.domain.area / cells)
+        wanted = wanted / np.sqrt(seamless.surface.domain.area / cells)
     counts = arc_counts(mesh, np.maximum(wanted, SHORTEST))
     quads = _fine(mesh, counts)
     if not conforms(quads):
@@ -103,7 +103,7 @@ def _on_arcs(mesh: TMesh, counts: Indices) -> _Nodes:
     number, piece, part = number[wall], piece[wall], part[wall]
     loop[number] = trails.loop[trail[wall]]
     arc[number] = trails.arc[piece, 0] + part * trails.arc[piece, 1]
-    for k, curve in enumerate(graph.map.triangulation.domain.loops):
+    for k, curve in enumerate(graph.map.surface.domain.loops):
         here = np.flatnonzero(loop == k)
         arc[here] = np.mod(arc[here], curve.length)
         points[here] = complex_of(curve.at(arc[here]))
@@ -123,7 +123,7 @@ def _fine(mesh: TMesh, counts: Indices) -> QuadMesh:
     places.loop[: len(nodes.loop)], places.arc[: len(nodes.arc)] = nodes.loop, nodes.arc
     corner = np.flatnonzero((vertex >= 0) & (vertex < len(seamless.corner_cells)))
     places.cells[corner] = seamless.corner_cells[vertex[corner]]
-    return QuadMesh(seamless.triangulation.domain, np.concatenate(points), lattice_quads(lattices), places)
+    return QuadMesh(seamless.surface.domain, np.concatenate(points), lattice_quads(lattices), places)
 
 
 def _lattice(nodes: _Nodes, face: Face, first: int) -> tuple[Indices, Floats]:

@@ -128,9 +128,9 @@ def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int)
 
 def wall_trails(seamless: SeamlessMap) -> Trails:
     """Return the closed trails along the walls, with the domain on their left, the outer loop first."""
-    triangulation = seamless.triangulation
+    triangulation = seamless.surface
     faces, edges = np.nonzero(seamless.surface.neighbours < 0)
-    start = seamless.surface.vertices[faces, edges]
+    start = seamless.surface.triangles[faces, edges]
     follow = dict(zip(start.tolist(), zip(faces.tolist(), edges.tolist(), strict=True), strict=True))
     order: list[tuple[int, int]] = []
     first = [0]
@@ -139,7 +139,7 @@ def wall_trails(seamless: SeamlessMap) -> Trails:
         while at in follow:
             f, e = follow.pop(at)
             order.append((f, e))
-            at = int(seamless.surface.vertices[f, (e + 1) % 3])
+            at = int(seamless.surface.triangles[f, (e + 1) % 3])
         if len(order) > first[-1]:
             if at != vertex:
                 raise BlockingError("a wall of the triangulation is not closed")
@@ -162,7 +162,7 @@ def wall_trails(seamless: SeamlessMap) -> Trails:
         end=plane[there],
         loop=np.asarray(loops, dtype=np.intp),
         arc=np.stack([arc, np.mod(triangulation.arc[there] - arc, whole)], axis=1),
-        vertex=seamless.surface.vertices[face, edge],
+        vertex=seamless.surface.triangles[face, edge],
     )
 
 
@@ -172,5 +172,5 @@ def to_plane(seamless: SeamlessMap, face: Indices, w: Complexes) -> Complexes:
     a, b, q = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], w - corners[:, 0]
     size = times(a.conj(), b).imag
     s, r = times(q.conj(), b).imag / size, times(a.conj(), q).imag / size
-    z = complex_of(seamless.triangulation.points[seamless.triangulation.triangles[face]])
+    z = complex_of(seamless.surface.points[seamless.surface.triangles[face]])
     return np.asarray(z[:, 0] * (1 - s - r) + z[:, 1] * s + z[:, 2] * r)

@@ -6,17 +6,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIOUS, TriangleSurface
+from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIOUS, Triangulation
 from meshonet.solvers.sparse import Factor, SparsePattern
 
 
 class Laplacian:
     """Integrals of products of gradients over a surface, for its vertices `free` (n,)."""
 
-    def __init__(self, surface: TriangleSurface, free: NDArray[np.bool_]) -> None:
+    def __init__(self, surface: Triangulation, free: NDArray[np.bool_]) -> None:
         self.surface, self.free = surface, free
         number = np.cumsum(free) - 1
-        start, stop, weight = surface.vertices, surface.vertices[:, NEXT], surface.edge_weights
+        start, stop, weight = surface.triangles, surface.triangles[:, NEXT], surface.edge_weights
         both = free[start] & free[stop]
         each = np.arange(int(free.sum()))
         self.pattern = SparsePattern(
@@ -32,7 +32,7 @@ class Laplacian:
     def flow(self, values: Complexes) -> Complexes:
         """Return the right-hand side for values (n,) at vertices that are not free; others must be 0."""
         surface, weight = self.surface, self.surface.edge_weights
-        corner = values[surface.vertices]
+        corner = values[surface.triangles]
         flow = -weight * corner[:, NEXT] - weight[:, PREVIOUS] * corner[:, PREVIOUS]
         return np.asarray((surface.gather(flow.real) + 1j * surface.gather(flow.imag))[self.free])
 

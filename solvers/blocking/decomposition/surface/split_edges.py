@@ -7,9 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.decomposition.surface.triangulation import Triangulation
-
-_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])  # corners of a triangle after and before each
+from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIOUS, Triangulation
 
 
 def split_edges_between_walls(triangulation: Triangulation) -> Triangulation:
@@ -23,7 +21,7 @@ def split_edges_between_walls(triangulation: Triangulation) -> Triangulation:
         triangles, neighbours = triangulation.triangles, triangulation.neighbours
         on_wall = triangles < boundary
         triangle, edge = np.nonzero(
-            on_wall & on_wall[:, _NEXT] & (neighbours > np.arange(len(triangles))[:, None])
+            on_wall & on_wall[:, NEXT] & (neighbours > np.arange(len(triangles))[:, None])
         )
         if not len(triangle):
             return triangulation
@@ -42,8 +40,8 @@ def _split(triangulation: Triangulation, triangle: Indices, edge: Indices) -> Tr
     triangles, points = triangulation.triangles, triangulation.points
     neighbour = triangulation.neighbours[triangle, edge]
     back = triangulation.neighbour_edge[triangle, edge]
-    start, stop = triangles[triangle, edge], triangles[triangle, _NEXT[edge]]
-    left, right = triangles[triangle, _LAST[edge]], triangles[neighbour, _LAST[back]]
+    start, stop = triangles[triangle, edge], triangles[triangle, NEXT[edge]]
+    left, right = triangles[triangle, PREVIOUS[edge]], triangles[neighbour, PREVIOUS[back]]
     middle = len(points) + np.arange(len(triangle))
     new = triangles.copy()
     new[triangle] = np.stack([start, middle, left], axis=1)
@@ -62,7 +60,7 @@ def _split(triangulation: Triangulation, triangle: Indices, edge: Indices) -> Tr
 
 def join_triangles(triangles: Indices) -> tuple[Indices, Indices]:
     """Return the triangle (t, 3) across each edge, and the edge's number there, -1 at walls."""
-    start, stop = triangles.ravel(), triangles[:, _NEXT].ravel()
+    start, stop = triangles.ravel(), triangles[:, NEXT].ravel()
     size = int(triangles.max()) + 1
     key, mate = start * size + stop, stop * size + start
     order = np.argsort(key, kind="stable")

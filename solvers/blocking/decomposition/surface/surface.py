@@ -12,46 +12,46 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats, complex_of
+from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.elementary import angle, modulus, times
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import surface_fans
-from meshonet.solvers.blocking.decomposition.surface.triangulation import Triangulation
 
 NEXT = np.array([1, 2, 0])  # corner of a triangle after each
 PREVIOUS = np.array([2, 0, 1])  # and before each
 
 
 @dataclass(frozen=True, eq=False)
-class TriangleSurface:
-    """Triangles joined at their edges."""
+class Triangulation:
+    """Delaunay triangulation of a domain, constrained by its walls: triangles joined at their edges.
 
-    triangulation: Triangulation
+    Vertices on the walls come first, in order.
+    """
 
-    @property
-    def vertices(self) -> Indices:
-        """(t, 3) vertex at each corner, counter-clockwise."""
-        return self.triangulation.triangles
-
-    @property
-    def neighbours(self) -> Indices:
-        """(t, 3) triangle across each edge, -1 at walls."""
-        return self.triangulation.neighbours
-
-    @property
-    def neighbour_edge(self) -> Indices:
-        """(t, 3) number of that edge in the neighbour, -1 at walls."""
-        return self.triangulation.neighbour_edge
+    domain: Domain
+    points: Floats
+    """(n, 2) vertices, in the domain's unit."""
+    triangles: Indices
+    """(t, 3) vertex at each corner, counter-clockwise."""
+    loop: Indices
+    """(b,) loops of the first b vertices, which are those on the walls."""
+    arc: Floats
+    """(b,) their arc lengths, ascending in each loop."""
+    neighbours: Indices
+    """(t, 3) triangle across each edge, -1 at walls."""
+    neighbour_edge: Indices
+    """(t, 3) number of that edge in the neighbour, -1 at walls."""
 
     @property
     def size(self) -> int:
         """Number of vertices, n."""
-        return len(self.triangulation.points)
+        return len(self.points)
 
     @property
     def arrays(self) -> tuple[Indices, Indices, Indices]:
         """Arguments of kernels."""
-        return self.vertices, self.neighbours, self.neighbour_edge
+        return self.triangles, self.neighbours, self.neighbour_edge
 
     @cached_property
     def fans(self) -> tuple[Indices, Indices]:
@@ -64,7 +64,7 @@ class TriangleSurface:
     @cached_property
     def edges(self) -> Complexes:
         """(t, 3) edge i of each triangle as a complex number."""
-        z = complex_of(self.triangulation.points[self.vertices])
+        z = complex_of(self.points[self.triangles])
         return np.asarray(z[:, NEXT] - z)
 
     @cached_property
@@ -92,7 +92,7 @@ class TriangleSurface:
     def on_wall(self) -> NDArray[np.bool_]:
         """(n,) mask of vertices on walls."""
         flags = np.zeros(self.size, dtype=bool)
-        flags[self.vertices[self.walls]] = True
+        flags[self.triangles[self.walls]] = True
         return flags
 
     @cached_property
@@ -110,11 +110,11 @@ class TriangleSurface:
     def euler(self) -> int:
         """Euler's number: 1 for a disc, 0 for an annulus."""
         inner = int((self.neighbours >= 0).sum()) // 2
-        return self.size - inner - len(self.walls[0]) + len(self.vertices)
+        return self.size - inner - len(self.walls[0]) + len(self.triangles)
 
     def gather(self, corners: Floats) -> Floats:
         """Return the sums (n,) of values at corners (t, 3) around each vertex."""
-        return np.asarray(np.bincount(self.vertices.ravel(), corners.ravel(), self.size))
+        return np.asarray(np.bincount(self.triangles.ravel(), corners.ravel(), self.size))
 
     def edge_size(self, vertices: Indices) -> Floats:
         """Return the mean length of the edges around each of the `vertices`."""

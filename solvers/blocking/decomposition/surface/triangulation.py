@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +11,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import DelaunayMesh
 from meshonet.solvers.blocking.decomposition.surface.sizes import GROWTH, WallSizes, place_nodes, wall_sizes
+from meshonet.solvers.blocking.decomposition.surface.surface import Triangulation
 
 _BOX = 4  # nodes that the kernel has before ours
 _SIDE = 2.0**29
@@ -31,28 +30,6 @@ diagonals.
 """
 _NEAREST = 1e-7
 """Distance of walls, relative to the extent, below which they cannot be distinguished."""
-
-
-@dataclass(frozen=True, eq=False)
-class Triangulation:
-    """Delaunay triangulation of a domain, constrained by its walls.
-
-    Nodes on the walls come first, in order.
-    """
-
-    domain: Domain
-    points: Floats
-    """(n, 2) nodes, in the domain's unit."""
-    triangles: Indices
-    """(t, 3) nodes, counter-clockwise."""
-    loop: Indices
-    """(b,) loops of the first b nodes, which are those on the walls."""
-    arc: Floats
-    """(b,) their arc lengths, ascending in each loop."""
-    neighbours: Indices
-    """(t, 3) triangle across the edge from corner i to i + 1, -1 at a wall."""
-    neighbour_edge: Indices
-    """(t, 3) number of that edge in the neighbour, -1 at a wall."""
 
 
 class _Frame:
