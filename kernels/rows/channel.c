@@ -1,9 +1,7 @@
 #include "channel.h"
 #include "clones.h"
-#include "elementary.h"
+#include "elementary/functions.h"
 #include "lanes.h"
-
-#include <math.h>
 
 #define BATCH 64
 
@@ -40,6 +38,7 @@ void channel_points(const Channel *channel, const double *s, const double *h, pt
 MESHONET_CLONES
 void channel_space(const Channel *channel, const double *values, ptrdiff_t n, double *space)
 {
+    const Function sines = function_named("sin"), cosines = function_named("cos");
     double radius[BATCH], theta[BATCH], sine[BATCH], cosine[BATCH];
     for (ptrdiff_t first = 0; first < n; first += BATCH) {
         const ptrdiff_t count = n - first < BATCH ? n - first : BATCH;
@@ -49,12 +48,9 @@ void channel_space(const Channel *channel, const double *values, ptrdiff_t n, do
             point_at(channel, from[3 * k], from[3 * k + 2], to + 3 * k, radius + k);
             theta[k] = from[3 * k + 1];
         }
+        sines(theta, count, sine);
+        cosines(theta, count, cosine);
         for (ptrdiff_t k = 0; k < count; k++)
-            sincos_double(fabs(theta[k]) < 1e5 ? theta[k] : 0.0, sine + k, cosine + k);
-        for (ptrdiff_t k = 0; k < count; k++) {
-            if (!(fabs(theta[k]) < 1e5))
-                sine[k] = sin(theta[k]), cosine[k] = cos(theta[k]);
             to[3 * k + 1] = radius[k] * sine[k], to[3 * k + 2] = radius[k] * cosine[k];
-        }
     }
 }
