@@ -152,15 +152,26 @@ def _spans(rng: np.random.Generator) -> tuple[float, ...]:
     return tuple(np.linspace(0.0, 1.0, int(rng.integers(3, 10))))
 
 
+def _channel(
+    rng: np.random.Generator, root: tuple[float, float], tip: tuple[float, float],
+    width: tuple[float, float], length: tuple[float, float],
+) -> tuple[np.ndarray, np.ndarray, float]:  # fmt: skip
+    """Hub and shroud from an axial to a radial end of radius 1, and the width there, within ranges.
+
+    Ranges are those of the radius of the hub at the axial end in that of the shroud, of this one, of the
+    width and of the length of the hub.
+    """
+    shroud_radius = rng.uniform(*tip)
+    hub_radius = rng.uniform(*root) * shroud_radius
+    across, along = rng.uniform(*width), rng.uniform(*length)
+    hub = ellipse((0.0, hub_radius), (along, 1.0))
+    return hub, ellipse((0.0, shroud_radius), (along - across, 1.0)), across
+
+
 def impeller(seed: int, *, gap: bool | None = None) -> Row:
     """A centrifugal compressor: axial inlet, radial outlet with a backsweep, 11 to 20 blades."""
     rng = np.random.default_rng(seed)
-    tip = rng.uniform(0.6, 0.72)
-    root = rng.uniform(0.25, 0.45) * tip
-    width = rng.uniform(0.06, 0.14)
-    length = rng.uniform(0.6, 0.8)
-    hub = ellipse((0.0, root), (length, 1.0))
-    shroud = ellipse((0.0, tip), (length - width, 1.0))
+    hub, shroud, width = _channel(rng, (0.25, 0.45), (0.6, 0.72), (0.06, 0.14), (0.6, 0.8))
     back = -rng.uniform(0.0, 50.0)
     blade = Blade(
         ((-rng.uniform(25.0, 40.0), -rng.uniform(52.0, 62.0)), (back, back)),
@@ -174,12 +185,8 @@ def impeller(seed: int, *, gap: bool | None = None) -> Row:
 def turbine(seed: int, *, gap: bool | None = None) -> Row:
     """A radial turbine: radial inlet, axial outlet, radial blades at the inlet."""
     rng = np.random.default_rng(seed)
-    tip = rng.uniform(0.55, 0.7)
-    root = rng.uniform(0.3, 0.45) * tip
-    width = rng.uniform(0.1, 0.18)
-    length = rng.uniform(0.5, 0.75)
-    hub = ellipse((0.0, root), (length, 1.0))[::-1] * [-1.0, 1.0]
-    shroud = ellipse((0.0, tip), (length - width, 1.0))[::-1] * [-1.0, 1.0]
+    *walls, width = _channel(rng, (0.3, 0.45), (0.55, 0.7), (0.1, 0.18), (0.5, 0.75))
+    hub, shroud = (wall[::-1] * [-1.0, 1.0] for wall in walls)
     first = rng.uniform(-5.0, 5.0)
     blade = Blade(
         ((first, first), (-rng.uniform(30.0, 42.0), -rng.uniform(50.0, 62.0))),
