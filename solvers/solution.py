@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -68,6 +69,7 @@ class Solution:
     confidence : expected error of a network's answer.
     first_cells : prescribed first-cell heights by side, in the unit of the boundary.
     dimensions : those of the blade row whose passage the grid fills.
+    growth : largest ratio of neighbouring cells that the method was to keep to along lines from walls.
     """
 
     grid: Grid
@@ -83,6 +85,7 @@ class Solution:
     confidence: Confidence | None = None
     first_cells: Mapping[str, float] = field(default_factory=dict)
     dimensions: RowDimensions | None = None
+    growth: float = math.inf
 
 
 def timed(solve: Callable[P, Solution]) -> Callable[P, Solution]:

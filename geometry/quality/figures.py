@@ -1,6 +1,6 @@
 """The figures of a grid by name, with their places, as gates and profiles judge them."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,7 +12,7 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.quality.blocks import BlockFigures, block_figures
 from meshonet.geometry.quality.checkmesh import FACES, FaceMeasures, faces
 from meshonet.geometry.quality.figure import COUNTS, FIGURES, Figure
-from meshonet.geometry.quality.growth import Extreme, Growth, growth
+from meshonet.geometry.quality.growth import Extreme, Growth, growth, growth_off_walls, most_of
 from meshonet.geometry.quality.metrics import metrics_of
 from meshonet.geometry.quality.walls import WallRow, wall_rows
 from meshonet.geometry.summary import Quality
@@ -67,7 +67,7 @@ class Figures:
         if name in FACES:
             return _figure(getattr(self.faces, name))
         if name == "growth":
-            return _greatest(self.growth.families().values()) or Figure(1.0)
+            return _figure(most_of(self.growth.families().values())) or Figure(1.0)
         if name == "wall_growth":
             return self._wall_growth()
         if name == "equal_wall_cells":
@@ -90,9 +90,7 @@ class Figures:
     def _wall_growth(self) -> Figure | None:
         if self.grid.topology == "blocks":
             return _figure(self.blocks.lines.leaving)
-        sides = {patch.side for patch in self.walls}
-        families = (self.growth.eta, {"south", "north"}), (self.growth.xi, {"west", "east"})
-        return _greatest(extreme for extreme, ends in families if extreme and sides & ends)
+        return _figure(growth_off_walls(self.growth, self.walls))
 
     def _far_field(self) -> Figure | None:
         grid = self.grid
@@ -129,10 +127,6 @@ def _longest(lines: Floats) -> float:
     farthest = np.argmax(norms(lines - middle), axis=0)
     start = lines[farthest, np.arange(lines.shape[1])]
     return float(norms(lines - start).max())
-
-
-def _greatest(extremes: Iterable[Extreme]) -> Figure | None:
-    return _figure(max(extremes, key=lambda extreme: extreme.max, default=None))
 
 
 def _points(grid: Grid, patch: Patch) -> Floats:

@@ -4,7 +4,7 @@ The growth at a node is the ratio of the two edges of a grid line that meet ther
 smaller: 1 for equal edges. Lines continue across the seam of an O grid and the wake of a C grid.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, norms, percentiles_of
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
 
 Singles = NDArray[np.float32]
 
@@ -114,6 +115,18 @@ def growth(grid: Grid) -> Growth:
         eta.add((i, 1), ratios(block.swapaxes(0, 1)).T, "eta")
     eta.add((0, 0), ratios(across_wake(grid).swapaxes(0, 1)).T, "eta")
     return Growth(xi.extreme, eta.extreme)
+
+
+def growth_off_walls(growth: Growth, walls: Sequence[Patch]) -> Extreme | None:
+    """Return the growth along lines that leave the `walls` of a one-block grid, from that along all lines."""
+    sides = {patch.side for patch in walls}
+    families = (growth.eta, {"south", "north"}), (growth.xi, {"west", "east"})
+    return most_of(extreme for extreme, ends in families if extreme and sides & ends)
+
+
+def most_of(extremes: Iterable[Extreme | None]) -> Extreme | None:
+    """Return the extreme with the greatest value, None if there is none."""
+    return max((each for each in extremes if each), key=lambda extreme: extreme.max, default=None)
 
 
 def beyond_seam(grid: Grid) -> Floats:

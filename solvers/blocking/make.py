@@ -64,7 +64,10 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
         *_folded_coarser(grid, request.refine),
     )
     notes = (*domain.notes, *(note for note in said if note))
-    return Solution(grid, METHOD, seconds=_stages(timings, perf_counter() - begun), notes=notes)
+    growth = math.inf if height is None else request.growth or GROWTH
+    return Solution(
+        grid, METHOD, seconds=_stages(timings, perf_counter() - begun), notes=notes, growth=growth
+    )
 
 
 def _at_walls(grid: Grid, domain: Domain, walls: tuple[str, ...], height: AtWalls | None) -> list[str]:

@@ -35,10 +35,12 @@ def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) ->
     with limited_to(request.threads):
         with stage("load", seconds):
             from meshonet.solvers.aircraft.aircraft_grid import aircraft_grid
+            from meshonet.solvers.aircraft.plan import GROWTH
         with stage("grid", seconds):
             grid, notes = aircraft_grid(aircraft, request)
         note = request.height_note(f"on a chord of {chord:.6g}", chord)
-        solution = Solution(grid, "aircraft", notes=(*notes, note) if note else notes)
+        notes = (*notes, *[note] * bool(note))
+        solution = Solution(grid, "aircraft", notes=notes, growth=request.growth or GROWTH)
         return judged(solution, seconds, request, remedy=_REMEDY)
 
 

@@ -36,7 +36,7 @@ from meshonet.solvers.sweeping import butterfly
 _FADE = 4.0
 """Distance from a blade, in chords, at which its twist and scaling are reduced to one third."""
 _CENTRE = np.array([0.5, 0.0])  # of the far field of a section of unit chord
-_GROWTH = 1.2  # of layers where none is given, as of volumes that are marched
+GROWTH = 1.2  # of layers where none is given, as of volumes that are marched
 
 
 def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
@@ -48,7 +48,7 @@ def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, 
     plan = around(request.around, gap=request.base, edge=stack.te_spacing, nose=stack.le_spacing)
     height = request.height() * stack.chord
     least = height / stack.chord
-    rows = request.layers or 1 + cells_for_growth(least, request.far_field, request.growth or _GROWTH)
+    rows = request.layers or 1 + cells_for_growth(least, request.far_field, request.growth or GROWTH)
     planes, notes = [], []
     for section in stack.sections:
         nodes, note = unit_nodes(section, plan)
@@ -132,7 +132,7 @@ def _five_blocks(stack: Stack, request: StackRequest, first: float | None) -> li
         arcs = [(arc - origin) / length for arc in loop]
         sections.append(butterfly.CrossSection(arcs, None if first is None else first / section.chord))
     rows = request.layers - 1 if request.layers else None
-    plan = butterfly.planned(sections, request.growth or _GROWTH, rows)
+    plan = butterfly.planned(sections, request.growth or GROWTH, rows)
     return [butterfly.filled(section, plan) for section in sections]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -215,7 +216,8 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
         if request.repairs() and count_folded(solution.grid.nodes):
             solution, more = _repaired(solution, boundary, request)
             notes += more
-    solution = replace(solution, grid=replace(solution.grid, origin=boundary.origin), notes=notes)
+    grid = replace(solution.grid, origin=boundary.origin)
+    solution = replace(solution, grid=grid, notes=notes, growth=request.growth or math.inf)
     return judged(solution, seconds, request, remedy=_NOT_REPAIRED, history=rows)
 
 
@@ -273,7 +275,8 @@ def _of_base(lines: BaseWake, request: GridRequest, seconds: dict[str, float]) -
     )
     _add_times(seconds, solution, time.perf_counter() - begun)
     note = request.height_note(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
-    solution = replace(solution, notes=(note, *solution.notes) if note else solution.notes)
+    notes = (*[note] * bool(note), *solution.notes)
+    solution = replace(solution, notes=notes, growth=request.growth or math.inf)
     return judged(solution, seconds, request, remedy="use another {res}, or {te} wedge")
 
 

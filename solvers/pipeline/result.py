@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -69,8 +70,9 @@ def judged(
 ) -> Result:
     """Return a solution with its quality; the time of the measurement is added to `seconds`.
 
-    The grid's provenance has the changes of the shape. Raises NoValidGridError: folded cells, unless these
-    are allowed; the error has the given `remedy`.
+    The grid's provenance has the changes of the shape. A note says where cells grow by more than the limit of
+    the solution. Raises NoValidGridError: folded cells, unless these are allowed; the error has the given
+    `remedy`.
     """
     with stage("quality", seconds):
         quality = measure(solution.grid, percentiles=request.percentiles)
@@ -80,4 +82,10 @@ def judged(
     facts = change_facts(solution.notes) if solution.notes else {}
     if facts:
         solution = replace(solution, grid=solution.grid.with_provenance(**facts))
+    if solution.growth < math.inf:
+        from meshonet.solvers.pipeline.wall_facts import growth_note
+
+        with stage("quality", seconds):
+            notes = (*solution.notes, *growth_note(solution.grid, solution.growth))
+        solution = replace(solution, notes=notes)
     return Result(solution, quality, seconds, solution.notes, history)

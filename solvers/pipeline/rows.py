@@ -12,7 +12,6 @@ from meshonet.geometry.rows.dimensions import doubts, row_dimensions
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.pipeline.result import Result, judged
-from meshonet.solvers.rows.growth_note import growth_note
 from meshonet.solvers.rows.request import RowRequest
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import stage
@@ -55,7 +54,7 @@ def make_row(row: Row, request: RowRequest | None = None) -> Result:
             grid = grid if row.frame is None else rotated(grid, row.frame.inverse())
         dimensions = row_dimensions(row)
         own = (*row.changes, *doubts(dimensions), row.surface.edges)
-        notes = (*own, *growth_note(grid, request.ratio), *notes)
         note = request.height_note(f"on a chord of {row.chord:.6g}", scale=row.chord)
-        solution = Solution(grid, "row", notes=(*notes, note) if note else notes, dimensions=dimensions)
+        notes = (*own, *notes, *[note] * bool(note))
+        solution = Solution(grid, "row", notes=notes, dimensions=dimensions, growth=request.ratio)
         return judged(solution, seconds, request, remedy=_REMEDY)

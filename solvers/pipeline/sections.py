@@ -24,7 +24,7 @@ from meshonet.solvers.layers.first_cells import Heights, cells_needed
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.uses import GIVEN_SECTION, refuse
-from meshonet.solvers.pipeline.wall_facts import wall_facts
+from meshonet.solvers.pipeline.wall_facts import growth_note, wall_facts
 from meshonet.solvers.sweeping.butterfly import GROWTH
 from meshonet.solvers.sweeping.disc import Disc, butterfly
 
@@ -57,7 +57,9 @@ def section_grid(
     if isinstance(shape, Circle) and five_blocks:
         disc = _disc(shape, request, around)
         grid = butterfly(disc)
-        facts = wall_facts(grid, request.growth or GROWTH) if disc.first_cell else ()
+        facts: tuple[str, ...] = ()
+        if disc.first_cell:
+            facts = *wall_facts(grid), *growth_note(grid, request.growth or GROWTH)
         return grid, (*notes, *[disc.note] * bool(disc.note), *facts)
     inside = _inside(shape)
     if isinstance(inside, DomainShape) and inside.many:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from meshonet.geometry.blocks.block import Block
@@ -48,14 +49,16 @@ def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
 def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
     """Return the volume between the planar grids of the sections of a blade or duct."""
     with stage("grid", seconds):
-        from meshonet.solvers.pipeline.lofts import blade_volume, duct_volume
+        from meshonet.solvers.pipeline.lofts import GROWTH, blade_volume, duct_volume
 
         grid, notes = (blade_volume if stack.kind == "blade" else duct_volume)(stack, request)
         if request.turn is not None:
             blocks = bent([block.nodes for block in grid.blocks], request.turn)
             grid = replace(grid, blocks=tuple(map(Block, blocks)))
+    layered = stack.kind == "blade" or request.first_cell is not None or request.y_plus is not None
+    limit = request.growth or (math.inf if request.layers or not layered else GROWTH)
     note = request.height_note(f"on a chord of {stack.chord:.6g}", scale=stack.chord)
-    return Solution(grid, "loft", notes=(*notes, note) if note else notes)
+    return Solution(grid, "loft", notes=(*notes, note) if note else notes, growth=limit)
 
 
 def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
@@ -77,6 +80,5 @@ def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
     with stage("grid", seconds):
         solution = march_surface(surface, settings, wing=True)
     note = request.height_note(f"on a chord of {chord:.6g}", scale=chord)
-    facts = wall_facts(solution.grid, settings.limit if request.layers is None else request.growth)
-    notes = (*notes, *[note] * bool(note), *solution.notes, *facts)
+    notes = (*notes, *[note] * bool(note), *solution.notes, *wall_facts(solution.grid))
     return replace(solution, grid=replace(solution.grid, name=stack.name), notes=notes)

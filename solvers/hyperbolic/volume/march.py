@@ -90,6 +90,7 @@ def march_surface(surface: Surface, settings: VolumeMarch, *, wing: bool = False
         "hyperbolic",
         notes=tuple(note for note in notes if note),
         first_cells={"bottom": settings.first_cell},
+        growth=settings.limit,
     )
 
 

@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.vertices import vertices
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.lines import lines
 from meshonet.geometry.quality.measure import measure
 from meshonet.solvers.pipeline.wall_facts import largest_growth
 from meshonet.solvers.sweeping.disc import Disc, butterfly
@@ -27,7 +25,7 @@ def first_cells(grid: Grid) -> np.ndarray:
 
 
 def largest(grid: Grid) -> float:
-    found = largest_growth(lines(grid, vertices(grid)))
+    found = largest_growth(grid)
     assert found is not None
     return found.max
 

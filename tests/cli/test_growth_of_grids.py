@@ -1,0 +1,56 @@
+"""What reports say of growth is what `quality` finds, whatever the kind of grid."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import Meshonet
+
+SQUARES = "POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0), (2 1, 2 2, 3 2, 3 1, 2 1))"
+WING = "".join(f'[[sections]]\nairfoil = "naca:0012"\nchord = 1\nz = {z}\n' for z in (0, 2))
+BLADE = 'kind = "blade"\n' + WING
+KINDS = {  # what is made, the growth that it is to keep, and whether it does
+    "O grid": ("infer naca:0012 --first-cell 1e-4 --growth 1.2", 1.2, True),
+    "C grid": ("infer naca:0012-sharp --topology c --first-cell 1e-4 --growth 1.2", 1.2, True),
+    "C-H grid": ("infer naca:0012 --topology c --first-cell 1e-4 --growth 1.2", 1.2, True),
+    "four sides": ("solve-pde duct.csv --res 33x41 --first-cell 5e-3 --growth 1.2", 1.2, True),
+    "blocks": ("solve-pde squares.wkt --first-cell 1e-2 --growth 1.02 --cells 3000", 1.02, False),
+    "cascade": ("infer naca:0012 --pitch 0,0.9 --first-cell 1e-3 --growth 1.05 --cells 4000", 1.05, False),
+    "wing": ("stack wing.toml --around 33 --span 9 --first-cell 1e-2 --far-field 5", 1.2, False),
+    "blade": ("stack blade.toml --around 33 --span 5 --first-cell 1e-2 --far-field 5", 1.2, False),
+    "pipe": ("sweep circle:0.5 path.txt --around 200 --first-cell .05 --growth 1.1", 1.1, False),
+}
+
+
+@pytest.fixture
+def inputs(tmp_path: Path) -> Path:
+    x = np.linspace(0.0, 2.0, 41)
+    floor, roof = np.stack([x, 0.1 * np.sin(x)], axis=1), np.stack([x, 1.0 + 0.0 * x], axis=1)
+    ring = np.concatenate([floor, roof[::-1]])
+    np.savetxt(tmp_path / "duct.csv", ring, delimiter=",")
+    (tmp_path / "squares.wkt").write_text(SQUARES)
+    (tmp_path / "wing.toml").write_text(WING)
+    (tmp_path / "blade.toml").write_text(BLADE)
+    (tmp_path / "path.txt").write_text("0 0 0\n0 0 2\n")
+    return tmp_path
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_growth_beyond_its_limit_is_in_the_report_and_no_other(
+    meshonet: Meshonet, inputs: Path, kind: str
+) -> None:
+    words, limit, keeps = KINDS[kind]
+    made = meshonet(*words.split(), "-o", "grid.cgns")
+    assert made.code == 0, made.err
+    found = re.findall(r"differ by up to (\S+) at node (.*), more than the growth of (\S+)", made.err)
+    judged = meshonet("quality", "grid.cgns", "--fail-on", f"wall_growth>{limit}", "--json")
+    figures = json.loads(judged.out)
+    across = figures.get("lines", {}).get("growth_across", {}).get("max", 1.0)
+    values = [across, *map(float, re.findall(r"wall_growth is (\S+)", judged.err))]
+    assert keeps == (not found)
+    assert keeps == (judged.code == 0 and across <= limit)
+    if found:
+        assert float(found[0][0]) == pytest.approx(max(values), abs=6e-4)
+        assert float(found[0][2]) == limit
