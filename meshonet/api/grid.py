@@ -25,7 +25,8 @@ from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.make_grid import make_grid
-from meshonet.solvers.pipeline.parameters import SAMPLED, Counts, grid_request, sampling_of
+from meshonet.solvers.pipeline.parameters import SAMPLED, grid_request, sampling_of
+from meshonet.solvers.pipeline.uses import Counts
 
 AnyShape: TypeAlias = str | Path | Floats | Shape | Grid | Domain
 """A path, a designation such as ``naca:2412``, points of an outline, nodes in space, or an object made

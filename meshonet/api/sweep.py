@@ -16,8 +16,9 @@ from meshonet.geometry.curves.path import Path, SplinePath
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.geometry.shapes.outline import Outline
-from meshonet.solvers.pipeline.parameters import Counts, grid_request
+from meshonet.solvers.pipeline.parameters import grid_request
 from meshonet.solvers.pipeline.sweeps import make_sweep
+from meshonet.solvers.pipeline.uses import Counts
 from meshonet.solvers.sweeping.sweep import Sweep
 
 AnyPath: TypeAlias = str | File | Floats | Path | Revolution

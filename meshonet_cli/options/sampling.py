@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from meshonet.geometry.spacing.sampling import Sampling
-    from meshonet.solvers.pipeline.parameters import Counts
+    from meshonet.solvers.pipeline.uses import Counts
 
     SpacingName: TypeAlias = str
 else:
@@ -101,12 +101,13 @@ class SamplingOptions:
 
     def placed(self, layers: "Mapping[str, Any] | None" = None) -> "Sampling":
         """Return the options as `Sampling`, with those of layers. Raises InputError: an invalid value."""
-        from meshonet.solvers.pipeline.parameters import sampling_of
+        from meshonet.geometry.spacing.sampling import Sampling
+        from meshonet.solvers.pipeline.uses import counted
 
         given = values_of(SamplingOptions, self)
         res = given.pop("res")
         given["corners"] = None if self.corners == "auto" else four_corners(self.corners)
-        return sampling_of(None if res is None else resolution(res), given | dict(layers or {}))
+        return Sampling(**given, **counted(None if res is None else resolution(res), layers or {}))
 # fmt: on
 
 
@@ -121,8 +122,8 @@ def resolution(text: str) -> "Counts":
     if match is None:
         remedy = "use N, NIxNJ or NIxNJxNK, e.g. 200 or 400x100"
         raise bad_value(text, "a number of nodes", remedy, "res")
-    first, *more = (int(count) for count in match.groups() if count)
-    return (first, *more) if more else first  # type: ignore[return-value] # two or three
+    counts = tuple(map(int, filter(None, match.groups())))
+    return counts if len(counts) > 1 else counts[0]  # type: ignore[return-value] # two or three
 
 
 def four_corners(text: str) -> tuple[int, int, int, int]:

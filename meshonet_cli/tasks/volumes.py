@@ -19,10 +19,11 @@ from meshonet.geometry.notes import change_facts
 from meshonet.geometry.quality.criteria import Criteria
 from meshonet.geometry.sections.stack import Stack, Tip
 from meshonet.geometry.shapes.shape import Shape
-from meshonet.solvers.pipeline.parameters import Counts, grid_request
+from meshonet.solvers.pipeline.parameters import grid_request
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.stacked import Sections, make_stacked, stacked_surface, with_tip
 from meshonet.solvers.pipeline.sweeps import make_sweep
+from meshonet.solvers.pipeline.uses import Counts
 from meshonet.solvers.stages import stage
 from meshonet.solvers.sweeping.sweep import Sweep
 from meshonet_cli.batch.item import Item

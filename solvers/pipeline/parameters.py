@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import Any, TypeAlias
+from typing import Any
 
 from meshonet.geometry.errors import meant
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.choose_method import method_of
 from meshonet.solvers.pipeline.methods import UnknownSettingError
 from meshonet.solvers.pipeline.request import GridRequest
-from meshonet.solvers.pipeline.uses import COUNTED
-
-Counts: TypeAlias = int | tuple[int, int] | tuple[int, int, int]
-"""Number of nodes along all directions, or along each of them."""
+from meshonet.solvers.pipeline.uses import COUNTED, Counts, counted
 
 
 def grid_request(method: str = "best", *, res: Counts | None = None, **parameters: Any) -> GridRequest:
@@ -62,22 +59,13 @@ def grid_request(method: str = "best", *, res: Counts | None = None, **parameter
 
 
 def sampling_of(res: Counts | None, parameters: dict[str, Any]) -> Sampling:
-    """Return the sampling with counts `res`; its other fields are removed from `parameters`.
-
-    One number leaves the rows to the growth ratio among the `parameters`, if there is one.
-    """
-    counts: dict[str, Any] = {}
-    if res is not None:
-        rows_by_growth = parameters.get("growth") and any(parameters.get(name) for name in _OFF_WALLS)
-        alone = (res,) if rows_by_growth else (res, res)
-        counts = dict(zip(COUNTED, alone if isinstance(res, int) else res, strict=False))
+    """Return the sampling with counts `res`; its other fields are removed from `parameters`."""
+    counts = counted(res, parameters)
     return Sampling(**counts, **{name: parameters.pop(name) for name in SAMPLED if name in parameters})
 
 
 SAMPLED = tuple(each.name for each in fields(Sampling) if each.name not in (*COUNTED, "viscous"))
 """Parameters of the sampling, without node counts and without fields that follow from first cells."""
-_OFF_WALLS = ("first_cell", "y_plus", "spacing_south", "spacing_north")
-"""Parameters that prescribe first cells at the ends of lines along eta."""
 _LIKENESS = 0.75
 """Least similarity of a suggested name: ``polish`` is a setting of other methods, and not ``poles``."""
 REQUESTED = tuple(

@@ -6,9 +6,9 @@ method.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
@@ -23,6 +23,10 @@ def _row(*options: str) -> frozenset[str]:
 
 COUNTED = ("ni", "nj", "nk")
 """Fields of `Sampling` that form the option ``res``."""
+Counts: TypeAlias = int | tuple[int] | tuple[int, int] | tuple[int, int, int]
+"""Number of nodes along all directions, or along each of them; of one where the others are open."""
+_OFF_WALLS = _row("first_cell y_plus spacing_south spacing_north")
+"""Options that prescribe first cells at the ends of lines along eta."""
 ALWAYS = _row("sampling method settings repair allow_invalid percentiles history threads")
 """Fields of `GridRequest` that apply to all kinds of grids."""
 SETTINGS = {"polish": "auto", "answer": "valid", "blending": "arclength"}
@@ -74,6 +78,14 @@ OF_SURFACE = _row("layers symmetry poles")
 """Options that only marching from a surface has a use for."""
 IN_SPACE = OF_SURFACE | _row("energy")
 """Options that no grid in the plane has a use for."""
+
+
+def counted(res: Counts | None, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the fields of `Sampling` for counts `res`; one number leaves rows to a growth of `options`."""
+    if isinstance(res, int):
+        by_growth = options.get("growth") and any(map(options.get, _OFF_WALLS))
+        res = (res,) if by_growth else (res, res)
+    return dict(zip(COUNTED, res or (), strict=False))
 
 
 def chosen(request: Request) -> tuple[str, ...]:

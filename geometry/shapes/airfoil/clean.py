@@ -202,9 +202,9 @@ def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> CleanS
         ring[0] = 0.5 * (ring[0] + ring[-1])
         return _section(ring[:-1], index[:-1], False, gap)
     turn = -turning(ring, closed=True)
-    last = len(ring) - 1
-    ahead = [k for k in range(min(_REACH, len(ring) // 3) + 1) if turn[k] > _CORNER]
-    behind = [k for k in range(last, last - min(_REACH, len(ring) // 3), -1) if turn[k] > _CORNER]
+    last, reach = len(ring) - 1, min(_REACH, len(ring) // 3)
+    ahead = np.flatnonzero(turn[: reach + 1] > _CORNER).tolist()
+    behind = (last - np.flatnonzero(turn[: last - reach : -1] > _CORNER)).tolist()
     pairs, edges = [(behind[0], ahead[0])] if behind and ahead else [], [0]
     if open_gap:
         edges = [k for k in (*ahead[:1], *behind[:1]) if turn[k] > _EDGE and k in (0, last)]
