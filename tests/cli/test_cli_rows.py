@@ -4,7 +4,6 @@ import re
 from pathlib import Path
 
 import blade_row
-import numpy as np
 import pytest
 from command_line import Meshonet
 
