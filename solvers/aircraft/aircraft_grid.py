@@ -8,6 +8,7 @@ half is the mirror image.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from meshonet.solvers.aircraft.exact_cells import at_height, between_walls
 from meshonet.solvers.aircraft.plan import GROWTH, AircraftPlan, plan_of
 from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.aircraft.tip_fill import tip_patches
-from meshonet.solvers.aircraft.wall_normals import off_body, off_wing
+from meshonet.solvers.aircraft.wall_normals import off_body, off_tip, off_wing
 from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.blocking.layers.attach import sampled
 from meshonet.solvers.rows.columns import arcs_of, resampled, with_first
@@ -75,6 +76,8 @@ def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, t
         wall, near = ring[:, 0], ring[:, 1]
         low[1, near] = between_walls((low[1, wall], low[0, near]), low[1, near], first)
     high = _flat(space.points(beyond), aircraft)
+    for cap, ring in zip(_filled(shapes, plan), rings, strict=True):
+        high = off_tip(high, cap, ring, first)
     half = _joined(aircraft, plan, shapes, low, high)
     return half if aircraft.half else with_image(half), (*notes, *_flat_tips(aircraft))
 
@@ -91,6 +94,13 @@ def _rings(shapes: Sequence[tuple[int, int]], wings: int) -> list[Indices]:
     starts = np.cumsum([0, *(ni * nj for ni, nj in shapes)])
     numbers = range(0, WING_PATCHES * wings, WING_PATCHES)
     return [starts[k] + np.arange(shapes[k][0] * shapes[k][1]).reshape(shapes[k]) for k in numbers]
+
+
+def _filled(shapes: Sequence[tuple[int, int]], plan: AircraftPlan) -> list[Indices]:
+    """Return the columns (c,) that fill the last section of each wing, by ring and core."""
+    starts = np.cumsum([0, *(ni * nj for ni, nj in shapes)])
+    numbers = plan.levels.patches + 2 * np.arange(len(plan.wings) + 1)
+    return [np.arange(*each) for each in pairwise(starts[numbers].tolist())]
 
 
 def _flat(points: Floats, aircraft: Aircraft) -> Floats:

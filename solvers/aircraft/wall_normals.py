@@ -21,6 +21,9 @@ from meshonet.solvers.rows.columns import arcs_of
 _WAY = 0.6
 """Length over which a line is moved, over its distance from another wall."""
 
+_TURN = 0.5
+"""Distance from another wall that stands for the chord of a tip, beside which there is none."""
+
 
 def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: float) -> Floats:
     """Return points (k, p, 3) of lines from a body, row k = 0, whose first cells, `first` high, are normal.
@@ -62,6 +65,29 @@ def off_wing(points: Floats, ring: Indices, first: float) -> Floats:
     out = points.copy()
     out[:, ring] = np.moveaxis(moved.reshape(shape), 0, 2)
     out[:, ring[-1]] = out[:, ring[0]]
+    return out
+
+
+def off_tip(points: Floats, cap: Indices, ring: Indices, first: float) -> Floats:
+    """Return points (k, p, 3) of lines beyond a tip, row k = 0, whose first cells on it are normal.
+
+    `cap` (c,) are the columns that fill the last section, `ring` (n, m) those of its collar. Lines of the
+    collar turn with those of the wing, the less the farther out they are.
+    """
+    apart = arcs_of(norms(np.diff(points[0, ring], axis=1)))
+    fade = 1.0 - apart / apart[:, -1:]
+    columns = np.concatenate([cap, ring.ravel()])
+    turned = (
+        np.broadcast_to([0.0, 0.0, 1.0], (len(columns), 3))
+        - (points[1, columns] - points[0, columns]) / first
+    )
+    chord = 0.5 * float(norms(np.diff(points[0, ring[:, 0]], axis=0)).sum())
+    share = np.concatenate([np.ones(len(cap)), (fade * fade).ravel()])
+    out = points.copy()
+    out[:, columns] += (
+        turned * (share * _moved(points[:, columns], np.full(len(columns), _TURN * chord)))[..., None]
+    )
+    out[1, columns] = _at(out[0, columns], out[1, columns], first)
     return out
 
 

@@ -56,6 +56,14 @@ def test_each_tip_is_the_last_section_of_its_wing(grid: Grid, name: str, span: f
     assert np.ptp(nodes[:, 0]) == pytest.approx(chord, rel=5e-3)
 
 
+@pytest.mark.parametrize("name", ["tip", "tail-tip"])
+def test_lines_leave_tips_at_right_angles(grid: Grid, name: str) -> None:
+    """Levels are as oblique to the tail plane as its place on the narrowing body makes them."""
+    for nodes, beside in wall(grid, name):
+        away = (beside - nodes) / np.linalg.norm(beside - nodes, axis=-1, keepdims=True)
+        assert np.percentile(away[..., 2], 5) > 0.999
+
+
 def test_the_order_of_wings_in_the_file_makes_no_difference(grid: Grid) -> None:
     """Canards, a second wing before the first: lengths are still in chords of the first."""
     swapped = Aircraft(aircraft().body, tail(), others=(replace(aircraft().wing, name="wing"),))
@@ -98,7 +106,7 @@ def test_the_number_of_cells_is_planned(grid: Grid) -> None:
     jet = with_tail()
     space = BodyMap(jet.body, 8.0 * jet.wing.chord + 0.5 * jet.body.extent)
     cells = sum(int(np.prod([count - 1 for count in block.counts])) for block in grid.blocks)
-    assert AircraftPlan.of(jet, SMALL, space, SMALL.around).cells == pytest.approx(cells, rel=0.05)
+    assert AircraftPlan.of(jet, SMALL, space, SMALL.around).cells == pytest.approx(cells, rel=0.1)
 
 
 def test_wings_with_the_same_name_are_refused() -> None:
