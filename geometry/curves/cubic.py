@@ -1,11 +1,8 @@
 """Cubic splines through tables of values at any knots."""
 
-from typing import Any
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import solve_tridiagonal
 
 
@@ -21,30 +18,20 @@ class CubicTable:
         self.values, self.knots = values, knots
         self.bends = _bends(values.reshape(len(knots), -1), knots).reshape(values.shape)
 
-    def _pieces(self, places: Floats) -> Indices:
-        return np.clip(np.searchsorted(self.knots, places, side="right") - 1, 0, len(self.knots) - 2)
-
     def __call__(self, places: Floats) -> Floats:
         """Return all columns (p, ...) at the same places (p,)."""
-        first = self._pieces(places)
-        return self._values(first, places, first, self.values.ndim - 1)
-
-    def each(self, places: Floats) -> Floats:
-        """Return each column (p, m, ...) of values (n, m, ...) at places (p, m) of its own."""
-        first = self._pieces(places)
-        column = np.arange(places.shape[1])
-        return self._values((first, column), places, first, self.values.ndim - 2)
+        h, t, start, stop, begin, end = self._parts(places)
+        bend = (2.0 - t) * begin + (1.0 + t) * end
+        inner = start + t * (stop - start) - t * (1.0 - t) * h**2 / 6.0 * bend
+        return np.asarray(np.where(t == 1.0, stop, inner))
 
     def slope(self, places: Floats) -> Floats:
         """Return the derivatives (p, ...) of all columns at the same places (p,)."""
-        first = self._pieces(places)
-        return self._slopes(first, places, first, self.values.ndim - 1)
-
-    def each_slope(self, places: Floats) -> Floats:
-        """Return the derivative (p, m, ...) of each column at places (p, m) of its own."""
-        first = self._pieces(places)
-        column = np.arange(places.shape[1])
-        return self._slopes((first, column), places, first, self.values.ndim - 2)
+        h, t, start, stop, begin, end = self._parts(places)
+        left = 1.0 - t
+        return np.asarray(
+            (stop - start) / h + h / 6.0 * ((3.0 * t * t - 1.0) * end - (3.0 * left * left - 1.0) * begin)
+        )
 
     def integrals(self) -> Floats:
         """Return the integrals (n, ...) from the first knot to each knot."""
@@ -61,25 +48,12 @@ class CubicTable:
         first = rise - (2.0 * begin + end) / 6.0
         return np.stack([self.values[:-1], first, begin / 2.0, (end - begin) / 6.0])
 
-    def _values(self, at: Any, places: Floats, first: Indices, more: int) -> Floats:
-        h, t, start, stop, begin, end = self._parts(at, places, first, more)
-        bend = (2.0 - t) * begin + (1.0 + t) * end
-        inner = start + t * (stop - start) - t * (1.0 - t) * h**2 / 6.0 * bend
-        return np.asarray(np.where(t == 1.0, stop, inner))
-
-    def _slopes(self, at: Any, places: Floats, first: Indices, more: int) -> Floats:
-        h, t, start, stop, begin, end = self._parts(at, places, first, more)
-        left = 1.0 - t
-        return np.asarray(
-            (stop - start) / h + h / 6.0 * ((3.0 * t * t - 1.0) * end - (3.0 * left * left - 1.0) * begin)
-        )
-
-    def _parts(self, at: Any, places: Floats, first: Indices, more: int) -> tuple[Floats, ...]:
-        after = (at[0] + 1, at[1]) if isinstance(at, tuple) else at + 1
-        shape = (*places.shape, *(1,) * more)
+    def _parts(self, places: Floats) -> tuple[Floats, ...]:
+        first = np.clip(np.searchsorted(self.knots, places, side="right") - 1, 0, len(self.knots) - 2)
+        shape = (*places.shape, *(1,) * (self.values.ndim - 1))
         h = self.knots[first + 1] - self.knots[first]
         t = ((places - self.knots[first]) / h).reshape(shape)
-        tables = self.values[at], self.values[after], self.bends[at], self.bends[after]
+        tables = self.values[first], self.values[first + 1], self.bends[first], self.bends[first + 1]
         return (h.reshape(shape), t, *tables)
 
 

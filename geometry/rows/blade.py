@@ -17,6 +17,7 @@ from meshonet.geometry.rows.edges import LEAST_EDGE
 from meshonet.geometry.rows.profile import BladeProfile
 from meshonet.geometry.rows.thick_edge import pointed, thick_edged
 from meshonet.geometry.rows.turns import whole_pitches
+from meshonet.kernels._native import spline_crossings
 
 MOST_EXTENDED = 0.2
 """Part of the span by which a blade is made longer, at the most, to reach hub and casing."""
@@ -27,8 +28,6 @@ _FARTHEST = 90.0  # degrees around the axis from one profile to the next: no bla
 _ORDER = "give profiles from hub to casing, all of one blade: splitters are not made"
 _SAME_HEIGHT = 1e-9
 """Difference of heights, in spans, that is rounding."""
-_NEWTON = 8
-_TOLERANCE = 1e-14
 _HALF_TURN = np.pi
 
 
@@ -164,18 +163,16 @@ class BladeSurface:
 
     def at(self, u: Floats, h: Floats) -> Floats:
         """Return s, theta (p, m, 2) at places u (m,), or (p, m), and heights h (p, m)."""
-        if u.ndim == 2:
-            return self.at(u.ravel(), h.reshape(1, -1)).reshape(*h.shape, 2)
-        lines = self.lines(u)
-        low, high = self.knots[0], self.knots[-1]
-        place = np.broadcast_to(h, (len(h), len(u))).copy()
-        for _ in range(_NEWTON):
-            value, slope = _extended(lines, place, low, high)
-            step = (value[..., 2] - h) / slope[..., 2]
-            place -= step
-            if np.abs(step).max() < _TOLERANCE:
-                break
-        return np.asarray(_extended(lines, place, low, high)[0][..., :2])
+        lines, out = self.lines(u.ravel()), np.empty((*h.shape, 2))
+        levels = len(h) if u.ndim == 1 else 1
+        spline_crossings(
+            lines.values,
+            lines.bends,
+            self.knots,
+            np.ascontiguousarray(h).reshape(levels, -1),
+            out.reshape(levels, -1, 2),
+        )
+        return out
 
     def section(self, h: float, u: Floats) -> Floats:
         """Return s, theta (m, 2) of the section at a height, at places u (m,)."""
@@ -192,13 +189,6 @@ class BladeSurface:
     def corners(self) -> Floats:
         """Places u (c,) of the corners that all profiles have, such as those of a blunt edge, ascending."""
         return np.sort(np.mod(common_corners(self.profiles), 1.0))
-
-
-def _extended(lines: CubicTable, place: Floats, low: float, high: float) -> tuple[Floats, Floats]:
-    """Return values and slopes (p, m, 3) of lines at places (p, m), straight beyond `low` and `high`."""
-    inside = np.clip(place, low, high)
-    slope = lines.each_slope(inside)
-    return lines.each(inside) + (place - inside)[..., None] * slope, slope
 
 
 def clustered(count: int) -> Floats:

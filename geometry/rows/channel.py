@@ -24,8 +24,15 @@ from meshonet.geometry.arrays import Floats, cross2, middle, norms
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError, in_place
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.rows.profile_points import apart
-from meshonet.kernels._native import channel_points, channel_space
+from meshonet.kernels._native import (
+    channel_nodes,
+    channel_points,
+    channel_space,
+    columns_on_blade,
+    lengthen_cells,
+)
 
 _PIECES = 512
 """Pieces of the tables of hub and casing."""
@@ -126,6 +133,22 @@ class Channel:
         out = np.empty(values.shape)
         channel_space(self._tables, np.ascontiguousarray(values).reshape(-1, 3), out.reshape(-1, 3))
         return out
+
+    def store(self, values: Floats, ids: Indices, space: Floats) -> None:
+        """Set nodes `ids` (m,) in each level of `space` (levels, n, 3) to s, theta, h (levels, m, 3)."""
+        channel_nodes(self._tables, values, ids, space)
+
+    def lengthen(self, begin: Floats, end: Floats, sizes: Floats) -> None:
+        """Move the ends (..., 3) of lines from `begin`, s, theta, h, to the lengths `sizes` (...)."""
+        lengthen_cells(self._tables, begin.reshape(-1, 3), sizes.reshape(-1), end.reshape(-1, 3))
+
+    def put_on_blade(self, columns: Floats, wall: Floats, first: float) -> None:
+        """Move columns (..., rows, 3) of s, theta, h: they begin at `wall` (..., 2), with cells `first` high.
+
+        Other nodes move by less and less, the last ones not at all.
+        """
+        flat = columns.reshape(-1, *columns.shape[-2:])
+        columns_on_blade(self._tables, wall.reshape(-1, 2), first, flat)
 
     def places(self, points: Floats) -> tuple[Floats, Floats]:
         """Return s and h (...) of points x, r (..., 2); outside of the channel h is below 0 or above 1.

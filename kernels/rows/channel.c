@@ -3,6 +3,8 @@
 #include "elementary/functions.h"
 #include "lanes.h"
 
+#include <string.h>
+
 #define BATCH 64
 
 /* The part of the way from hub to casing at a height, from those at the levels. */
@@ -53,4 +55,17 @@ void channel_space(const Channel *channel, const double *values, ptrdiff_t n, do
         for (ptrdiff_t k = 0; k < count; k++)
             to[3 * k + 1] = radius[k] * sine[k], to[3 * k + 2] = radius[k] * cosine[k];
     }
+}
+
+void channel_nodes(const Channel *channel, const double *values, const ptrdiff_t *ids, ptrdiff_t levels, ptrdiff_t n,
+                   ptrdiff_t nodes, double *space)
+{
+    double own[3 * BATCH];
+    for (ptrdiff_t level = 0; level < levels; level++)
+        for (ptrdiff_t first = 0; first < n; first += BATCH) {
+            const ptrdiff_t count = n - first < BATCH ? n - first : BATCH;
+            channel_space(channel, values + 3 * (level * n + first), count, own);
+            for (ptrdiff_t k = 0; k < count; k++)
+                memcpy(space + 3 * (level * nodes + ids[first + k]), own + 3 * k, 3 * sizeof *own);
+        }
 }

@@ -18,3 +18,7 @@ void channel_points(const Channel *channel, const double *s, const double *h, pt
 
 /* x, y, z (n, 3) of s, theta, h (n, 3); theta is atan2(y, z). */
 void channel_space(const Channel *channel, const double *values, ptrdiff_t n, double *space);
+
+/* The same of levels of values (levels, n, 3), those of each level at the numbers `ids` (n,) of `nodes` in space (levels, nodes, 3). */
+void channel_nodes(const Channel *channel, const double *values, const ptrdiff_t *ids, ptrdiff_t levels, ptrdiff_t n,
+                   ptrdiff_t nodes, double *space);

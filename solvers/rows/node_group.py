@@ -24,8 +24,6 @@ from meshonet.solvers.rows.zones import Zone
 
 _IN_GAP = 5
 """Heights of a gap, which is thin, at which lines are measured."""
-_NEAREST = 3
-"""Rounds in which a first cell along one line is made exact."""
 _EXACT = 12
 """Rounds in which first cells of nodes next to two walls are made exact at most."""
 _CLOSE = 1e-13
@@ -75,8 +73,9 @@ class NodeGroup:
         np.clip(values[..., 0], 0.0, 1.0, out=values[..., 0])
         if self.around:
             own = values.reshape(len(values), self.columns, -1, 3)
-            self._put_on_blade(own, self.around)
-            self._exact_off_blade(own)
+            u = np.mod(self.around.at(heights[:, :: own.shape[2]]), 1.0)
+            wall = self.row.surface.at(u, own[:, :, 0, 2])
+            self.row.channel.put_on_blade(own, wall, self.first)
         self._exact_along_span(values)
         if self.around:
             self._exact_in_corners(own)
@@ -90,30 +89,6 @@ class NodeGroup:
             part[0], part[-1] = zone.low, zone.high
             parts.append(part[1:] if parts else part)
         return np.concatenate(parts)
-
-    def _put_on_blade(self, own: Floats, around: SpanLines) -> None:
-        """Put the first nodes of columns (levels, k, rows, 3) on the blade; others move by less and less."""
-        heights = own[:, :, 0, 2]
-        u = np.mod(around.at(heights), 1.0)
-        move = self.row.surface.at(u, heights) - own[:, :, 0, :2]
-        m = own.shape[2]
-        share = (1.0 - (np.arange(m) / (m - 1)) ** 2) ** 2
-        own[..., :2] += share[:, None] * move[:, :, None]
-
-    def _exact_off_blade(self, own: Floats) -> None:
-        """Make the first cells of columns (levels, k, rows, 3) exact; others follow by less and less."""
-        begin, end = own[:, :, 0], own[:, :, 1]
-        start = self.row.channel.in_space(begin)
-        factor = np.ones(end.shape[:2])
-        for _ in range(_NEAREST):
-            more = self.first / norms(self.row.channel.in_space(end) - start)
-            factor = factor * more
-            end = begin + (end - begin) * more[..., None]
-        m = own.shape[2]
-        share = (1.0 - np.arange(m - 2) / (m - 2)) ** 2
-        scale = 1.0 + share[1:] * (factor[..., None] - 1.0)
-        own[:, :, 2:-1] = begin[:, :, None] + (own[:, :, 2:-1] - begin[:, :, None]) * scale[..., None]
-        own[:, :, 1] = end
 
     @property
     def _ends(self) -> tuple[Indices, Indices, Floats]:
@@ -134,10 +109,7 @@ class NodeGroup:
         """Make first cells exact at hub, tip and casing."""
         walls, beside, sizes = self._ends
         begin, end = values[walls], values[beside]
-        start = self.row.channel.in_space(begin)
-        for _ in range(_NEAREST):
-            more = sizes[:, None] / norms(self.row.channel.in_space(end) - start)
-            end = begin + (end - begin) * more[..., None]
+        self.row.channel.lengthen(begin, end, np.repeat(sizes, begin.shape[1]))
         values[beside] = end
 
     def _exact_in_corners(self, own: Floats) -> None:

@@ -28,6 +28,7 @@ from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import in_threads, run_in_threads
+from meshonet.kernels._native import stacked_block
 from meshonet.solvers.rows.gap_blocks import GapBlocks, gap_blocks
 from meshonet.solvers.rows.key_tables import key_tables
 from meshonet.solvers.rows.request import RowRequest
@@ -106,7 +107,9 @@ def _joined(
 
 def _block(nodes: Floats, ids: Indices) -> Block:
     """Return the block of nodes (levels, n, 3) with the numbers `ids` (ni, nj) in each level."""
-    return Block(np.moveaxis(nodes[:, ids], 0, 2), finite=True)
+    block = np.empty((3, *ids.shape, len(nodes)))
+    stacked_block(nodes, ids.ravel(), block.reshape(3, ids.size, -1))
+    return Block(np.moveaxis(block, 0, -1), finite=True)
 
 
 def _end_patches(zone: Zone, layout: Layout, start: int, whole: int) -> list[Patch]:

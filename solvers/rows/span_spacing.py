@@ -10,6 +10,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.elementary import exp, log, power
+from meshonet.kernels._native import way_ahead
 from meshonet.solvers.rows.span_lines import SpanLines, integrals_at_keys, key_heights, slopes_at_keys
 
 _POWER = -4.0  # of the mean of what both ends and the middle ask for
@@ -17,7 +18,6 @@ _BISECTIONS = 60
 _LENGTHS = 33  # of lines for which nodes are spaced; others lie between
 SAMPLES = 17
 """Heights at which positions along a line have to be known."""
-_NEWTON = 4
 _MOST_BENT = 60.0  # of the logarithm of sizes, at which cells in the middle are a million times larger
 MOST_CELLS = 1000
 
@@ -140,11 +140,9 @@ class LineArcs:
         arcs = integrals_at_keys(speed)
         lengths, wanted = arcs[-1], key_heights(len(samples))[:, None]
         behind, slope = SpanLines.through(arcs / lengths - wanted), SpanLines.through(speed / lengths)
-        part = np.repeat(wanted, len(lengths), axis=1)
-        for _ in range(_NEWTON):
-            part -= (part + behind.at(part) - wanted) / slope.at(part)
-            np.clip(part, 0.0, 1.0, out=part)
-        return cls(lengths, SpanLines.through(part - wanted))
+        ahead = np.empty_like(arcs)
+        way_ahead(behind.coefficients, slope.coefficients, wanted[:, 0], ahead)
+        return cls(lengths, SpanLines.through(ahead))
 
     def parts(self, spacing: Spacing) -> Floats:
         """Return parts (cells + 1, n), 0 to 1, of the way along the lines for a spacing of their arcs."""

@@ -27,7 +27,7 @@ from meshonet.solvers.rows.zones import Zone
 
 DEGREE = 5
 """Of polynomials along the span: optima of neighbouring sections differ by noise, and the rest is smooth."""
-_AT_ONCE = 1 << 15
+_AT_ONCE = 1 << 16
 """Nodes that are worked out together, so that they stay in the cache."""
 
 
@@ -150,4 +150,4 @@ class StackedRow:
 
     def _store(self, made: RowNodes, group: NodeGroup, values: Floats) -> None:
         """Store the nodes of a group, given at s, theta, h."""
-        made.space[:, group.ids] = self.row.channel.in_space(values)
+        self.row.channel.store(values, group.ids, made.space)
