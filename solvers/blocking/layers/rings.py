@@ -10,7 +10,7 @@ is a map from position along the front and height to the plane, so that it gives
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -23,11 +23,16 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import nearest_points
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, steps_of_means
 from meshonet.solvers.blocking.layers.even_line import FINER, SLACK, Measures
 from meshonet.solvers.blocking.layers.marched import GAP_PART, fitted
 from meshonet.solvers.blocking.layers.wall_columns import nearest_arc, wall_columns
 from meshonet.solvers.hyperbolic.settings import ATTEMPTS
+
+FILLED = 0.85
+"""Largest part of a gap that the rings of both walls fill; without sharp edges they fill twice `GAP_PART`."""
+_SAMPLES = 2000  # points of a wall from which distances are measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,12 +114,13 @@ class Ring:
 
 def march_ring(
     domain: Domain, number: int, first: float, thickness: float, largest: float,
-    mirrors: Sequence[Mirror] = (),
+    mirrors: Sequence[Mirror] = (), before: Ring | None = None, room: Floats | None = None,
 ) -> Ring:  # fmt: skip
     """Return the ring around a loop of a domain, as thick as `thickness` where there is room.
 
     `first` is the height of first cells, `largest` the length of cells along the wall, all in the domain's
-    unit. The ring is symmetric to those of some mirrors of the domain that take the loop to itself. Raises
+    unit. The ring is symmetric to those of some mirrors of the domain that take the loop to itself. It is no
+    thicker than `room` (n,) at the columns of the ring `before`, if these are given. Raises
     InputError: a gap that no layer fits in, or a wall that every march folds at; with the place.
     """
     loop = domain.loops[number]
@@ -124,7 +130,9 @@ def march_ring(
     images = [
         (nearest_arc(arcs, total - arcs[0], loop.length) - np.arange(len(arcs))) % len(arcs) for total in sums
     ]
-    room = GAP_PART * wall_gaps(domain, loop, arcs)
+    gap = GAP_PART * wall_gaps(domain, loop, arcs)
+    if before is not None and room is not None:
+        gap = np.minimum(gap, np.interp(arcs, before.arcs, room, period=loop.length))
     steps = steps_of_means(own)
     for each in steps:
         moves = np.zeros(len(arcs))
@@ -133,14 +141,14 @@ def march_ring(
             moves += move - np.round(move)
         arcs = arcs + loop.length / (len(each) + 1) * moves
     for to in (*images, *images):  # turns are two images
-        room = np.minimum(room, room[to])
+        gap = np.minimum(gap, gap[to])
     if own:
         arcs = _at_corners(loop, arcs)
     levels = fitted(
         loop.at(arcs),
         arcs,
         loop.length,
-        room,
+        gap,
         thickness,
         first,
         ATTEMPTS,
@@ -151,6 +159,28 @@ def march_ring(
     if own:
         levels[:, 0] = loop.at(arcs)
     return _ring(loop, arcs, levels)
+
+
+def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
+    """Return the largest thickness (n,) at the columns of those rings that fill a gap to another one.
+
+    Lines of a march spread around sharp edges, towards walls that are not in front of where they start.
+    """
+    rooms = {}
+    walls = {k: np.arange(_SAMPLES) / _SAMPLES * ring.wall.length for k, ring in rings.items()}
+    for k, ring in rings.items():
+        room = np.full(len(ring.arcs), np.inf)
+        for other in (number for number in rings if number != k):
+            theirs, arcs = rings[other], walls[other]
+            front = np.ascontiguousarray(ring.front.curve.points)
+            nearest, square = nearest_points(front, theirs.wall.at(arcs))
+            gap = ring.thickness + np.sqrt(square)
+            opposite = np.interp(arcs, theirs.arcs, theirs.thickness, period=theirs.wall.length)[nearest]
+            tight = ring.thickness + opposite > FILLED * gap
+            room = np.where(tight, np.minimum(room, GAP_PART * gap), room)
+        if np.isfinite(room).any():
+            rooms[k] = room
+    return rooms
 
 
 def mirrored(ring: Ring, loop: Loop, mirror: Mirror, total: float) -> Ring:

@@ -24,7 +24,7 @@ from meshonet.solvers.blocking.layers.even_line import Measures
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.layers.marched import GAP_PART
 from meshonet.solvers.blocking.layers.near_field import NearField
-from meshonet.solvers.blocking.layers.rings import Ring, march_ring, mirrored
+from meshonet.solvers.blocking.layers.rings import Ring, march_ring, mirrored, room_between
 from meshonet.solvers.blocking.layers.row_sizes import RowSizes
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
@@ -42,6 +42,7 @@ MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
 ROWS = 3
 """Cells that stand for a row of layers in the optimum, which so never sees cells far longer than high."""
+_MARCHES = 4  # of rings that come too close to each other, each thinner
 _BISECTIONS = 14  # of a range of 240 to 1: the scale to 0.03 %
 
 
@@ -184,13 +185,25 @@ def rings_around(domain: Domain, loops: Sequence[int], settings: LayerSettings) 
     Raises InputError: too little room for layers; a wall at which layers fold.
     """
     mirrors, rings = every_mirror_of(domain), dict[int, Ring]()
-    for k in loops:
-        mirror = next((each for each in mirrors if int(each.loops[k]) in rings), None)
-        if mirror is None:
-            first = settings.at(domain.loops[k].names).first
-            rings[k] = march_ring(domain, k, first, *_sizes(domain, k), mirrors)
-        else:
-            rings[k] = mirrored(rings[int(mirror.loops[k])], domain.loops[k], mirror, float(mirror.sums[k]))
+    rooms, tight = dict[int, Floats](), dict[int, Floats]()
+    for _ in range(_MARCHES):
+        before, rings = rings, {}
+        for k in loops:
+            mirror = next((each for each in mirrors if int(each.loops[k]) in rings), None)
+            if mirror is not None:
+                image, total = rings[int(mirror.loops[k])], float(mirror.sums[k])
+                rings[k] = mirrored(image, domain.loops[k], mirror, total)
+            elif before and k not in tight:
+                rings[k] = before[k]
+            else:
+                first = settings.at(domain.loops[k].names).first
+                rings[k] = march_ring(
+                    domain, k, first, *_sizes(domain, k), mirrors, before.get(k), rooms.get(k)
+                )
+        tight = room_between(rings)
+        if not tight:
+            break
+        rooms |= {k: np.minimum(room, rooms.get(k, np.inf)) for k, room in tight.items()}
     return rings
 
 
