@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,16 +11,29 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import least_squares
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.rows.channel import MeridionalMap
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.rows.gap_fill import GapFill, filled_outline
 from meshonet.solvers.rows.harmonic import harmonic
-from meshonet.solvers.rows.row_nodes import RowNodes
 from meshonet.solvers.rows.span_lines import key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, line_parts
 from meshonet.solvers.rows.zones import Zone
 
 _ROUNDS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class GapEnds:
+    """The inside of the outline of the blade where a gap begins and where it ends.
+
+    Parameters
+    ----------
+    fill : its numbering; nodes of the outline come first.
+    low, high : s, theta (n, 2) at both.
+    """
+
+    fill: GapFill
+    low: Floats
+    high: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,40 +52,50 @@ class GapBlocks:
     space: Floats
 
 
-def gap_blocks(
-    row: Row, made: RowNodes, around: Indices, lead: int, zone: Zone, levels: tuple[int, int], first: float,
-    growth: float,
-) -> GapBlocks:  # fmt: skip
-    """Return the blocks of a gap.
+def gap_ends(
+    row: Row, beside: Callable[[float], Floats], lead: int, zone: Zone, first: float, growth: float
+) -> GapEnds:
+    """Return both ends of a gap.
 
     Parameters
     ----------
-    made : nodes of the row.
-    around : (k,) those of the blade, clockwise; `lead` is the number of that at the leading edge.
-    zone, levels : the gap, and the numbers of the levels that bound it.
+    beside : nodes of the blade, clockwise, and those next to them, (k, 2, 3) s, theta, h, at a height.
+    lead : number of that at the leading edge.
+    zone : the gap.
     first, growth : height of cells inside the outline next to it, and their largest ratio.
 
     Raises NoValidGridError: cells stay folded.
     """
     tip = zone.high == 1.0  # the blade is below this gap, otherwise above it
     heights = (zone.low, zone.high) if tip else (zone.high, zone.low)
-    maps: list[MeridionalMap] = []
+    maps = [row.channel.meridional(height) for height in heights]
     outlines: list[Floats] = []
     outside: list[Floats] = []
-    for level, height in zip(levels if tip else levels[::-1], heights, strict=True):
-        maps.append(row.channel.meridional(height))
+    for to, height in zip(maps, heights, strict=True):
+        nodes = beside(height)
+        if height == zone.low:
+            radius = float(norms(row.channel.in_space(nodes[:, 0])[:, 1:]).mean())
         for k, out in enumerate((outlines, outside)):
-            s, theta, _ = made.beside[level, :, k].T
-            out.append(np.stack([maps[-1].forward(s), theta], axis=1))
-    blade = row.channel.in_space(made.beside[levels[0] : levels[1] + 1, :, 0])
-    radius = float(norms(blade[0, :, 1:]).mean())
+            out.append(np.stack([to.forward(nodes[:, k, 0]), nodes[:, k, 1]], axis=1))
     fill = filled_outline(outlines[0], outside[0], lead, first / radius, growth)
     planes = [fill.layout.mesh.nodes, _carried(fill, outlines[1])]
     ends = [
         np.stack([to.back(nodes[:, 0]), nodes[:, 1]], axis=1) for to, nodes in zip(maps, planes, strict=True)
     ]
-    low, high = ends if tip else ends[::-1]
-    between = _between(row, low, high, zone, blade[:, fill.outline], fill, growth)
+    return GapEnds(fill, *(ends if tip else ends[::-1]))
+
+
+def gap_blocks(
+    row: Row, ends: GapEnds, around: Indices, outline: Floats, zone: Zone, growth: float
+) -> GapBlocks:
+    """Return the blocks of a gap between its ends.
+
+    `around` (k,) are the nodes of the blade, clockwise around it, and `outline` (levels, k, 3) where these
+    are, s, theta, h, in the levels of the gap.
+    """
+    fill = ends.fill
+    blade = row.channel.in_space(outline[:, fill.outline])
+    between = _between(row, ends.low, ends.high, zone, blade, fill, growth)
     return GapBlocks(fill, around[fill.outline], between)
 
 

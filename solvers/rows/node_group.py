@@ -67,7 +67,14 @@ class NodeGroup:
 
     def values(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
         """Return s, theta, h (levels, m, 3) of the nodes, for the spacing in each zone."""
-        heights = self._heights(arcs, spacings)
+        values = self.at(self._heights(arcs, spacings))
+        self._exact_along_span(values)
+        if self.around:
+            self._exact_in_corners(values.reshape(len(values), self.columns, -1, 3))
+        return values
+
+    def at(self, heights: Floats) -> Floats:
+        """Return s, theta, h (levels, m, 3) at heights (levels, m), columns exact at the blade."""
         values = np.empty((*heights.shape, 3))
         values[..., :2], values[..., 2] = self.lines.at(heights), heights
         np.clip(values[..., 0], 0.0, 1.0, out=values[..., 0])
@@ -76,9 +83,6 @@ class NodeGroup:
             u = np.mod(self.around.at(heights[:, :: own.shape[2]]), 1.0)
             wall = self.row.surface.at(u, own[:, :, 0, 2])
             self.row.channel.put_on_blade(own, wall, self.first)
-        self._exact_along_span(values)
-        if self.around:
-            self._exact_in_corners(own)
         return values
 
     def _heights(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:

@@ -29,7 +29,7 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import in_threads, run_in_threads
 from meshonet.kernels._native import stacked_block
-from meshonet.solvers.rows.gap_blocks import GapBlocks, gap_blocks
+from meshonet.solvers.rows.gap_blocks import GapBlocks, GapEnds, gap_blocks, gap_ends
 from meshonet.solvers.rows.key_tables import key_tables
 from meshonet.solvers.rows.request import RowRequest
 from meshonet.solvers.rows.stacked import StackedRow
@@ -47,15 +47,20 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     zones = zones_of(row, first, growth, request.cells)
     keys = key_tables(row, first, growth, section_cells(zones, request.cells, growth))
     stacked = StackedRow(row, keys, zones, first, growth)
-    made, rest = stacked.nodes()
     gaps: list[GapBlocks | None] = [None] * len(zones)
+    open_ = [k for k, zone in enumerate(zones) if zone.gap]
 
-    def fill(k: int) -> None:
-        around, levels, lead = stacked.columns[:, 0], stacked.bounds[k], int(stacked.leading[min(k, 1)])
-        gaps[k] = gap_blocks(row, made, around, lead, zones[k], levels, first, growth)
+    def ends_of(k: int) -> GapEnds:
+        return gap_ends(row, stacked.beside, int(stacked.leading[min(k, 1)]), zones[k], first, growth)
 
-    fills = [partial(fill, k) for k, zone in enumerate(zones) if zone.gap]
-    run_in_threads([*fills, *rest])
+    (made, rest), *ends = run_in_threads([stacked.nodes, *(partial(ends_of, k) for k in open_)])
+
+    def fill(k: int, own: GapEnds) -> None:
+        low, high = stacked.bounds[k]
+        outline = made.beside[low : high + 1, :, 0]
+        gaps[k] = gap_blocks(row, own, stacked.columns[:, 0], outline, zones[k], growth)
+
+    run_in_threads([*map(partial, [fill] * len(open_), open_, ends), *rest])
     del rest  # and what it holds of layers
     space, turn = made.space, turned_by(row.pitch)
     second, partner = stacked.twins

@@ -90,6 +90,15 @@ class StackedRow:
         second = np.flatnonzero(partner >= 0)
         return second, partner[second]
 
+    def beside(self, height: float) -> Floats:
+        """Return s, theta, h (k, 2, 3) at a height of the nodes of the blade, and of those next to them.
+
+        They are those of `RowNodes` at the level that bounds a zone there, known without the others.
+        """
+        group = self._group(self.columns.ravel(), self.around)
+        values = group.at(np.full((1, self.columns.size), height))
+        return values.reshape(*self.columns.shape, 3)[:, :2]
+
     def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
         """Return the nodes with those at the blade worked out, and what works out all in space, in any order.
 
