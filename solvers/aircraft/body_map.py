@@ -11,14 +11,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from meshonet.geometry.aircraft.body import Body
 from meshonet.geometry.arrays import Floats, cross2
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.elementary import arctan2, cos, sin
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.kernels._native import lattice_values, nearest_points
@@ -44,8 +47,7 @@ class BodyMap:
         lower = upper[-2:0:-1] * [1.0, -1.0]
         outline = Outline(np.concatenate([upper, lower]))
         length = float(np.ptp(upper[:, 0]))
-        sampling = Sampling(_AROUND, _LEVELS, topology="o", far_field=far / length)
-        table = _upper_half(solve([outline.boundary(sampling)])[0].grid.nodes, body)
+        table = _upper_half(solve([_boundary(outline, far / length)])[0].grid.nodes, body)
         outer = table[:, -1] - [0.5 * float(table[0, -1, 0] + table[-1, -1, 0]), 0.0]
         turns = body.length * (1.0 - arctan2(outer[:, 1], outer[:, 0]) / math.pi)
         turns[0], turns[-1] = 0.0, body.length
@@ -96,6 +98,18 @@ class BodyMap:
         nearest = nearest_points(points, np.ascontiguousarray(coarse.reshape(-1, 2)))[0]
         s, zeta = np.divmod(nearest, coarse.shape[1])
         return s * _COARSE / (_LINES - 1) * self.body.length, zeta * _COARSE / (_LEVELS - 1)
+
+
+def _boundary(outline: Outline, far: float) -> Boundary:
+    """Return the boundary around a meridian, with nodes from which lines leave it at right angles.
+
+    Around a needle, over 19 times as long as thick and pointed at both ends, these are not known.
+    """
+    sampling = Sampling(_AROUND, _LEVELS, topology="o", spacing="conformal", far_field=far)
+    try:
+        return outline.boundary(sampling)
+    except InputError:
+        return outline.boundary(replace(sampling, spacing="auto"))
 
 
 def _upper_half(nodes: Floats, body: Body) -> Floats:

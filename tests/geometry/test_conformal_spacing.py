@@ -45,6 +45,27 @@ def test_a_karman_trefftz_section_gets_equal_angles_of_its_circle() -> None:
     assert (miss / np.maximum(cell[1:], cell[:-1])).max() < 0.05
 
 
+def lens(t: np.ndarray, edge: float) -> np.ndarray:
+    """Image of the unit circle at angles t from 0 to 2 pi: arcs that meet at an angle `edge` at -2 and 2."""
+    k = 2 - edge / np.pi
+    power = np.tan(0.5 * np.minimum(t, 2 * np.pi - t)[1:-1]) ** k * np.exp(0.5j * np.pi * k)
+    upper = np.concatenate([[k], k * (1 + power) / (1 - power), [k]])
+    return np.where(t > np.pi, np.conj(upper), upper)
+
+
+@pytest.mark.parametrize("degrees", [12, 40, 90])
+def test_a_lens_with_two_edges_gets_equal_angles_of_its_circle(degrees: float) -> None:
+    """The thinner it is, the steeper is its wall in the strip, up to 9.5: the iteration has to take care."""
+    edge = np.radians(degrees)
+    fine = lens(np.linspace(0, 2 * np.pi, 801), edge)
+    curve = Curve(clockwise(fine[:-1]), closed=True, corners=[0, 400])
+    nodes = curve.at(conformal_knots(curve, curve.knots[[400]], 81))
+    exact = clockwise(lens(np.linspace(0, 2 * np.pi, 81), edge))
+    cell = np.hypot(*np.diff(exact, axis=0).T)
+    miss = np.hypot(*(nodes - exact).T)[1:-1]
+    assert (miss / np.maximum(cell[1:], cell[:-1])).max() < 0.05
+
+
 def test_marks_become_nodes_exactly_and_knots_rise() -> None:
     section = np.array([[1, 0], [1, -0.02], [0.5, -0.07], [0, 0], [0.5, 0.07], [1, 0.02]], dtype=float)
     curve = Curve(section, closed=True, corners=[0, 1, 5])

@@ -112,6 +112,22 @@ def test_lines_leave_the_walls_at_right_angles_away_from_the_junction(grid: Grid
     assert np.percentile(np.concatenate(angles), 90) < 15.0
 
 
+@pytest.mark.parametrize("nose", ["round", "pointed"])
+def test_lines_leave_bodies_that_end_in_points_at_right_angles(nose: str) -> None:
+    t = np.linspace(0.0, 1.0, 61) ** 2
+    point = t * (2.0 - t)
+    x = np.append(2.0 * t, 15.0 - 9.0 * t[::-1])
+    radius = 0.6 * np.append(np.sqrt(point) if nose == "round" else point, point[::-1])
+    space = BodyMap(Body(np.stack([x, radius], axis=1)), 40.0)
+    s = np.linspace(0.02, 0.98, 97) * space.body.length
+    across = space.meridional(s, np.full(97, 1e-5)) - space.meridional(s, np.zeros(97))
+    along = space.meridional(s + 1e-5, np.zeros(97)) - space.meridional(s - 1e-5, np.zeros(97))
+    cosine = (across * along).sum(axis=1) / np.linalg.norm(across, axis=1) / np.linalg.norm(along, axis=1)
+    off = np.degrees(np.arcsin(np.abs(cosine)))
+    assert np.median(off) < 0.1
+    assert np.percentile(off, 95) < 1.0
+
+
 def test_cells_grow_little_along_lines(grid: Grid) -> None:
     ratios = []
     for block in grid.blocks[:7]:
