@@ -100,7 +100,7 @@ For multi-block grids, boundaries and the variants of Plot3D see
 - Gmsh meshes other than 2.2 and 4.1, and binary DXF.
 
 Worked examples with flow solvers: `examples/naca0012-openfoam`, `examples/cylinder-openfoam`,
-`examples/pipe-bend-openfoam`, `examples/blade-row`, `examples/naca0012-su2`.
+`examples/pipe-bend-openfoam`, `examples/aircraft`, `examples/blade-row`, `examples/naca0012-su2`.
 """
 
 BLOCKING_HEAD = """# Files of blocking

@@ -1,4 +1,4 @@
-"""Draw the pictures of docs/guide/wings.md and docs/guide/pipes.md: python docs/make_volume_pictures.py."""
+"""Draw pictures of the guides of wings, pipes and aircraft: python docs/make_volume_pictures.py."""
 
 from __future__ import annotations
 
@@ -113,6 +113,36 @@ def pipe() -> None:
     save([image(fig)], "pipe.png")
 
 
+def aircraft() -> None:
+    """Draw the aircraft of docs/guide/aircraft.md, and the collar of its wing on three levels."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "aircraft.toml"
+        path.write_text(toml_of("aircraft.md") + toml_of("aircraft.md", 1))
+        volume = meshonet.stack(path, around=49, span=13, first_cell=1e-2, growth=1.35, far_field=8)
+    colours = {
+        "fuselage": "#9db8d9",
+        "wing": "#f2c572",
+        "tip": "#f2c572",
+        "tail": "#e39a8f",
+        "tail-tip": "#e39a8f",
+    }
+    walls = [
+        (np.squeeze(volume.at(patch)), colours[patch.name])
+        for patch in volume.patches
+        if patch.name in colours
+    ]
+    levels = [(volume.blocks[0].nodes[:, :, k], "#dddddd") for k in (0, 14, 22)]
+    wings = [(patch, colour) for patch, colour in walls if colour == colours["wing"]]
+    images = []
+    for shown, angles in ((walls, (40.0, -240.0)), ([*levels, *wings], (48.0, -150.0))):
+        fig = plt.figure(figsize=(9.0, 9.0))
+        ax = fig.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
+        draw(ax, shown)
+        show(ax, np.concatenate([patch.reshape(-1, 3) for patch, _ in shown]), angles, 0.9)
+        images.append(image(fig))
+    save(images, "aircraft.png")
+
+
 def image(fig: plt.Figure) -> Image.Image:
     """Return a figure without its white margins."""
     with tempfile.NamedTemporaryFile(suffix=".png") as file:
@@ -140,3 +170,4 @@ if __name__ == "__main__":
     FOLDER.mkdir(exist_ok=True)
     wing()
     pipe()
+    aircraft()
