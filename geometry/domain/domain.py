@@ -6,12 +6,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
+import numpy as np
+
 from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.domain.ring import ring_loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.polygon.corners import Indices
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +99,18 @@ class Domain:
     def area(self) -> float:
         """Area of the domain, with the polygons through the points of the loops."""
         return float(sum(polygon_area(loop.curve.points) for loop in self.loops))
+
+    @cached_property
+    def lengths(self) -> Floats:
+        """(loops,) arc lengths of the loops."""
+        return np.array([loop.length for loop in self.loops])
+
+    def at(self, loop: Indices, arc: Floats) -> Floats:
+        """Return the points (n, 2) at arc lengths (n,) on the loops of the numbers `loop` (n,)."""
+        points = np.empty((len(loop), 2))
+        for number, each in enumerate(self.loops):
+            points[loop == number] = each.at(arc[loop == number])
+        return points
 
     @cached_property
     def extent(self) -> float:

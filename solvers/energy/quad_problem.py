@@ -202,10 +202,8 @@ class Problem:
 
     def _on_walls(self, nodes: Floats, arc: Floats) -> Floats:
         """Return `nodes` with sliding nodes at arc lengths (w,) of their loops."""
-        nodes = nodes.copy()
-        for number, loop in enumerate(self.mesh.domain.loops):
-            of = (self.walls.loop == number) & self.slides
-            nodes[self.walls.nodes[of]] = loop.at(arc[of])
+        nodes, walls = nodes.copy(), self.walls
+        nodes[walls.nodes[self.slides]] = self.mesh.domain.at(walls.loop[self.slides], arc[self.slides])
         return nodes
 
     def smallest(self) -> float:
@@ -216,7 +214,7 @@ class Problem:
         """Return the mesh with the current nodes."""
         known, walls = self.unknowns, self.walls
         arc = self.mesh.places.arc.copy()
-        lengths = np.array([loop.length for loop in self.mesh.domain.loops])
+        lengths = self.mesh.domain.lengths
         own = walls.nodes[self.slides]
         arc[own] = np.mod(self.arc[self.slides] * self.unit, lengths[walls.loop[self.slides]])
         nodes = self.nodes * self.unit + self.centre

@@ -53,7 +53,7 @@ def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
     nodes = np.flatnonzero(on)
     nodes = nodes[np.argsort(places.loop[nodes], kind="stable")]
     loop = places.loop[nodes]
-    lengths = np.array([each.length for each in mesh.domain.loops])
+    lengths = mesh.domain.lengths
     arc = np.mod(places.arc[nodes], lengths[loop])
     number = np.full(len(mesh.nodes), -1, dtype=np.intp)
     number[nodes] = np.arange(len(nodes))

@@ -60,9 +60,9 @@ def part_of_the_way(given: Layout, layout: Layout, part: Floats) -> Layout:
     arc = old.places.arc.copy()
     moved = (mesh.nodes != old.nodes).any(axis=1) & (old.places.partner < 0)
     moved[old.places.partner[old.places.partner >= 0]] = False
-    for number, loop in enumerate(old.domain.loops):
-        on = (old.places.loop == number) & moved
-        way = np.mod(mesh.places.arc[on] - arc[on] + 0.5 * loop.length, loop.length) - 0.5 * loop.length
-        arc[on] = np.mod(arc[on] + part[on] * way, loop.length)
-        nodes[on] = loop.at(arc[on])
+    on = (old.places.loop >= 0) & moved
+    length = old.domain.lengths[old.places.loop[on]]
+    way = np.mod(mesh.places.arc[on] - arc[on] + 0.5 * length, length) - 0.5 * length
+    arc[on] = np.mod(arc[on] + part[on] * way, length)
+    nodes[on] = old.domain.at(old.places.loop[on], arc[on])
     return replace(layout, mesh=mesh.with_nodes(old.beside_partners(nodes), arc))

@@ -106,8 +106,7 @@ class Cascade:
     def blades(self) -> Domain:
         """The blade and its neighbours on both sides. Raises InputError: they intersect."""
         shift = pairs_of(np.array([-self.left, self.left]))
-        curve = self.blade.curve
-        beside = [_moved(self.blade, curve, each) for each in shift]
+        beside = [_moved(self.blade, each) for each in shift]
         points = np.concatenate([loop.curve.points for loop in (self.blade, *beside)])
         around = far_loop(points.mean(axis=0), 2.0 * float(np.ptp(points, axis=0).max()))
         try:
@@ -191,6 +190,6 @@ def scaled(metric: SizeMetric, scale: float) -> SizeMetric:
     return replace(metric, along=scale * metric.along, largest=metric.largest * scale**0.5)
 
 
-def _moved(blade: Loop, curve: Curve, shift: Floats) -> Loop:
-    points = curve.points + shift
-    return Loop(Curve(points, closed=True, corners=curve.corner_index), blade.corners, blade.names)
+def _moved(blade: Loop, shift: Floats) -> Loop:
+    curve = Curve(blade.curve.points + shift, closed=True, corners=blade.curve.corner_index)
+    return Loop(curve, blade.corners, blade.names)

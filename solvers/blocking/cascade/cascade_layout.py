@@ -185,14 +185,10 @@ def counts_of(
 
 def _attached_cells(cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric) -> int:
     """Return the cells of the layers and of the rows to inlet and outlet."""
-    along = np.zeros(3, dtype=np.intp)
-    mesh = chords.layout.mesh
-    for edge in np.flatnonzero(chords.wall):
-        along[mesh.places.loop[chords.edges[edge][0]]] += counts[chords.chord[edge]]
-    total = int(along[BLADE]) * cascade.rows_of_layers
+    along = chords.along_loops(counts).tolist()
+    total = along[BLADE] * cascade.rows_of_layers
     for number, length, _ in straight_rows(cascade):
         if length > 0.0:
-            total += int(along[number]) * (
-                len(row_steps(abs(cascade.left) / along[number], length, metric.largest)) - 1
-            )
-    return total
+            steps = row_steps(abs(cascade.left) / along[number], length, metric.largest)
+            total += along[number] * (len(steps) - 1)
+    return int(total)

@@ -214,8 +214,6 @@ def turned_round(layout: Layout) -> Layout:
     partner = np.full(len(places.partner), -1, dtype=np.intp)
     partner[places.partner[images]] = images
     loops = mesh.domain.loops
-    if not mesh.domain.periodic:
-        return layout
     names = tuple(loops[0].names[k] for k in (2, 1, 0, 3))
     outer = Loop(loops[0].curve, loops[0].corners, names)
     (periodic,) = mesh.domain.periodic

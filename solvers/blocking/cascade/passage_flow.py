@@ -76,15 +76,10 @@ class PassageFlow:
         edge = np.where(angle > 0.0, -0.5j, 0.5j) * np.pi
         return cls(half, np.unwrap(angle), along + edge, points - phi)
 
-    def to_strip(self, places: Complexes) -> Complexes:
-        """Return the positions σ of points G between the slits."""
-        ratio = sinh(places + self.half) / sinh(places - self.half)
-        return np.asarray(0.5 * log(ratio))
-
     def to_places(self, places: Complexes) -> Complexes:
-        """Return the positions ζ (...) of points G between the slits."""
-        away = self.inside(self.to_strip(places.ravel()))
-        return np.asarray(places + away.reshape(places.shape))
+        """Return the positions ζ (n,) of points G (n,) between the slits."""
+        ratio = sinh(places + self.half) / sinh(places - self.half)
+        return places + self.inside(np.asarray(0.5 * log(ratio)))
 
     @cached_property
     def far(self) -> tuple[float, float]:

@@ -42,7 +42,7 @@ _FEET = 1e3
 """Places in the plane G that are not used, at which the nodes on the blade are."""
 
 
-def template(passage: Passage, *, at_corners: bool = True) -> Layout:
+def template(passage: Passage, *, at_corners: bool) -> Layout:
     """Return the layout of a passage; nodes may be moved to the blade's corners."""
     flow = PassageFlow.of(passage.zeta(passage.front.curve.points))
     pieces, angles = _pieces(flow, passage)
@@ -67,9 +67,8 @@ def template(passage: Passage, *, at_corners: bool = True) -> Layout:
         places.arc[own] = abs(passage.period) * np.clip(
             0.5 + (share if number == OUTLET else -share), 0.0, 1.0
         )
-    for number in (BLADE, INLET, OUTLET):
-        own = np.flatnonzero(places.loop == number)
-        nodes[own] = domain.loops[number].at(places.arc[own])
+    on = np.flatnonzero(places.loop >= 0)
+    nodes[on] = domain.at(places.loop[on], places.arc[on])
     _tie(places, potential)
     images = np.flatnonzero(places.partner >= 0)
     nodes[images] = nodes[places.partner[images]] + passage.pitch

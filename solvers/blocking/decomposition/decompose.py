@@ -44,7 +44,10 @@ from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.stages import reached
 
 ATTEMPTS = 5
-"""Number of triangulations that are tried; of 201 domains two needed a second one, and none a third."""
+"""Number of triangulations that are tried, each finer than the one before and with another seed.
+
+Of 201 domains two needed a second one, and none a third.
+"""
 HELD_ITERATIONS, FIRST_ITERATIONS, BEFORE_PADDING = 10, 60, 25
 """Iterations with fixed wall nodes, which untangle; with free wall nodes; with free ones before rows are
 inserted.
@@ -64,12 +67,9 @@ PADDED = 3
 
 @dataclass
 class Timings:
-    """Seconds of each stage over all attempts, and the number of attempts."""
+    """Seconds of each stage, over all attempts."""
 
     seconds: dict[str, float] = field(default_factory=dict)
-    attempts: int = 0
-    blocks_found: int = 0
-    """Number of blocks before the collapse."""
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
@@ -88,7 +88,6 @@ def decompose(
     cells: int = CELLS,
     count: int = COUNT,
     price: float = PRICE,
-    attempts: int = ATTEMPTS,
     timings: Timings | None = None,
     sizes: SizeMetric | None = None,
     symmetric: bool = True,
@@ -102,7 +101,6 @@ def decompose(
     cells : of the quad mesh that blocks are found in.
     count : about how many points the triangulation has.
     price : of a block, in degrees of mean deviation from 90: the higher, the fewer blocks.
-    attempts : how often to try, each time with a finer triangulation and another seed.
     timings : filled with what the stages took.
     sizes : of the edges of the quad mesh, in place of `cells`; by default they are all alike.
     symmetric : whether those of a symmetric domain are to be symmetric (`symmetry.symmetric`).
@@ -110,14 +108,13 @@ def decompose(
     Raises BlockingError: no attempt gave a valid layout, or the domain has too many corners.
     """
     timings = timings or Timings()
-    blocks = _found(domain, cells, count, price, attempts, timings, sizes, ())
+    blocks = _found(domain, cells, count, price, timings, sizes, ())
     if not symmetric or domain.periodic:
         return blocks.layout
-    part_timings = Timings(timings.seconds)
 
     def of_part(part: Domain, parts: int, rows: Sequence[Span]) -> QuadMesh:
         shares = cells // parts, count // parts
-        return _found(part, *shares, parts * price, attempts, part_timings, sizes, rows).mesh
+        return _found(part, *shares, parts * price, timings, sizes, rows).mesh
 
     def optimised(mesh: QuadMesh) -> QuadMesh:
         with timings.stage("first optimum"):
@@ -127,19 +124,18 @@ def decompose(
         return score(blocks, price, sizes.edges(blocks.mesh) if sizes else None)
 
     def unsized() -> QuadMesh:
-        return decompose(domain, cells=cells, count=count, price=price, timings=part_timings).mesh
+        return decompose(domain, cells=cells, count=count, price=price, timings=timings).mesh
 
     return symmetric_blocks(blocks, of_part, optimised, scored, unsized if sizes else None).layout
 
 
 def _found(
-    domain: Domain, cells: int, count: int, price: float, attempts: int, timings: Timings,
-    sizes: SizeMetric | None, spans: Sequence[Span],
+    domain: Domain, cells: int, count: int, price: float, timings: Timings, sizes: SizeMetric | None,
+    spans: Sequence[Span],
 ) -> BaseComplex:  # fmt: skip
     """Return the blocks of a domain by the first attempt that comes to any."""
     problem: SolverError | None = None
-    for attempt in range(attempts):
-        timings.attempts = attempt + 1
+    for attempt in range(ATTEMPTS):
         finer = int(count * (1.0 + 0.3 * attempt)), int(cells * (1.0 + 0.5 * attempt))
         try:
             mesh = _quad_mesh(domain, *finer, attempt, timings, sizes)
@@ -151,7 +147,7 @@ def _found(
         except SolverError as error:
             problem = error
     else:
-        raise BlockingError(f"no blocks found in {attempts} attempts: {problem}") from problem
+        raise BlockingError(f"no blocks found in {ATTEMPTS} attempts: {problem}") from problem
     raise BlockingError(_too_many(domain))
 
 
@@ -180,7 +176,6 @@ def _blocks(
         rounded = _with_corner_rows(mesh)
         if rounded is not mesh:
             mesh = _optimised(rounded, FIRST_ITERATIONS, sizes)
-    timings.blocks_found = len(base_complex(mesh).blocks)
     with timings.stage("collapse"):
         return simplify(mesh, price=price, sizes=sizes)
 

@@ -168,14 +168,11 @@ class WallLayers:
 
     def attached_cells(self, chords: Chords, counts: Indices) -> int:
         """Return the number of cells in rings and in rows to the far field, for counts (chords,)."""
-        along = np.zeros(len(self.rest.loops), dtype=np.intp)
-        places = chords.layout.mesh.places
-        for edge in np.flatnonzero(chords.wall):
-            along[int(places.loop[chords.edges[edge][0]])] += int(counts[chords.chord[edge]])
-        total = sum(int(along[number]) * self.ring_rows(number) for number in self.rings)
+        along = chords.along_loops(counts).tolist()
+        total = sum(along[number] * self.ring_rows(number) for number in self.rings)
         if self.near is not None:
-            first = 2.0 * np.pi * self.near.radius / max(int(along[0]), 1)
-            total += int(along[0]) * self.near.cells(first, multiple=self.settings.multiple)
+            first = 2.0 * np.pi * self.near.radius / max(along[0], 1)
+            total += along[0] * self.near.cells(first, multiple=self.settings.multiple)
         return total
 
 

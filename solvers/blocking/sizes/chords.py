@@ -140,6 +140,14 @@ class Chords:
         along = counts[self.chord[self.sides]]
         return int((along[:, 0] * along[:, 2]).sum())
 
+    def along_loops(self, counts: Indices) -> Indices:
+        """Return the numbers of cells (loops,) along the walls of each loop, for `counts` (chords,)."""
+        mesh = self.layout.mesh
+        along = np.zeros(len(mesh.domain.loops), dtype=np.intp)
+        for edge in np.flatnonzero(self.wall):
+            along[mesh.places.loop[self.edges[edge][0]]] += counts[self.chord[edge]]
+        return along
+
     def cut_off(self) -> Floats:
         """Return the absolute areas (e,) between the walls and the cells along each edge."""
         mesh, lost = self.layout.mesh, np.zeros(len(self.edges))

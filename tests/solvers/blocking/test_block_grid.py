@@ -114,8 +114,9 @@ def test_another_attempt_where_one_fails(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(decomposition, "seamless_map", failing)
     assert len(decompose(Domain.of_polygons([STEP])).blocks) == 3
     assert seeds == [0, 1, 2]
+    monkeypatch.setattr(decomposition, "ATTEMPTS", 2)
     with pytest.raises(BlockingError, match="no blocks found in 2 attempts: no map"):
-        decompose(Domain.of_polygons([STEP]), attempts=2)
+        decompose(Domain.of_polygons([STEP]))
 
 
 def test_wall_nodes_come_closer_where_walls_bend_when_more_than_allowed_is_cut_off(

@@ -19,7 +19,7 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.ties import ascending, less
 from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseComplex, base_complex
 from meshonet.solvers.blocking.decomposition.collapse.contract import contract
-from meshonet.solvers.blocking.decomposition.collapse.score import PRICE, score
+from meshonet.solvers.blocking.decomposition.collapse.score import score
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.periodic_counts import check_sides
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
@@ -39,7 +39,7 @@ PER_TRIAL, PER_OPTIMUM = 3, 20
 """Cost of a trial before its optimisation, and of an optimisation besides its iterations, in iterations."""
 
 
-def simplify(mesh: QuadMesh, *, price: float = PRICE, sizes: SizeMetric | None = None) -> BaseComplex:
+def simplify(mesh: QuadMesh, *, price: float, sizes: SizeMetric | None) -> BaseComplex:
     """Return the blocks of an optimised quad mesh after collapsing chords, the narrowest first.
 
     If there are many chords, several are collapsed before the next optimisation. `sizes` are prescribed

@@ -59,8 +59,7 @@ def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
     members = np.bincount(of, minlength=count)
     first, arc = np.zeros(count), np.zeros(count)
     first[of[::-1]] = places.arc[wall[::-1]]
-    lengths = np.array([loop.length for loop in mesh.domain.loops])
-    length = lengths[places.loop[wall]]
+    length = mesh.domain.lengths[places.loop[wall]]
     off = np.mod(places.arc[wall] - first[of] + 0.5 * length, length) - 0.5 * length
     mean = first + np.bincount(of, off, minlength=count) / np.maximum(members, 1)
     arc[of] = np.mod(mean[of], length)
@@ -68,9 +67,7 @@ def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
     nodes = np.stack([np.bincount(label, axis, minlength=count) / size for axis in mesh.nodes.T], axis=1)
     nodes[of] = mesh.nodes[wall]
     merged = np.flatnonzero(members > 1)
-    for number in distinct(loop[merged]):
-        moved = merged[loop[merged] == number]
-        nodes[moved] = mesh.domain.loops[number].at(arc[moved])
+    nodes[merged] = mesh.domain.at(loop[merged], arc[merged])
     arc[label[corners]], nodes[label[corners]] = places.arc[corners], mesh.nodes[corners]
     return trial.with_places(nodes, Places(loop, arc, cells, trial.places.partner))
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, percentiles_of
 from meshonet.geometry.elementary import arctan2, exp, log
+from meshonet.geometry.layout.periodic_sides import following
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseComplex
 from meshonet.solvers.blocking.decomposition.quads.padding import wrong_count
@@ -45,7 +46,7 @@ def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = Non
     )
 
 
-def size_spread(blocks: BaseComplex, wanted: Floats | None = None) -> float:
+def size_spread(blocks: BaseComplex, wanted: Floats | None) -> float:
     """Return the mean square of log(length / mean length) of the sides of blocks across each chord.
 
     A chord has the same number of cells everywhere, so the spread of these lengths is that of its cells.
@@ -73,14 +74,12 @@ def deviations(mesh: QuadMesh) -> Floats:
 
 def largest_turning(mesh: QuadMesh) -> float:
     """Return the largest angle in degrees by which a wall turns along one edge of the mesh."""
-    on = mesh.on_wall[mesh.edge_of]
-    first, second = mesh.quads[on], np.roll(mesh.quads, -1, axis=1)[on]
-    loops, arcs = mesh.places.loop, mesh.places.arc
+    after, arcs = following(mesh), mesh.places.arc
     most = 0.0
     for number, loop in enumerate(mesh.domain.loops):
-        here = loops[first] == number
-        if here.any():
-            start = arcs[first[here]]
-            length = np.mod(arcs[second[here]] - start, loop.length)
+        first = np.flatnonzero((after >= 0) & (mesh.places.loop == number))
+        if first.size:
+            start = arcs[first]
+            length = np.mod(arcs[after[first]] - start, loop.length)
             most = max(most, float(turning_between(loop, start, start + length).max()))
     return most

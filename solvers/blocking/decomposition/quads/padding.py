@@ -11,11 +11,13 @@ International Meshing Roundtable (1995).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.layout.periodic_sides import following
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 
@@ -61,7 +63,9 @@ def pad(mesh: QuadMesh, loops: list[int]) -> QuadMesh:
     """
     if not loops:
         return mesh
-    along, ahead = _wall_edges(mesh, loops)
+    after = following(mesh)
+    along = np.flatnonzero((after >= 0) & np.isin(mesh.places.loop, loops))
+    ahead = after[along]
     n, k = len(mesh.nodes), len(along)
     copy = np.full(n, -1, dtype=np.intp)
     copy[along] = n + np.arange(k)
@@ -90,13 +94,13 @@ def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
     """
     number, begin, end = span
     places, loop = mesh.places, mesh.domain.loops[number]
-    along, ahead = _wall_edges(mesh, [number])
-    after = dict(zip(along.tolist(), ahead.tolist(), strict=True))
+    after = following(mesh)
+    along = np.flatnonzero((after >= 0) & (places.loop == number))
     arcs = places.arc[along]
     chain = [int(along[np.argmin(np.abs(arcs - begin))])]
     last = int(along[np.argmin(np.abs(arcs - end % loop.length))])
     while chain[-1] != last or len(chain) == 1:
-        chain.append(after[chain[-1]])
+        chain.append(int(after[chain[-1]]))
     line, n = np.array(chain), len(mesh.nodes)
     new = n + np.arange(len(line))
     nodes = np.concatenate([mesh.nodes, mesh.nodes[line]])
@@ -113,7 +117,7 @@ def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
         moved = Places(*(np.append(values, values[new[0]]) for values in vars(moved).values()))
         moved.cells[new[[0, -1]]], moved.cells[corner] = 0, 1
     else:
-        previous = int(along[ahead == line[0]][0])
+        previous = int(np.flatnonzero(after == line[0])[0])
         ends = (int(line[0]), previous, begin), (last, after[last], end)
         moved.cells[new[[0, -1]]] = 1
     for node, beyond, arc in ends:
@@ -124,19 +128,10 @@ def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
     return QuadMesh(mesh.domain, nodes, np.concatenate([mesh.quads, row]), moved)
 
 
-def _wall_edges(mesh: QuadMesh, loops: list[int]) -> tuple[Indices, Indices]:
-    """Return where the edges on these loops begin and end, the domain on their left, by node."""
-    on = mesh.on_wall[mesh.edge_of] & np.isin(mesh.places.loop[mesh.quads], loops)
-    first, second = mesh.quads[on], np.roll(mesh.quads, -1, axis=1)[on]
-    order = np.argsort(first, kind="stable")
-    return first[order], second[order]
-
-
 def _moved(places: Places, along: Indices) -> Places:
     """Return the places after those of the nodes `along` a loop went to copies behind all others."""
-    loop, arc, cells, partner = places.loop, places.arc, places.cells, places.partner
-    copies = (np.concatenate([values, values[along]]) for values in (loop, arc, cells, partner))
-    loop, arc, cells, partner = copies
-    loop[along], arc[along], cells[along], partner[along] = -1, 0.0, 0, -1
-    cells[len(places.loop) :][cells[len(places.loop) :] > 0] = 2
-    return Places(loop, arc, cells, partner)
+    copies = replace(places.take(along), partner=places.partner[along])
+    copies.cells[copies.cells > 0] = 2
+    moved = places.and_then(copies)
+    moved.loop[along], moved.arc[along], moved.cells[along], moved.partner[along] = -1, 0.0, 0, -1
+    return moved

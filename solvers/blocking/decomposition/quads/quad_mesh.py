@@ -102,11 +102,10 @@ def _on_arcs(mesh: TMesh, counts: Indices) -> _Nodes:
     wall = np.flatnonzero(trails.loop[trail] >= 0)
     number, piece, part = number[wall], piece[wall], part[wall]
     loop[number] = trails.loop[trail[wall]]
-    arc[number] = trails.arc[piece, 0] + part * trails.arc[piece, 1]
-    for k, curve in enumerate(graph.map.surface.domain.loops):
-        here = np.flatnonzero(loop == k)
-        arc[here] = np.mod(arc[here], curve.length)
-        points[here] = complex_of(curve.at(arc[here]))
+    domain = graph.map.surface.domain
+    along = trails.arc[piece, 0] + part * trails.arc[piece, 1]
+    arc[number] = np.mod(along, domain.lengths[loop[number]])
+    points[number] = complex_of(domain.at(loop[number], arc[number]))
     return _Nodes(points, loop, arc, tuple(on))
 
 

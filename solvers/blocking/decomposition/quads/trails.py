@@ -129,8 +129,8 @@ def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int)
 def wall_trails(seamless: SeamlessMap) -> Trails:
     """Return the closed trails along the walls, with the domain on their left, the outer loop first."""
     triangulation = seamless.surface
-    faces, edges = np.nonzero(seamless.surface.neighbours < 0)
-    start = seamless.surface.triangles[faces, edges]
+    faces, edges = triangulation.walls
+    start = triangulation.triangles[faces, edges]
     follow = dict(zip(start.tolist(), zip(faces.tolist(), edges.tolist(), strict=True), strict=True))
     order: list[tuple[int, int]] = []
     first = [0]
@@ -139,7 +139,7 @@ def wall_trails(seamless: SeamlessMap) -> Trails:
         while at in follow:
             f, e = follow.pop(at)
             order.append((f, e))
-            at = int(seamless.surface.triangles[f, (e + 1) % 3])
+            at = int(triangulation.triangles[f, (e + 1) % 3])
         if len(order) > first[-1]:
             if at != vertex:
                 raise BlockingError("a wall of the triangulation is not closed")
@@ -150,7 +150,7 @@ def wall_trails(seamless: SeamlessMap) -> Trails:
     step = modulus(seamless.corner_coords[face, (edge + 1) % 3] - seamless.corner_coords[face, edge])
     runs = [np.append(0.0, np.cumsum(step[a:b])) for a, b in pairwise(first)]
     loops = triangulation.loop[here[first[:-1]]]
-    whole = np.array([loop.length for loop in triangulation.domain.loops])[triangulation.loop[here]]
+    whole = triangulation.domain.lengths[triangulation.loop[here]]
     arc = triangulation.arc[here]
     plane = complex_of(triangulation.points)
     return Trails(
@@ -162,7 +162,7 @@ def wall_trails(seamless: SeamlessMap) -> Trails:
         end=plane[there],
         loop=np.asarray(loops, dtype=np.intp),
         arc=np.stack([arc, np.mod(triangulation.arc[there] - arc, whole)], axis=1),
-        vertex=seamless.surface.triangles[face, edge],
+        vertex=here,
     )
 
 

@@ -109,7 +109,7 @@ def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None =
     normals = np.stack([-tangents[:, 1], tangents[:, 0]], axis=1)
     corner = np.concatenate([s.corner for s in samples])
     wall_gaps(points, normals, piece, beside, corner, 1.0 / PER_GAP, CONE, size)
-    smallest = FLOOR * np.minimum(largest, OF_LOOP * np.array([loop.length for loop in domain.loops]))
+    smallest = FLOOR * np.minimum(largest, OF_LOOP * domain.lengths)
     np.maximum(size, smallest[loop], out=size)
     affordable = _affordable(length, size, MOST * count)
     np.maximum(size, affordable, out=size)

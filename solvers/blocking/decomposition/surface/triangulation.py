@@ -58,15 +58,10 @@ class _Walls:
         self.points = np.empty((0, 2))
 
     def add(self, loop: Indices, arc: Floats) -> None:
-        points = np.empty((len(arc), 2))
-        size = np.empty(len(arc))
-        for k, curve in enumerate(self.domain.loops):
-            mine = loop == k
-            points[mine] = curve.at(arc[mine])
-            here = self.sizes.loop == k
-            size[mine] = np.interp(
-                arc[mine], self.sizes.arc[here], self.sizes.size[here], period=curve.length
-            )
+        points, size = self.domain.at(loop, arc), np.empty(len(arc))
+        for k, length in enumerate(self.domain.lengths):
+            mine, here = loop == k, self.sizes.loop == k
+            size[mine] = np.interp(arc[mine], self.sizes.arc[here], self.sizes.size[here], period=length)
         new = self.mesh.insert(self.frame.whole(points), size * self.frame.scale, _spread(len(arc)))
         if not new.all():
             self.refuse(loop, points, int(np.flatnonzero(~new)[0]))
@@ -90,7 +85,7 @@ class _Walls:
 
     def recover(self) -> None:
         """Halve the edges that are not there on the true curve; short ones are made by flipping others."""
-        lengths = np.array([loop.length for loop in self.domain.loops])
+        lengths = self.domain.lengths
         while True:
             edges = self.edges()
             named = (edges + _BOX).astype(np.int32)

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.arrays import Floats, along_and_across, distinct
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
@@ -72,7 +72,9 @@ def spans_between(loop: Loop) -> list[Span]:
 
 def left_half(domain: Domain, mirror: Mirror) -> Half:
     """Return the half of a domain on the left of a mirror. Raises BlockingError: it cuts a sharp corner."""
-    outer, *others = (_half(loop, k, mirror) for k, loop in enumerate(domain.loops) if mirror.loops[k] == k)
+    outer, *others = (
+        half_of(loop, k, mirror, mirror.along) for k, loop in enumerate(domain.loops) if mirror.loops[k] == k
+    )
     begin, end = (mirror.ahead_and_left(outer.points[k])[0] for k in (0, -1))
     way = 1.0 if begin > end else -1.0  # from the end of the outer half back to where it begins
     others.sort(key=lambda stretch: way * float(mirror.ahead_and_left(stretch.points[0])[0]))
@@ -103,10 +105,10 @@ def joined(row: Sequence[LoopPart]) -> Loop:
     return loop
 
 
-def _half(loop: Loop, number: int, mirror: Mirror) -> LoopPart:
-    """Return the left half of a loop that crosses the mirror line."""
+def half_of(loop: Loop, number: int, mirror: Mirror, way: Floats) -> LoopPart:
+    """Return the half of a loop that crosses a mirror on the left of it, seen in the direction `way` (2,)."""
     half, begin = 0.5 * loop.length, 0.5 * mirror.sums[number]
-    if mirror.ahead_and_left(loop.at(begin + 0.5 * half))[1] < 0.0:
+    if along_and_across(loop.at(begin + 0.5 * half) - mirror.centre, way)[1] < 0.0:
         begin += half
     return stretch_of(loop, number, begin, half, (mirror, mirror))
 

@@ -77,19 +77,17 @@ def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
 def _mean(mesh: QuadMesh, images: Images) -> QuadMesh:
     """Return the mesh with nodes at the means of themselves and their images."""
     places, part = mesh.places, 1.0 / (len(images) + 1)
-    nodes, moves = mesh.nodes.copy(), np.zeros(len(mesh.nodes))
+    on = np.flatnonzero((places.loop >= 0) & (places.cells == 0))
+    loop, length = places.loop[on], mesh.domain.lengths[places.loop[on]]
+    nodes, arc, moves = mesh.nodes.copy(), places.arc.copy(), np.zeros(len(on))
     for mirror, to in images:
         nodes += mirror.images(mesh.nodes[to])
-        for number, loop in enumerate(mesh.domain.loops):
-            on = np.flatnonzero(places.loop == number)
-            step = mirror.sums[mirror.loops[number]] - places.arc[to[on]] - places.arc[on]
-            moves[on] += step - loop.length * np.round(step / loop.length)
+        step = mirror.sums[mirror.loops[loop]] - arc[to[on]] - arc[on]
+        moves += step - length * np.round(step / length)
     nodes *= part
-    arc, fixed = places.arc.copy(), places.cells > 0
-    for number, loop in enumerate(mesh.domain.loops):
-        on = np.flatnonzero((places.loop == number) & ~fixed)
-        arc[on] = np.mod(arc[on] + part * moves[on], loop.length)
-        nodes[on] = loop.at(arc[on])
+    arc[on] = np.mod(arc[on] + part * moves, length)
+    nodes[on] = mesh.domain.at(loop, arc[on])
+    fixed = places.cells > 0
     nodes[fixed] = mesh.nodes[fixed]
     return mesh.with_nodes(nodes, arc)
 

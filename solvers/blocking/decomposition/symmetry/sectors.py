@@ -19,6 +19,7 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.symmetry.halves import (
     LoopPart,
+    half_of,
     joined,
     on_loops,
     places_in_whole,
@@ -70,7 +71,7 @@ def sector_of(domain: Domain, mirrors: tuple[Mirror, ...], start: int) -> Sector
             through.append(_between(loop, number, crossed, (rays[0], rays[2])))
         for own, arcs, end, side in zip(on_rays, crossed, ends, (1.0, -1.0), strict=True):
             if len(arcs) == 2:
-                own.append(_half(loop, number, arcs, end, side))
+                own.append(half_of(loop, number, end[0], side * end[1]))
         place = loop.curve.points[0] - mirrors[0].centre
         left = [float(along_and_across(place, way)[1]) for _, way in ends]
         if not any(crossed) and left[0] > 0.0 > left[1]:
@@ -78,8 +79,9 @@ def sector_of(domain: Domain, mirrors: tuple[Mirror, ...], start: int) -> Sector
     if not through or through[0].loop != 0:
         raise BlockingError("an outer loop that is not around the centre of mirrors")
     outer, *inner = through
-    first, last = (sorted(own, key=lambda each: _distance(each, mirrors[0].centre)) for own in on_rays)
-    row = (outer, *last[::-1], *(inner or [_centre(mirrors[0].centre)]), *first)
+    centre = mirrors[0].centre
+    first, last = (sorted(own, key=lambda part: float(norms(part.points[0] - centre))) for own in on_rays)
+    row = (outer, *last[::-1], *(inner or [_centre(centre)]), *first)
     part = Domain((joined(row), *(domain.loops[k] for k in holes)), domain.name)
     return Sector(domain, part, row, tuple(holes), (rays[0], rays[1], rays[2]), count)
 
@@ -88,19 +90,6 @@ def _between(loop: Loop, number: int, crossed: list[list[float]], rays: tuple[Mi
     """Return the stretch of a loop around the centre in a sector: a hole runs back to the first ray."""
     (begin,), (end,) = crossed if number == 0 else crossed[::-1]
     return stretch_of(loop, number, begin, (end - begin) % loop.length, rays if number == 0 else rays[::-1])
-
-
-def _half(loop: Loop, number: int, arcs: list[float], end: tuple[Mirror, Floats], side: float) -> LoopPart:
-    """Return the half of a hole across a ray that is on the left of it, or on the right for -1."""
-    mirror, way = end
-    half = 0.5 * loop.length
-    middle = loop.at(np.array([arcs[0] + 0.5 * half]))[0] - mirror.centre
-    begin = arcs[0] if side * float(along_and_across(middle, way)[1]) > 0.0 else arcs[1]
-    return stretch_of(loop, number, begin, half, (mirror, mirror))
-
-
-def _distance(stretch: LoopPart, centre: Floats) -> float:
-    return float(norms(stretch.points[:1] - centre)[0])
 
 
 def _forward(first: Mirror, mirror: Mirror) -> float:
