@@ -16,13 +16,12 @@ from meshonet.solvers.blocking.decomposition.errors import most_folded
 from meshonet.solvers.blocking.decomposition.named_counts import sums_of, with_counts
 from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric, node_images
+from meshonet.solvers.blocking.request import CELLS
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quad_problem import ALLOWED, smallest_jacobian
 from meshonet.solvers.energy.quads import QuadOptimum, optimise
 
-CELLS = 2500
-"""Default number of cells."""
 OPTIMISED = 6000
 """Largest number of cells that are optimised directly; finer grids are splines through half as many in
 each direction.
@@ -67,9 +66,9 @@ def fine_layout(
     chords = Chords.of(layout, node_images(layout.mesh))
     least, along = chords.least, [chord for row in sums_of(chords).values() for chord in row]
     size = None if cells else cell_size
-    while (
-        along and halvings < MOST_HALVED and not _few(_counts(chords, least, wanted, size, halvings), chords)
-    ):
+    while along and halvings < MOST_HALVED:
+        if chords.cells(_counts(chords, least, wanted, size, halvings)) <= 2 * OPTIMISED:
+            break
         halvings += 1  # given numbers along sides need more cells than are asked for
     turning, counts, finer = ALLOWED, least, 4.0 ** (halvings - own)
     fine: Layout | None = None
@@ -104,11 +103,6 @@ def fine_layout(
             fine = refine(fine, exact, chords)
         fine = multiplied(fine, times) if times > 1 else fine
         return replace(fine, mesh=with_tied_sides(made_symmetric(fine.mesh)))
-
-
-def _few(counts: Indices, chords: Chords) -> bool:
-    """Return whether counts (chords,) are few enough cells to be optimised."""
-    return chords.cells(counts) <= 2 * OPTIMISED
 
 
 def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, halvings: int) -> Indices:

@@ -202,7 +202,7 @@ def _joined(walls: WallLayers, rows: WallRows, layout: Layout) -> Layout:
         for number, ring in walls.rings.items()
     ]
     if walls.near is not None:
-        attached.append(walls.near.rows(mesh, heights_inside(layout, 0), multiple=settings.multiple))
+        attached.append(walls.near.rows(mesh, heights_inside(layout, 0), settings.multiple))
     whole = attach(layout, walls.domain, attached)
     whole = replace(whole, mesh=made_symmetric(whole.mesh))
     held = np.zeros(len(whole.mesh.nodes), dtype=bool)

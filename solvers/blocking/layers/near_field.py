@@ -26,7 +26,7 @@ _POINTS = 240  # of the circle, a spline through them
 _EVEN = 1.1  # ratio of neighbouring first cells of rows, at the most
 _UNLIKE = 1.2  # first cells of rows over their mean
 _OWN = 0.5  # part of a row in which it becomes like the others
-MOST_GROWTH = 1.18  # of cells in rows to the far field
+GROWTH = 1.18  # of cells in rows to the far field
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,17 +74,17 @@ class NearField:
         circle = Loop(curve, (), outer.names[:1])
         return cls(circle, centre, NEAR * reach, outer, angles, radii, arcs)
 
-    def cells(self, first: float, growth: float = MOST_GROWTH, multiple: int = 1) -> int:
+    def cells(self, first: float, multiple: int) -> int:
         """Return the number of cells in a row to the outer loop, a multiple of `multiple`."""
         distance = float(self.radii.mean()) - self.radius
-        cells = max(2, math.ceil(math.log1p(distance / first * (growth - 1.0)) / math.log(growth)))
+        cells = max(2, math.ceil(math.log1p(distance / first * (GROWTH - 1.0)) / math.log(GROWTH)))
         return -(-cells // multiple) * multiple
 
-    def rows(self, mesh: QuadMesh, heights: Floats, growth: float = MOST_GROWTH, multiple: int = 1) -> Rows:
+    def rows(self, mesh: QuadMesh, heights: Floats, multiple: int) -> Rows:
         """Return straight rows from the nodes of the circle, loop 0 of `mesh`, to the outer loop.
 
         `heights` (k,) are those of the cells inside the circle. The rows start with these heights and grow by
-        at most `growth`; their number is a multiple of `multiple`.
+        at most `GROWTH`; their number is a multiple of `multiple`.
         """
         order = loop_nodes(mesh, 0)
         start = mesh.nodes[order]
@@ -95,10 +95,10 @@ class NearField:
         arcs = np.interp(angle, closed, np.append(self.arcs, self.arcs[0] + self.outer.length))
         end = self.outer.at(arcs)
         length = np.hypot(*(end - start).T)
-        wanted = evened_steps(heights, math.log(_EVEN)) * growth**0.5
+        wanted = evened_steps(heights, math.log(_EVEN)) * GROWTH**0.5
         mean = math.exp(log(wanted).mean())
         wanted = np.clip(wanted, mean / _UNLIKE, _UNLIKE * mean)
-        cells = self.cells(mean, growth, multiple)
+        cells = self.cells(mean, multiple)
         whole = np.stack([_shares(first, cells) for first in (mean / length).tolist()])
         # each row begins with its own cell and becomes like the others: their angles stay right
         own = np.clip(1.0 - np.arange(cells) / (_OWN * cells), 0.0, 1.0) ** 2

@@ -68,7 +68,8 @@ class Ring:
         n = len(self.arcs)
         knots = np.append(self.front.curve.knots, self.front.length)
         index = np.interp(np.mod(places, self.front.length), knots, np.arange(n + 1.0))
-        index = whole_columns(index)
+        near = np.round(index)
+        index = np.where(np.abs(index - near) < 1e-7, near, index)  # whole numbers but for round-off
         low, high = self._piece(np.minimum(index.astype(np.intp), n - 1))
         weights, first = column_weights(index, low, high)
         nodes = np.zeros((len(places), *self.levels.shape[1:]))
@@ -207,7 +208,7 @@ def place(loop: Loop, arc: float) -> str:
 
 
 def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
-    corners = _corner_columns(loop, arcs)
+    corners = np.flatnonzero(np.isin(arcs, loop.corner_arcs))
     if len(corners):  # from a corner on, so that pieces between corners do not wrap
         arcs, levels = np.roll(arcs, -corners[0]), np.roll(levels, -corners[0], axis=0)
         corners = corners - corners[0]
@@ -215,16 +216,6 @@ def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
     curve = Curve(levels[:, -1], closed=True, corners=())
     front = Loop(curve, tuple(int(k) for k in corners), (loop.names[0],))
     return Ring(loop, arcs, levels, front)
-
-
-def _corner_columns(loop: Loop, arcs: Floats) -> Indices:
-    return np.flatnonzero(np.isin(arcs, loop.corner_arcs))
-
-
-def whole_columns(index: Floats) -> Floats:
-    """Return column numbers (k,) with round-off errors of integers removed."""
-    near = np.round(index)
-    return np.where(np.abs(index - near) < 1e-7, near, index)
 
 
 def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, Indices]:

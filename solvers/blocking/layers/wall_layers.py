@@ -172,7 +172,7 @@ class WallLayers:
         total = sum(along[number] * self.ring_rows(number) for number in self.rings)
         if self.near is not None:
             first = 2.0 * np.pi * self.near.radius / max(along[0], 1)
-            total += along[0] * self.near.cells(first, multiple=self.settings.multiple)
+            total += along[0] * self.near.cells(first, self.settings.multiple)
         return total
 
 

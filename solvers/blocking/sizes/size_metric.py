@@ -73,17 +73,13 @@ class SizeMetric:
     @classmethod
     def joined(cls, metrics: Sequence[SizeMetric]) -> SizeMetric:
         """Return the metric of all requirements in `metrics`."""
-        first = metrics[0]
         starts = np.cumsum([0, *(len(each.points) for each in metrics[:-1])])
-        return cls(
-            np.concatenate([each.points for each in metrics]),
-            np.concatenate([each.normals for each in metrics]),
-            np.concatenate([each.across for each in metrics]),
-            np.concatenate([each.along for each in metrics]),
-            min(each.largest for each in metrics),
-            first.grading,
-            tuple(starts.tolist()),
+        points, normals, across, along = (
+            np.concatenate([getattr(each, name) for each in metrics])
+            for name in ("points", "normals", "across", "along")
         )
+        largest = min(each.largest for each in metrics)
+        return cls(points, normals, across, along, largest, metrics[0].grading, tuple(starts.tolist()))
 
     def length(self, places: Floats, directions: Floats) -> Floats:
         """Return the target lengths (m,) of edges at `places` (m, 2) with `directions` (m, 2)."""

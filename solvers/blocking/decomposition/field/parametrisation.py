@@ -43,25 +43,20 @@ class Parametrisation:
         self.surface, self.sizes = surface, sizes
         self._wedges, self._count = frames.wedges, int(frames.wedges.max()) + 1
         self._number, self._size = self._unknowns(frames)
-        self._places, self._values = self._stiffness()
-        self._rows, self._columns, self._coefficients = self._conditions(frames)
-        conditions = len(self._rows) and int(self._rows.max()) + 1
-        self._conditions_number = conditions
-        below = np.arange(self._size, self._size + conditions)
+        places, self._values = self._stiffness()
+        rows, columns, self._coefficients = self._conditions(frames)
+        self._conditions_number = len(rows) and int(rows.max()) + 1
+        below = np.arange(self._size, self._size + self._conditions_number)
         self._pattern = SparsePattern(
-            self._size + conditions,
-            np.concatenate([self._places[0], self._size + self._rows, below]),
-            np.concatenate([self._places[1], self._columns, below]),
+            self._size + self._conditions_number,
+            np.concatenate([places[0], self._size + rows, below]),
+            np.concatenate([places[1], columns, below]),
         )
-        direction, shear = (
-            sizes * exp(1j * frames.angles),
-            frames.field.shears[surface.triangles].mean(axis=1),
-        )
+        direction = sizes * exp(1j * frames.angles)
+        shear = frames.field.shears[surface.triangles].mean(axis=1)
         self._wanted = sizes**2 * (1.0 - modulus(shear) ** 2)
-        wanted = (
-            direction - times(shear, np.conj(direction)),
-            times(1j, (direction + times(shear, np.conj(direction)))),
-        )
+        sheared = times(shear, np.conj(direction))
+        wanted = direction - sheared, times(1j, direction + sheared)
         inner = [times(surface.areas[:, None] * np.conj(surface.gradients), g[:, None]) for g in wanted]
         self._right = np.stack([slopes.real for slopes in inner])
 

@@ -41,14 +41,10 @@ class Ports:
 
 def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
     """Return the ports of corners and singular vertices, then of `joined` vertices on walls."""
-    cells = seamless.boundary_cells
-    count = len(seamless.surface.on_wall)
-    around = np.zeros(count, dtype=np.intp)
+    cells, around = seamless.boundary_cells, seamless.valence.copy()
     around[: len(cells)] = cells
-    corners = np.zeros(count, dtype=bool)
-    corners[: len(cells)] = (seamless.corner_cells > 0) | ((cells != 2) & (cells > 0))
-    around = np.where(seamless.surface.on_wall, around, seamless.valence)
-    vertex = np.concatenate([np.flatnonzero(corners), seamless.singular, joined]).astype(np.intp)
+    corners = np.flatnonzero((seamless.corner_cells > 0) | ((cells != 2) & (cells > 0)))
+    vertex = np.concatenate([corners, seamless.singular, joined]).astype(np.intp)
     on_wall, quarters = seamless.surface.on_wall[vertex], around[vertex]
     entry, owner = _fans(seamless, vertex)
     face, corner = np.divmod(entry, 3)

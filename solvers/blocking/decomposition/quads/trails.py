@@ -20,9 +20,7 @@ Tables = tuple[Floats, Indices, Indices, Indices]
 def map_tables(seamless: SeamlessMap) -> Tables:
     """Return coordinates (t, 3, 2), neighbours, their edges and turns (t, 3) for the kernels."""
     coords = np.ascontiguousarray(seamless.corner_coords).view(np.float64).reshape(-1, 3, 2)
-    whole = (seamless.surface.neighbours, seamless.surface.neighbour_edge, seamless.turns)
-    near, edge, turns = (np.ascontiguousarray(table, dtype=np.intp) for table in whole)
-    return coords, near, edge, turns
+    return coords, seamless.surface.neighbours, seamless.surface.neighbour_edge, seamless.turns
 
 
 @dataclass(frozen=True, eq=False)
