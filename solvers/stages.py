@@ -54,6 +54,8 @@ class Stage:
     done: Callable[[], int] = lambda: 0  # steps so far; another thread may call it
 
 
+Timings = dict[str, float]
+"""Seconds by stage."""
 Watcher = Callable[[Stage], None]
 _watchers: Listeners[Stage] = Listeners("stages")
 
@@ -69,12 +71,14 @@ def reached(name: str, unit: str = "", done: int = 0, count: int = 0) -> None:
 
 
 @contextlib.contextmanager
-def stage(name: str, seconds: dict[str, float]) -> Iterator[None]:
+def stage(name: str, seconds: Timings) -> Iterator[None]:
     """Return a context for the stage `name`: watchers are called, and its time is added to `seconds`."""
     reached(name)
     begun = time.perf_counter()
-    yield
-    seconds[name] = seconds.get(name, 0.0) + time.perf_counter() - begun
+    try:
+        yield
+    finally:
+        seconds[name] = seconds.get(name, 0.0) + time.perf_counter() - begun
 
 
 @contextlib.contextmanager

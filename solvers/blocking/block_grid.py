@@ -11,7 +11,6 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.decomposition.errors import most_folded
 from meshonet.solvers.blocking.decomposition.named_counts import sums_of, with_counts
 from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides
@@ -21,6 +20,7 @@ from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quad_problem import ALLOWED, smallest_jacobian
 from meshonet.solvers.energy.quads import QuadOptimum, optimise
+from meshonet.solvers.stages import Timings, stage
 
 OPTIMISED = 6000
 """Largest number of cells that are optimised directly; finer grids are splines through half as many in
@@ -54,7 +54,7 @@ def fine_layout(
     Then all cells are halved `halved` times, so that every second, fourth, ... node forms the coarser nested
     grids. Raises NoValidGridError: folded cells remain.
     """
-    timings = timings or Timings()
+    timings = {} if timings is None else timings
     area = layout.mesh.domain.area
     wanted = cells or (area / cell_size**2 if cell_size else CELLS)
     halvings = 0
@@ -95,7 +95,7 @@ def fine_layout(
         least = np.maximum(least, more)
         least[along] = chords.least[along]
     assert fine is not None  # noqa: S101 - the first round makes it
-    with timings.stage("refine"):
+    with stage("refine", timings):
         times = 2 ** (halvings + halved - own)
         if layout.mesh.domain.counts:
             chords, times = chords.of_refined(fine), 2**halved
@@ -134,10 +134,10 @@ def _held_back(fine: Chords, turning: float) -> float:
 
 
 def _optimised(chords: Chords, counts: Indices, times: int, turning: float, timings: Timings) -> Layout:
-    with timings.stage("refine"):
+    with stage("refine", timings):
         fine = refine(chords.layout, counts, chords)
         fine = multiplied(fine, times) if times > 1 else fine
-    with timings.stage("optimum"):
+    with stage("optimum", timings):
         optimum = _optimum(with_tied_sides(fine.mesh), turning)
     if not optimum.valid:
         where = most_folded(optimum.mesh)

@@ -21,11 +21,12 @@ from meshonet.geometry.reach import MOST_CELLS
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.geometry.spacing.first_cell import AtWalls
 from meshonet.solvers.blocking.block_grid import cut_off, fine_layout
-from meshonet.solvers.blocking.decomposition.decompose import Timings, decompose
+from meshonet.solvers.blocking.decomposition.decompose import decompose
 from meshonet.solvers.blocking.decomposition.reuse import carried_over
 from meshonet.solvers.blocking.request import BlockRequest
 from meshonet.solvers.blocking.wall_note import wall_note
 from meshonet.solvers.solution import Solution
+from meshonet.solvers.stages import Timings
 
 if TYPE_CHECKING:
     from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
@@ -43,7 +44,8 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     Raises InputError: loops that cross or touch, unknown names of walls, a layout of another domain;
     SolverError: the decomposition fails; NoValidGridError: folded cells.
     """
-    begun, timings = perf_counter(), Timings()
+    begun = perf_counter()
+    timings: Timings = {}
     domain = _checked(shape.domain, request)
     layout = _given(shape, domain, request)
     height = request.heights(shape.unit)
@@ -253,6 +255,5 @@ def _folded_coarser(grid: Grid, halvings: int) -> list[str]:
 
 def _stages(timings: Timings, spent: float) -> dict[str, float]:
     """Return the seconds of the decomposition and of the grid."""
-    stages = timings.seconds
-    layout = sum(seconds for stage, seconds in stages.items() if stage not in ("refine", "optimum", "layers"))
+    layout = sum(part for name, part in timings.items() if name not in ("refine", "optimum", "layers"))
     return {"layout": layout, "grid": max(spent - layout, 0.0)}

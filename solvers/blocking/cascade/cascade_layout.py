@@ -29,7 +29,6 @@ from meshonet.solvers.blocking.cascade.passage import (
     turned_round,
 )
 from meshonet.solvers.blocking.cascade.passage_template import cut_of, template
-from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
 from meshonet.solvers.blocking.layers.finished import evened, smallest_corner
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
@@ -38,6 +37,7 @@ from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
 from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.stages import Timings, stage
 
 MOST_OPTIMISED = 4000
 """Largest number of cells that are optimised directly; finer grids are splines through these."""
@@ -65,9 +65,9 @@ def cascade_layout(
     periodic1 plus the pitch. Raises InputError: too little room for layers, inlet or outlet,
     far more cells than requested; NoValidGridError: folded cells.
     """
-    timings = timings or Timings()
+    timings = {} if timings is None else timings
     cascade.check_reach(cells, cell_size)
-    with timings.stage("layers"):
+    with stage("layers", timings):
         passage = cascade.passage
     for attempt in CORNERS:
         try:
@@ -76,9 +76,9 @@ def cascade_layout(
         except NoValidGridError:
             if attempt == CORNERS[-1]:
                 raise
-    with timings.stage("refine"):
+    with stage("refine", timings):
         fine = multiplied(coarse, times)
-    with timings.stage("layers"):
+    with stage("layers", timings):
         rows = _rows(cascade, fine, metric)
         whole = extended(fine, cut_of(fine), passage, cascade.blade, rows)
         whole = evened(whole, cascade.layers)
@@ -95,13 +95,13 @@ def _outside(
     if corners == "nowhere":
         front = passage.front
         passage = replace(passage, front=replace(front, corners=(), names=front.names[:1]))
-    with timings.stage("first optimum"):
+    with stage("first optimum", timings):
         coarse = passage_optimum(template(passage, at_corners=corners == "at first"), FIRST, None)
-    with timings.stage("refine"):
+    with stage("refine", timings):
         chords = Chords.of(coarse)
         counts, times, metric = counts_of(cascade, chords, cells, cell_size)
         coarse = refine(coarse, counts, chords)
-    with timings.stage("optimum"):
+    with stage("optimum", timings):
         for _ in range(PASSES):
             coarse = passage_optimum(coarse, ITERATIONS, metric)
     return coarse, times, metric

@@ -10,10 +10,7 @@ Runs all stages, if necessary on another triangulation.
 
 from __future__ import annotations
 
-import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 from functools import reduce
 
 import numpy as np
@@ -41,7 +38,7 @@ from meshonet.solvers.blocking.decomposition.quads.quad_mesh import quad_mesh
 from meshonet.solvers.blocking.decomposition.symmetry.symmetric import symmetric_blocks
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
-from meshonet.solvers.stages import reached
+from meshonet.solvers.stages import Timings, stage
 
 ATTEMPTS = 5
 """Number of triangulations that are tried, each finer than the one before and with another seed.
@@ -63,23 +60,6 @@ FEWER = 1
 NEAR_CORNER = 3  # nodes of a periodic side for each quad that a row around its end is away from the corner
 PADDED = 3
 """Number of attempts in which stretches without singularities are required."""
-
-
-@dataclass
-class Timings:
-    """Seconds of each stage, over all attempts."""
-
-    seconds: dict[str, float] = field(default_factory=dict)
-
-    @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        """Return a context whose time is added to a stage."""
-        reached(name)
-        begun = time.perf_counter()
-        try:
-            yield
-        finally:
-            self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - begun
 
 
 def decompose(
@@ -107,7 +87,7 @@ def decompose(
 
     Raises BlockingError: no attempt gave a valid layout, or the domain has too many corners.
     """
-    timings = timings or Timings()
+    timings = {} if timings is None else timings
     blocks = _found(domain, cells, count, price, timings, sizes, ())
     if not symmetric or domain.periodic:
         return blocks.layout
@@ -117,7 +97,7 @@ def decompose(
         return _found(part, *shares, parts * price, timings, sizes, rows).mesh
 
     def optimised(mesh: QuadMesh) -> QuadMesh:
-        with timings.stage("first optimum"):
+        with stage("first optimum", timings):
             return _optimised(mesh, FIRST_ITERATIONS, sizes)
 
     def scored(blocks: BaseComplex) -> float:
@@ -168,7 +148,7 @@ def _blocks(
 ) -> BaseComplex:
     """Return the blocks of a quad mesh as it comes, its nodes anywhere."""
     loops, spans = loops_to_pad(mesh), spans_to_pad(mesh, spans)
-    with timings.stage("first optimum"):
+    with stage("first optimum", timings):
         mesh = _optimised(mesh, BEFORE_PADDING if loops or spans else FIRST_ITERATIONS, sizes)
         if loops or spans:
             mesh = reduce(pad_span, spans, pad(mesh, loops))
@@ -176,7 +156,7 @@ def _blocks(
         rounded = _with_corner_rows(mesh)
         if rounded is not mesh:
             mesh = _optimised(rounded, FIRST_ITERATIONS, sizes)
-    with timings.stage("collapse"):
+    with stage("collapse", timings):
         return simplify(mesh, price=price, sizes=sizes)
 
 
@@ -211,7 +191,7 @@ def _quad_mesh(
     domain: Domain, count: int, cells: int, seed: int, timings: Timings, sizes: SizeMetric | None
 ) -> QuadMesh:
     """Return a quad mesh along a cross field."""
-    with timings.stage("map"):
+    with stage("map", timings):
         seamless = seamless_map(domain, count=count, seed=seed, fewer=seed < FEWER)
-    with timings.stage("quad mesh"):
+    with stage("quad mesh", timings):
         return quad_mesh(seamless, cells=cells, sizes=sizes)

@@ -26,7 +26,6 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.decomposition.named_counts import with_counts
 from meshonet.solvers.blocking.decomposition.periodic_counts import alike_along_sides
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric, node_images
@@ -45,6 +44,7 @@ from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.even_metric import metric_places
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.stages import Timings, stage
 
 ITERATIONS, STRIDING = 120, 60  # of each optimum, and of one before it on fewer cells
 SWEEPS = 10
@@ -69,10 +69,10 @@ def layered(
     of a decomposition; it belongs to a similar domain, outside of rings like these or as a whole. Raises
     InputError; BlockingError; NoValidGridError: folded cells.
     """
-    timings = timings or Timings()
+    timings = {} if timings is None else timings
     sheets = () if layout else tuple(k for k in loops if k and has_sharp_edge(domain.loops[k]))
     while True:
-        with timings.stage("layers"):
+        with stage("layers", timings):
             rings = [k for k in loops if k not in sheets]
             walls = WallLayers.of(domain, rings, settings, stretches, sheets)
         coarse = layout and taken_outside(layout, walls.rest, walls.fronts)
@@ -92,7 +92,7 @@ def layered(
             break
         sheets = free
     fine = _fine(walls, rows, coarse, counts, timings)
-    with timings.stage("layers"):
+    with stage("layers", timings):
         return _joined(walls, rows, fine)
 
 
@@ -102,13 +102,13 @@ def _optimum(
 ) -> tuple[Layout, Counts]:  # fmt: skip
     """Return the layout outside the rings with cells counted anew, optimised."""
     chords = Chords.of(layout, node_images(layout.mesh, walls.mirrors))
-    with timings.stage("refine"):
+    with stage("refine", timings):
         counts = wanted_counts(walls, rows, chords, *size, before)
         places = metric_places(chords, counts.coarse, counts.metric)
         for edge in np.flatnonzero(rows.of_chords(chords)[chords.chord] >= 0):
             places[edge] = np.linspace(0.0, len(chords.edges[edge]) - 1.0, ROWS + 1)
         coarse = _tied(walls.symmetric(refine(layout, counts.coarse, chords, places)))
-    with timings.stage("optimum"):
+    with stage("optimum", timings):
         if counts.stride > 1:
             with suppress(NoValidGridError):  # so few cells may stay folded, and more not
                 coarse = _optimised(coarse, walls, rows, counts, STRIDING)
@@ -127,7 +127,7 @@ def _optimum(
 def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, timings: Timings) -> Layout:
     """Return the fine layout outside the rings, its rows with all their layers."""
     times = counts.times
-    with timings.stage("optimum"):
+    with stage("optimum", timings):
         on = np.isin(coarse.mesh.places.loop, list(walls.measures))
         for limit in (EVEN * np.array(LIMITS)).tolist():
             even = walls.symmetric(evened_loops(coarse, walls.measures, times * limit))
@@ -136,7 +136,7 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
                 break
         coarse = replace(coarse, mesh=evened_mesh(coarse.mesh, on | coarse.mesh.tied, times * EVEN))
         coarse = walls.symmetric(coarse)
-    with timings.stage("refine"):
+    with stage("refine", timings):
         chords = Chords.of(coarse, node_images(coarse.mesh, walls.mirrors))
         row, cells = rows.of_chords(chords), times * chords.counts
         layers = [layers_of(coarse, rows, number, times, own) for number, own in enumerate(walls.of_rows)]

@@ -9,9 +9,10 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
-from meshonet.solvers.blocking.decomposition.decompose import Timings, decompose
+from meshonet.solvers.blocking.decomposition.decompose import decompose
 from meshonet.solvers.blocking.decomposition.reuse import carried_over
 from meshonet.solvers.blocking.sizes.feature_sizes import feature_sizes
+from meshonet.solvers.stages import Timings
 
 PRICE = 0.08
 """Price of a block in degrees of mean deviation: from 0.03 to 0.08 a tube bank has 70 blocks, at 0 it has
