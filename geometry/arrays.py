@@ -11,6 +11,8 @@ Floats: TypeAlias = NDArray[np.float64]
 
 Complexes: TypeAlias = NDArray[np.complex128]
 """complex128 array of points x + iy."""
+Bools: TypeAlias = NDArray[np.bool_]
+"""Array of flags, a mask."""
 
 Topology: TypeAlias = Literal["quad", "o", "c", "blocks"]
 """Kind of a grid by its connections; ``blocks`` stands for all that are not of the other three."""

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.sparse import SparsePattern
 
@@ -45,7 +44,7 @@ class NormalEquations:
 
     def __init__(self, size: int, kinds: Sequence[Indices]) -> None:
         self._size, self._kinds = size, kinds
-        self._pairs: list[list[tuple[int, int, NDArray[np.bool_]]]] = []
+        self._pairs: list[list[tuple[int, int, Bools]]] = []
         diagonal = np.arange(size)
         rows, columns = [diagonal], [diagonal]
         for unknowns in kinds:

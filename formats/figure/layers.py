@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.blocks.grid import Grid
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ class CellsInView(NamedTuple):
     i1: int
     j0: int
     j1: int
-    mask: NDArray[np.bool_]
+    mask: Bools
 
 
 def in_view(grid: Grid, box: Box) -> CellsInView | None:
@@ -173,7 +173,7 @@ def reduced(
     return joined
 
 
-def _meets(coordinate: Floats, low: float, high: float) -> NDArray[np.bool_]:
+def _meets(coordinate: Floats, low: float, high: float) -> Bools:
     """Return for each cell (ni-1, nj-1) whether one coordinate (ni, nj) has values in [low, high]."""
     least = np.minimum(coordinate[1:], coordinate[:-1])
     most = np.maximum(coordinate[1:], coordinate[:-1])
@@ -182,7 +182,7 @@ def _meets(coordinate: Floats, low: float, high: float) -> NDArray[np.bool_]:
     return inside
 
 
-def _extents(nodes: Floats, mask: NDArray[np.bool_], axis: int) -> Floats:
+def _extents(nodes: Floats, mask: Bools, axis: int) -> Floats:
     """Return the longest edge in view of each layer of cells along `axis`, in the unit of the grid."""
     step = np.diff(nodes, axis=axis)
     length = np.hypot(step[..., 0], step[..., 1])

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from meshonet.formats.figure.layers import INK, Colouring, reduced
 from meshonet.formats.figure.slices import CellSheet
-from meshonet.geometry.arrays import Floats, extent_of, norms
+from meshonet.geometry.arrays import Bools, Floats, extent_of, norms
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Mask: TypeAlias = NDArray[np.bool_]
 
 _GAP = 5.0
 """Approximate distance between drawn lines in pixels."""
@@ -53,7 +51,7 @@ class Painted:
 
 
 def painted(
-    sheet: CellSheet, mask: Mask, steps: tuple[int, int], axes: Floats, colouring: Colouring | None,
+    sheet: CellSheet, mask: Bools, steps: tuple[int, int], axes: Floats, colouring: Colouring | None,
     limits: tuple[float, float],
 ) -> Painted:  # fmt: skip
     """Return the cells of a sheet in `mask` (n-1, m-1), projected along `axes` and grouped by `steps`."""

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Side
+from meshonet.geometry.arrays import Bools, Side
 from meshonet.geometry.blocks.block import PLACES, face_of, sides_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.shared_nodes import joined_labels
@@ -23,7 +23,7 @@ from meshonet.geometry.errors import InputError
 Indices = NDArray[np.int64]
 
 
-def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, NDArray[np.bool_]]]:
+def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, Bools]]:
     """Yield block, side, direction, and a mask (n-1, m) or (n, m-1) of edges without length."""
     for number, block in enumerate(grid.blocks):
         for side in sides_of(block.counts) if len(block.counts) == 3 else ():

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from meshonet.formats.mesh.cell_faces import cell_numbers
 from meshonet.formats.mesh.periodic import NamedFaces, cells_beside
+from meshonet.geometry.arrays import Bools
 from meshonet.geometry.blocks.block import PLACES, face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -70,7 +71,7 @@ def all_faces(grid: Grid, numbers: Sequence[Indices], parts: Mapping[str, NamedF
     return Faces(nodes[:at], owner[:at], neighbour[:inner])
 
 
-def whole(nodes: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
+def whole(nodes: NDArray[np.integer[Any]]) -> Bools:
     """Return which faces (f, 4) have an area: three different nodes, and no equal opposite ones."""
     several = (nodes != np.roll(nodes, -1, axis=1)).sum(axis=1) >= _LEAST
     return np.asarray(several & (nodes[:, 0] != nodes[:, 2]) & (nodes[:, 1] != nodes[:, 3]))

@@ -21,10 +21,9 @@ from dataclasses import dataclass, replace
 from itertools import permutations, product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from meshonet.geometry import elementary
-from meshonet.geometry.arrays import Floats, Side, norms
+from meshonet.geometry.arrays import Bools, Floats, Side, norms
 from meshonet.geometry.blocks.block import PLACES, Block, Range, form_of, sides_of
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.outer_patches import JOINED, rectangles
@@ -147,7 +146,7 @@ def _edges(corners: Floats) -> Floats:
     return norms(steps)
 
 
-def _extended(corners: Floats) -> NDArray[np.bool_]:
+def _extended(corners: Floats) -> Bools:
     """Return for each cell of a side whether it has an extent: length of edges, area of quadrilaterals."""
     shape = corners.shape[: (corners.ndim - 1) // 2]
     flat = corners.reshape(-1, *corners.shape[len(shape) :])
@@ -219,7 +218,7 @@ def _groups(cells: _SideCells, own: Indices, donor: Indices, tolerance: float) -
                 yield _Group(a[inside], b[inside], orientation)
 
 
-def _rectangles(cells: _SideCells, group: _Group, open_: NDArray[np.bool_]) -> Iterator[Indices]:
+def _rectangles(cells: _SideCells, group: _Group, open_: Bools) -> Iterator[Indices]:
     """Yield the pairs of a group that are still `open_`, one rectangle of them at a time."""
     if not open_.any():
         return

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import SIDES, Side
+from meshonet.geometry.arrays import SIDES, Bools, Side
 from meshonet.geometry.blocks.block import PLACES, Range, face_counts
 from meshonet.geometry.blocks.patches import Patch
 
@@ -81,7 +81,7 @@ def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
         yield int(cells[i, j]), span if owners.ndim == 1 else (*span, (int(j), int(j) + width))
 
 
-def _run(flags: NDArray[np.bool_]) -> int:
+def _run(flags: Bools) -> int:
     """Return how many of the first `flags` are set, up to the first that is not."""
     return len(flags) if flags.all() else int(np.argmin(flags))
 

@@ -13,9 +13,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.shared_nodes import shared_nodes
@@ -35,10 +34,10 @@ class Vertices:
 
     numbers: tuple[Indices, ...]
     valence: Indices
-    outer: NDArray[np.bool_]
+    outer: Bools
 
     @cached_property
-    def regular(self) -> NDArray[np.bool_]:
+    def regular(self) -> Bools:
         """(n,) whether as many cells meet as inside a block, or as on a side of one."""
         return np.asarray(self.valence == np.where(self.outer, 2, 4))
 

@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, distinct, read_only
+from meshonet.geometry.arrays import Bools, Floats, distinct, read_only
 from meshonet.geometry.curves.spline import checked_points, cubics, spline_slopes
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
@@ -47,7 +46,7 @@ class Curve:
     """Arc lengths at the corners."""
     corner_index: Indices
     """Indices of the points that are corners."""
-    straight: NDArray[np.bool_] | None
+    straight: Bools | None
     """(intervals,) where the curve follows the chord; None is nowhere."""
 
     def __init__(
@@ -56,7 +55,7 @@ class Curve:
         *,
         closed: bool = False,
         corners: Sequence[int] | Indices | None = None,
-        straight: NDArray[np.bool_] | None = None,
+        straight: Bools | None = None,
     ) -> None:
         self.points = read_only(checked_points(points, "curve", "curve point {}", 2, closed=closed))
         self.closed = closed

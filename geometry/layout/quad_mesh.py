@@ -9,9 +9,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import connect_quads
@@ -100,12 +99,12 @@ class QuadMesh:
         return self._sides[3]
 
     @cached_property
-    def on_wall(self) -> NDArray[np.bool_]:
+    def on_wall(self) -> Bools:
         """(e,) whether an edge belongs to one quad only."""
         return np.bincount(self.edge_of.ravel(), minlength=len(self.edges)) == 1
 
     @cached_property
-    def wall_nodes(self) -> NDArray[np.bool_]:
+    def wall_nodes(self) -> Bools:
         """(n,) whether a node is on the boundary."""
         on = np.zeros(len(self.nodes), dtype=bool)
         on[self.edges[self.on_wall].ravel()] = True
@@ -117,7 +116,7 @@ class QuadMesh:
         return np.bincount(self.quads.ravel(), minlength=len(self.nodes))
 
     @cached_property
-    def irregular(self) -> NDArray[np.bool_]:
+    def irregular(self) -> Bools:
         """(n,) whether the number of quads at a node is not four, or on the boundary not two."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
 
@@ -132,7 +131,7 @@ class QuadMesh:
         return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))
 
     @property
-    def tied(self) -> NDArray[np.bool_]:
+    def tied(self) -> Bools:
         """(n,) whether a node has a partner or is one: nodes of periodic sides, which move freely."""
         tied = self.places.partner >= 0
         tied[self.places.partner[tied]] = True

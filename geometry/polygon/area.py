@@ -1,9 +1,8 @@
 """Signed area of a polygon, points inside it, and the range of extents whose area can be computed."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 
@@ -26,7 +25,7 @@ def check_extent(extent: float) -> None:
         raise InputError(f"the points have {what}", "give coordinates in a unit that suits the shape")
 
 
-def contains(polygon: Floats, points: Floats) -> NDArray[np.bool_]:
+def contains(polygon: Floats, points: Floats) -> Bools:
     """Return whether points (..., 2) lie inside a polygon (n, 2), by the crossings of rays to the right."""
     x, y = polygon[:, 0] - points[..., 0, None], polygon[:, 1] - points[..., 1, None]
     u, v = np.roll(x, -1, axis=-1), np.roll(y, -1, axis=-1)

@@ -6,7 +6,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, along_and_across, cross2, norms
+from meshonet.geometry.arrays import Bools, Floats, along_and_across, cross2, norms
 from meshonet.geometry.elementary import arctan2
 
 Indices: TypeAlias = NDArray[np.intp]
@@ -85,7 +85,7 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     return corners[~np.array(round_end, dtype=bool)]
 
 
-def _oblique_bases(points: Floats, angle: Floats) -> NDArray[np.bool_]:
+def _oblique_bases(points: Floats, angle: Floats) -> Bools:
     """Return for each point (n,) of a closed polygon whether it is one of the two ends of an oblique base.
 
     One end turns by more than `HAIRPIN`, the next by more than `KINK`, both five times as much as the points

@@ -22,7 +22,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import AnyArray, Floats, Side, extent_of
+from meshonet.geometry.arrays import AnyArray, Bools, Floats, Side, extent_of
 from meshonet.geometry.blocks.block import PLACES, Block, face_of
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
@@ -31,7 +31,6 @@ from meshonet.geometry.blocks.shared_nodes import joined_labels, node_table
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 
-Bools: TypeAlias = NDArray[np.bool_]
 FaceValues: TypeAlias = Callable[[int, Side], NDArray[Any]]
 """Gives a view (n, m) of values at a side of a block."""
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, extent_of, middle
+from meshonet.geometry.arrays import Bools, Floats, extent_of, middle
 from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import singular_values
 from meshonet.geometry.polygon.corners import Indices
@@ -19,7 +19,7 @@ from meshonet.geometry.threads import thread_count
 from meshonet.kernels._native import blend_motions, blend_transposed
 from meshonet.solvers.deformation.motions import Turning, affine, turns_in_plane, turns_in_space
 from meshonet.solvers.deformation.outer import NodeTable, Piece
-from meshonet.solvers.deformation.sources import Bools, Sources, sources_of
+from meshonet.solvers.deformation.sources import Sources, sources_of
 
 NEAR = 0.3
 """Upper bound of the distance inside which the nearest wall nodes dominate, in extents of the moved walls."""

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Bools, Floats, norms
 from meshonet.geometry.blocks.across import rows_at
 from meshonet.geometry.blocks.block import Block, face_of, part_of
 from meshonet.geometry.blocks.grid import Grid
@@ -85,7 +84,7 @@ class NodeTable:
         return Piece(patch, numbers)
 
     @cached_property
-    def outer(self) -> NDArray[np.bool_]:
+    def outer(self) -> Bools:
         """Mask (n,) of the nodes on the outer boundary."""
         on = np.zeros(len(self.nodes), dtype=bool)
         for piece in self.pieces:

@@ -9,9 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, extent_of, norms
+from meshonet.geometry.arrays import Bools, Floats, extent_of, norms
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.deformation.outer import NodeTable, Piece, elements_of, first_heights
 
@@ -19,8 +18,6 @@ REACH = 0.1
 """Largest length of a group, in distances from the moved nodes."""
 CELLS = 2.0
 """The same, in heights of the thinnest cell at the piece."""
-
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.geometry.arrays import Bools, Floats, extent_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
@@ -39,7 +39,7 @@ SAME = 1e-9
 class NodeTargets:
     """New positions of the wall nodes of a grid."""
 
-    moved: NDArray[np.bool_]
+    moved: Bools
     """(n,) mask of the nodes of moved walls."""
     nodes: Floats
     """(n, d) all nodes, those of moved walls in their new positions."""
@@ -220,7 +220,7 @@ def _on_boundary(wall: Floats, new: Boundary, name: str, *, closed: bool) -> tup
     return _on(wall, np.ascontiguousarray(line), name) if closed or len(line) else (wall, ())
 
 
-def _check(name: str, old: Floats, before: Floats, after: Floats, known: NDArray[np.bool_]) -> None:
+def _check(name: str, old: Floats, before: Floats, after: Floats, known: Bools) -> None:
     """Raise InputError where two pieces give a shared node different positions."""
     extent = extent_of(old)
     apart = np.abs(before - after).max(axis=1)

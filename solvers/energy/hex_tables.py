@@ -13,10 +13,10 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.elementary import exp
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, any_corner, corners_of
+from meshonet.geometry.volume.hex_mesh import HexMesh, any_corner, corners_of
 
 BlockTargets: TypeAlias = tuple[Floats, Floats, Floats]
 Targets = Sequence[BlockTargets]

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.threads import MANY_VISITS, threads_for
-from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, corners_of
+from meshonet.geometry.volume.hex_mesh import HexMesh, corners_of
 from meshonet.kernels._native import HexDescent
 from meshonet.solvers.energy.hex_functional import OPENING, OPTIMAL, UNFOLDING, HexWeights
 from meshonet.solvers.energy.hex_tables import HexTables, Targets, cell_lengths, tables_of

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, cross2
+from meshonet.geometry.arrays import Bools, Floats, cross2
 from meshonet.geometry.elementary import arctan2, log, sin
 from meshonet.geometry.layout.lattice import corner_jacobians
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import QuadDescent, line_neighbours
-from meshonet.solvers.energy.walls import Bools, Walls, turned
+from meshonet.solvers.energy.walls import Walls, turned
 
 ALLOWED = np.radians(30.0)  # that a wall turns by within an edge
 BENT = 5.0  # weight of the squares of what it turns by beyond that, over the number of cells

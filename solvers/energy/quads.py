@@ -19,10 +19,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.energy.quad_problem import ALLOWED, Problem, smallest_jacobian, unknowns_of
-from meshonet.solvers.energy.walls import Bools, walls_of
+from meshonet.solvers.energy.walls import walls_of
 
 FREE = 0.9, 2e-3  # w and β of the functional
 # The same where lengths are wanted: with ten times the β they follow no better, and around layers of real

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.layout.quad_mesh import QuadMesh
@@ -17,8 +16,6 @@ from meshonet.geometry.polygon.corners import Indices
 LEAST_GAP = 0.05
 """Distance of wall nodes after reordering, relative to the mean distance between two fixed nodes."""
 _SAMPLES = np.linspace(0.0, 1.0, 9)  # places in an interval between which a loop's turning is summed
-
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

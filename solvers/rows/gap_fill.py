@@ -17,9 +17,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Bools, Floats, norms
 from meshonet.geometry.curves.cubic import cubic_spline
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
@@ -128,7 +127,7 @@ def filled_outline(outline: Floats, outside: Floats, lead: int, first: float, gr
     return GapFill(order, Layout(inside, tuple(blocks)))
 
 
-def _optimum(mesh: QuadMesh, held: NDArray[np.bool_], growth: float) -> QuadMesh:
+def _optimum(mesh: QuadMesh, held: Bools, growth: float) -> QuadMesh:
     """Return the mesh with its nodes at the optimum, but for those that are `held` (n,).
 
     The weight of growth depends continuously on what remains of it with the least one.
@@ -150,7 +149,7 @@ def _optimum(mesh: QuadMesh, held: NDArray[np.bool_], growth: float) -> QuadMesh
     return mesh if part <= 0.0 else optimum(mesh, STEEP + min(part, 1.0) * (STEEPEST - STEEP))
 
 
-def _largest_growth(mesh: QuadMesh, held: NDArray[np.bool_]) -> float:
+def _largest_growth(mesh: QuadMesh, held: Bools) -> float:
     """Return the largest log ratio of consecutive edges, one of which is not between `held` nodes."""
     edges, lengths = mesh.edges, mesh.edge_lengths
     quads = np.ascontiguousarray(mesh.quads)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.sparse import SparsePattern
 
 
-def harmonic(mesh: QuadMesh, moves: Floats, given: NDArray[np.bool_]) -> Floats:
+def harmonic(mesh: QuadMesh, moves: Floats, given: Bools) -> Floats:
     """Return displacements (n, 2): `moves` (n, 2) where `given` (n,), elsewhere means of neighbours.
 
     Neighbours weigh as the inverse square of their distance, so that small cells keep their form. Nodes with

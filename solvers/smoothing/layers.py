@@ -11,9 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -24,7 +23,7 @@ ROWS = 200
 """Largest number of rows of layers."""
 
 
-def with_layers(mesh: QuadMesh, given: QuadMesh) -> tuple[QuadMesh, NDArray[np.bool_]]:
+def with_layers(mesh: QuadMesh, given: QuadMesh) -> tuple[QuadMesh, Bools]:
     """Return `mesh` with the layer heights of `given`, the same quads, and a mask (n,) of their nodes.
 
     Layers are rows of cells at the boundary that are `THIN`. If wall nodes have moved, heights are those at
@@ -63,7 +62,7 @@ class _WallLines:
     """
 
     nodes: Indices
-    thin: NDArray[np.bool_]
+    thin: Bools
 
 
 def _lines(mesh: QuadMesh) -> _WallLines:
@@ -92,7 +91,7 @@ def _lines(mesh: QuadMesh) -> _WallLines:
     return _WallLines(np.stack(nodes, axis=1), np.stack(flags, axis=1))
 
 
-def _thin(mesh: QuadMesh) -> NDArray[np.bool_]:
+def _thin(mesh: QuadMesh) -> Bools:
     """Return for each edge (e,) whether it is the short side of all adjacent cells, by `THIN`."""
     ratio = mesh.aspects(mesh.edge_lengths)[:, None]
     short = np.concatenate([ratio, 1.0 / ratio, ratio, 1.0 / ratio], axis=1) > THIN

@@ -14,9 +14,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.kernels._native import line_neighbours
@@ -54,7 +53,7 @@ def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
     return exp(own)
 
 
-def thin_heights(mesh: QuadMesh) -> NDArray[np.bool_]:
+def thin_heights(mesh: QuadMesh) -> Bools:
     """Return for each edge (e,) whether it leaves the boundary at a cell that is thin in its direction."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     ratio = mesh.aspects(mesh.edge_lengths)[cell]

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from meshonet.geometry.arrays import Bools
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.volumes import measure_volumes, solid_metric
@@ -49,7 +47,7 @@ def measures(mesh: HexMesh) -> VolumeMeasures:
     return VolumeMeasures(quality.folded, metrics["deviation"].mean, metrics["scaled_jacobian"].min)
 
 
-def cells_below(mesh: HexMesh, bound: float) -> list[NDArray[np.bool_]]:
+def cells_below(mesh: HexMesh, bound: float) -> list[Bools]:
     """Return for each cell of each block whether its scaled Jacobian is below `bound`.
 
     At 0, whether it is folded.

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Bools, Floats, norms
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
+from meshonet.geometry.volume.hex_mesh import HexMesh
 from meshonet.solvers.energy.hex_tables import Targets
 
 THIN = 3.0

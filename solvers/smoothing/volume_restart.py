@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
+from meshonet.geometry.volume.hex_mesh import HexMesh
 
 _MOST, _SMALL = 500, 1e-8
 """Largest number of iterations, and the relative residual at which they end."""

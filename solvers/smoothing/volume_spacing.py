@@ -11,10 +11,10 @@ from functools import partial
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.arrays import Bools, Floats, Side
 from meshonet.geometry.blocks.block import PLACES, face_of
 from meshonet.geometry.elementary import log
-from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, exchange, second_layer
+from meshonet.geometry.volume.hex_mesh import HexMesh, exchange, second_layer
 from meshonet.solvers.energy.hex_tables import BlockTargets, Targets
 
 ROUNDS = 12

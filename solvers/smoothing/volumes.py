@@ -14,9 +14,9 @@ from functools import partial
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, any_corner, corners_of, hex_mesh_of, with_nodes
+from meshonet.geometry.volume.hex_mesh import HexMesh, any_corner, corners_of, hex_mesh_of, with_nodes
 from meshonet.solvers.energy.hex_tables import Targets
 from meshonet.solvers.energy.hexes import HexProblem, Slides, optimise
 from meshonet.solvers.smoothing.slide_planes import slides_of

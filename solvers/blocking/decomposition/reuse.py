@@ -12,9 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import product
@@ -141,7 +140,7 @@ def _in_box(points: Floats, loop: Loop) -> Floats:
     return np.asarray((points - 0.5 * (low + high)) / (0.5 * float((high - low).max())))
 
 
-def _moved_along(mesh: QuadMesh, nodes: Floats, fixed: NDArray[np.bool_]) -> Floats:
+def _moved_along(mesh: QuadMesh, nodes: Floats, fixed: Bools) -> Floats:
     """Return where the nodes go that are not `fixed` (n,), when those are moved to `nodes` (n, 2)."""
     old = np.column_stack([mesh.nodes, np.ones(len(mesh.nodes))])
     base = product(old, least_squares(old[fixed], nodes[fixed]))
@@ -149,7 +148,7 @@ def _moved_along(mesh: QuadMesh, nodes: Floats, fixed: NDArray[np.bool_]) -> Flo
     return np.asarray((base + moved)[~fixed])
 
 
-def _harmonic(mesh: QuadMesh, values: Floats, fixed: NDArray[np.bool_]) -> Floats:
+def _harmonic(mesh: QuadMesh, values: Floats, fixed: Bools) -> Floats:
     """Return `values` (n, 2), where not `fixed` the mean of those at the other ends of its edges."""
     number, free = np.cumsum(~fixed) - 1, np.flatnonzero(~fixed)
     inner = ~fixed[mesh.edges]

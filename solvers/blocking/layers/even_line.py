@@ -16,9 +16,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
@@ -38,8 +37,6 @@ FINER = 8
 """Number of points per column at which measures are tabulated."""
 SLACK = np.array([2.0, 1.0, 0.9])
 """Logarithms of ratios along fronts, at walls, and in the level next to these, by that of the limit."""
-
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,9 +19,8 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Bools, Complexes, Floats
 from meshonet.geometry.blocks.shared_nodes import joined_labels
 from meshonet.geometry.elementary import angle, arctan2, log, modulus, times
 from meshonet.geometry.layout.quad_mesh import QuadMesh
@@ -44,8 +43,6 @@ RAIL = 1e9
 WORTH, FEW = 0.7, 5e-4
 """Part of what exceeds the limit that a round may leave for another one, and share of ratios that are few."""
 _ANGLES = np.radians(60.0), np.radians(120.0)  # limits of θ0, so that bad corners improve
-
-Bools = NDArray[np.bool_]
 
 
 def evened_mesh(mesh: QuadMesh, held: Bools, limit: float) -> QuadMesh:

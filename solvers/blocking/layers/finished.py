@@ -6,9 +6,8 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.errors import NoValidGridError, SolverError
 from meshonet.geometry.layout.lattice import corner_jacobians
 from meshonet.geometry.layout.layout import Layout
@@ -30,8 +29,6 @@ DEARER, DEARER_DEG = 1.25, 0.25
 FEW_ITERATIONS = 10  # after untangling: only nodes around folds move
 NEAR_FOLDS = 5
 """Cells around folded ones that are optimised with them."""
-
-Bools = NDArray[np.bool_]
 
 
 def finished(layout: Layout, settings: LayerSettings, held: Bools) -> Layout:

@@ -16,9 +16,8 @@ from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, middle
+from meshonet.geometry.arrays import Bools, Floats, middle
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.errors import InputError, NoValidGridError
@@ -162,7 +161,7 @@ def _tied(layout: Layout) -> Layout:
 
 def _optimised(
     layout: Layout, walls: WallLayers, rows: WallRows, counts: Counts, iterations: int,
-    held: NDArray[np.bool_] | None = None,
+    held: Bools | None = None,
 ) -> Layout:  # fmt: skip
     """Return a layout with its nodes optimised for some sizes; `held` (n,) stay."""
     mesh = layout.mesh

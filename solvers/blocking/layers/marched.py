@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.arrays import Bools, Floats, distinct
 from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.elementary import power
 from meshonet.geometry.errors import InputError
@@ -30,8 +29,6 @@ THINNER = 0.6
 TRIES = 4  # thicknesses, the last a fifth of the first
 FEWEST_CELLS = 4.0
 """Smallest thickness of layers in first cells."""
-
-Bools = NDArray[np.bool_]
 
 
 def marched(

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, percentiles_of
+from meshonet.geometry.arrays import Bools, Floats, percentiles_of
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import exp, log, power
 from meshonet.geometry.layout.layout import Layout
@@ -33,8 +32,6 @@ STEEPEST = 0.6
 OPENS = 0.15
 """Distance behind a sharp edge, relative to its loop, over which the first cells of a wake grow."""
 _STEPS = 50  # of bisection, to round-off
-
-Bools = NDArray[np.bool_]
 
 
 def layers_of(layout: Layout, rows: WallRows, row: int, finer: int, settings: LayerSettings) -> int:

@@ -15,9 +15,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.arrays import Bools, Floats, distinct
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -47,7 +46,7 @@ class WallRows:
 
     loops: tuple[int, ...]
     across: Indices
-    back: NDArray[np.bool_]
+    back: Bools
 
     def of_chords(self, chords: Chords) -> Indices:
         """Return the row (chords,) that the edges of each chord cross, -1 for none."""

@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.arrays import Bools, Floats, distinct
 from meshonet.geometry.elementary import exp, log, times
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
@@ -40,8 +39,8 @@ class Chords:
     layout: Layout
     edges: tuple[Indices, ...]
     sides: Indices
-    reversed: NDArray[np.bool_]
-    wall: NDArray[np.bool_]
+    reversed: Bools
+    wall: Bools
     partner: Indices
     chord: Indices
     count: int

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshonet.geometry.arrays import Bools
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 
 _STEPS = 3  # of projection onto the tangent, which converges quadratically
 
 
-def on_loops(mesh: QuadMesh, which: NDArray[np.bool_]) -> QuadMesh:
+def on_loops(mesh: QuadMesh, which: Bools) -> QuadMesh:
     """Return the mesh with the nodes `which` (n,) moved to the nearest point of their loop."""
     nodes, arc = mesh.nodes.copy(), mesh.places.arc.copy()
     for number, loop in enumerate(mesh.domain.loops):

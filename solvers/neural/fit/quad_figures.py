@@ -8,7 +8,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.solvers.neural.quad.encoding import HEADS
 
 NARROW, WIDE = math.radians(2.0), math.radians(172.0)  # angles beyond which a cell is taken to begin to fold
@@ -60,7 +60,7 @@ def _rounded(value: Any) -> float:
     return float(f"{float(value):.3e}")
 
 
-def _share(values: NDArray[np.bool_]) -> float:
+def _share(values: Bools) -> float:
     return _rounded(values.mean())
 
 

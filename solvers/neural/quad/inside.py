@@ -11,9 +11,8 @@ and scaled with the body; of equal minima that nearest to the wall's first node 
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Bools, Complexes, Floats
 from meshonet.geometry.elementary import angle
 
 PIECES = 8  # segments of each edge of the wall, for the midpoint rule
@@ -80,7 +79,7 @@ def _inscribed(wall: Complexes, x: Complexes) -> Complexes:
     return np.asarray(points + inwards * np.minimum(radii.min(axis=1), 1.0))
 
 
-def _within(points: Complexes, wall: Complexes) -> NDArray[np.bool_]:
+def _within(points: Complexes, wall: Complexes) -> Bools:
     """Return a mask of the points around which a closed curve winds once."""
     off = wall - points[:, None]
     turns = angle(np.roll(off, -1, axis=1) / off).sum(axis=1)

@@ -16,9 +16,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Bools, Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.algebraic.resample.spline import between
@@ -66,7 +65,7 @@ def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
     )  # exp(-i strip) closes: a whole turn on is the same
 
 
-def _strips(boundaries: Sequence[Boundary]) -> tuple[Complexes, Complexes, Complexes, NDArray[np.bool_]]:
+def _strips(boundaries: Sequence[Boundary]) -> tuple[Complexes, Complexes, Complexes, Bools]:
     """Return the walls at 65 nodes, their strips, the centres, and which walls wind once around them."""
     sides = [np.stack([getattr(b, side) for b in boundaries]).swapaxes(1, 2) for side in ("south", "north")]
     walls = _complex(np.stack([between(side, AROUND) for side in sides], axis=3))

@@ -13,9 +13,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -30,7 +29,7 @@ class BaseComplex:
     mesh: QuadMesh
     blocks: tuple[Indices, ...]
     """Lattices (ni, nj) of nodes, right-handed."""
-    bounds: NDArray[np.bool_]
+    bounds: Bools
     """(e,) mask of the edges that bound blocks."""
     chord: Indices
     """(e,) number of each edge's chord. Opposite sides of a block belong to the same chord, and so do the
@@ -74,7 +73,7 @@ class BaseComplex:
         return np.asarray(np.add.reduceat(along, first).reshape(-1, 4))
 
 
-def base_complex(mesh: QuadMesh, lines: NDArray[np.bool_] | None = None) -> BaseComplex:
+def base_complex(mesh: QuadMesh, lines: Bools | None = None) -> BaseComplex:
     """Return the blocks of a quad mesh, which also end at additional `lines` (e,) of edges.
 
     Raises BlockingError: the mesh is not manifold, or a region between lines is not a lattice.

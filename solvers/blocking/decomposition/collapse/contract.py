@@ -7,9 +7,8 @@ mean.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import distinct
+from meshonet.geometry.arrays import Bools, distinct
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import joined_classes
@@ -20,7 +19,7 @@ VALENCES = (3, 5)
 """Smallest and largest number of quads around an interior node."""
 
 
-def contract(mesh: QuadMesh, rungs: NDArray[np.bool_]) -> QuadMesh | None:
+def contract(mesh: QuadMesh, rungs: Bools) -> QuadMesh | None:
     """Return the mesh with the nodes of each edge in `rungs` (e,) merged; None if it would be invalid.
 
     It is invalid if two corners would be merged, or wall nodes without a wall edge in `rungs` between them;
@@ -40,7 +39,7 @@ def contract(mesh: QuadMesh, rungs: NDArray[np.bool_]) -> QuadMesh | None:
     return _placed(trial, mesh, label) if not more and is_conforming(trial) else None
 
 
-def _may_join(mesh: QuadMesh, label: Indices, count: int, rungs: NDArray[np.bool_]) -> bool:
+def _may_join(mesh: QuadMesh, label: Indices, count: int, rungs: Bools) -> bool:
     """Return whether no class of nodes has two corners, and wall nodes in one are joined along the wall."""
     corners, wall = np.flatnonzero(mesh.places.cells > 0), np.flatnonzero(mesh.places.loop >= 0)
     if len(distinct(label[corners])) < len(corners):

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, middle
+from meshonet.geometry.arrays import Bools, Floats, middle
 from meshonet.geometry.elementary import angle, exp, times
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import surface_comb, surface_prune
@@ -35,7 +34,7 @@ class Frames:
     """
     wall_axis: Indices
     """(w,) direction d, 0 to 3, of each wall edge in its frame: it runs along i^d."""
-    cut: NDArray[np.bool_]
+    cut: Bools
     """(t, 3) edges that open the surface to a disc with the singular vertices on its boundary; all turns
     are there.
     """
@@ -64,7 +63,7 @@ def cut_frames(field: CrossField) -> Frames:
     )
 
 
-def _wedges(field: CrossField, cut: NDArray[np.bool_]) -> Indices:
+def _wedges(field: CrossField, cut: Bools) -> Indices:
     """Give the corners around each vertex one number (t, 3) between any two edges of the cut."""
     surface = field.surface
     start, corners = surface.fans

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Bools, Complexes, Floats
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import angle as angle_of
 from meshonet.geometry.elementary import exp, tan, times
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, Triangulation
-
-Flags: TypeAlias = NDArray[np.bool_]
 
 QUARTER = 0.5 * np.pi  # symmetry of the field, radians
 _REACH = 0.15
@@ -72,7 +68,7 @@ def wall_directions(surface: Triangulation) -> WallDirections:
     return WallDirections(cells, angle, shears, own + offsets, offsets, inside)
 
 
-def _corner_offsets(surface: Triangulation, inside: Floats) -> tuple[Indices, Floats, Floats, Flags]:
+def _corner_offsets(surface: Triangulation, inside: Floats) -> tuple[Indices, Floats, Floats, Bools]:
     """Return cells wanted (b,), offsets (b,) of walls that leave vertices and of those that arrive.
 
     And whether (b,) the nearest corner is acute: less than 90 degrees, and one cell is wanted.

@@ -14,9 +14,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.arrays import Bools, Floats, distinct
 from meshonet.geometry.layout.periodic_sides import following
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -28,7 +27,7 @@ Span = tuple[int, float, float]
 """Number of a loop, and the arc lengths of the corners at which a stretch of it starts and ends."""
 
 
-def wrong_count(mesh: QuadMesh) -> NDArray[np.bool_]:
+def wrong_count(mesh: QuadMesh) -> Bools:
     """Return a mask (n,) of boundary nodes with a wrong number of quads, which is 2 except at corners."""
     cells = mesh.places.cells
     return np.asarray(mesh.wall_nodes & (mesh.valence != np.where(cells > 0, cells, 2)))

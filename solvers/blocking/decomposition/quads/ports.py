@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from meshonet.geometry.arrays import Bools
 from meshonet.geometry.elementary import angle, times
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
@@ -24,7 +25,7 @@ class Ports:
     """(n,)"""
     quarters: Indices
     """(n,) number of right angles around each node, which is the number of cells."""
-    on_wall: NDArray[np.bool_]
+    on_wall: Bools
     """(n,)"""
     node: Indices
     """(t, 3) node at each corner of each triangle, or -1."""
@@ -74,7 +75,7 @@ def _directions(
     corner: Indices,
     owner: Indices,
     quarters: Indices,
-    on_wall: NDArray[np.bool_],
+    on_wall: Bools,
 ) -> tuple[Indices, NDArray[np.float64]]:
     """Return the port (e, 4) of each axis at each corner, -1 for walls, and how far inside it is."""
     w = seamless.corner_coords
@@ -104,7 +105,7 @@ def _starts(
     owner: Indices,
     port: Indices,
     margin: NDArray[np.float64],
-    shoots: NDArray[np.bool_],
+    shoots: Bools,
     most: int,
 ) -> Indices:
     """Return the rays: for each port the corner that it lies deepest in."""

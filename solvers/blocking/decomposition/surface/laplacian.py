@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Bools, Complexes, Floats
 from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIOUS, Triangulation
 from meshonet.solvers.sparse import Factor, SparsePattern
 
@@ -13,7 +12,7 @@ from meshonet.solvers.sparse import Factor, SparsePattern
 class Laplacian:
     """Integrals of products of gradients over a surface, for its vertices `free` (n,)."""
 
-    def __init__(self, surface: Triangulation, free: NDArray[np.bool_]) -> None:
+    def __init__(self, surface: Triangulation, free: Bools) -> None:
         self.surface, self.free = surface, free
         number = np.cumsum(free) - 1
         start, stop, weight = surface.triangles, surface.triangles[:, NEXT], surface.edge_weights

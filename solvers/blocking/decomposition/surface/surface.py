@@ -9,9 +9,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Complexes, Floats, complex_of
+from meshonet.geometry.arrays import Bools, Complexes, Floats, complex_of
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.elementary import angle, modulus, times
 from meshonet.geometry.errors import SolverError
@@ -89,7 +88,7 @@ class Triangulation:
         return triangles, edges
 
     @cached_property
-    def on_wall(self) -> NDArray[np.bool_]:
+    def on_wall(self) -> Bools:
         """(n,) mask of vertices on walls."""
         flags = np.zeros(self.size, dtype=bool)
         flags[self.triangles[self.walls]] = True

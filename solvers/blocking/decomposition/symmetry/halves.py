@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, along_and_across, distinct
+from meshonet.geometry.arrays import Bools, Floats, along_and_across, distinct
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
@@ -44,7 +43,7 @@ class LoopPart:
     """Which of them are corners, those on the mirror included."""
     breaks: Indices
     """At which its tangent may jump."""
-    straight: NDArray[np.bool_]
+    straight: Bools
     """(n,) whether the way to the next is straight, as it is from the last along the mirror."""
 
 
@@ -159,7 +158,7 @@ def both_halves(mesh: QuadMesh, half: Half) -> QuadMesh:
     )
 
 
-def on_loops(mesh: QuadMesh, on_mirror: NDArray[np.bool_]) -> QuadMesh:
+def on_loops(mesh: QuadMesh, on_mirror: Bools) -> QuadMesh:
     """Return a mesh of copies of a part with its wall nodes on the loops of its domain, some at corners.
 
     The first nodes of it may lie `on_mirror` (k,): a corner there has as many cells as meet in it, if it was
@@ -182,7 +181,7 @@ def on_loops(mesh: QuadMesh, on_mirror: NDArray[np.bool_]) -> QuadMesh:
 
 def places_in_whole(
     mesh: QuadMesh, stretches: Sequence[LoopPart], holes: Sequence[int]
-) -> tuple[Indices, Floats, NDArray[np.bool_]]:
+) -> tuple[Indices, Floats, Bools]:
     """Return loop and arc length in the whole of the nodes of a part, and which lie on a mirror."""
     old, outer = mesh.places, mesh.domain.loops[0]
     loop, arc = np.full(len(old.loop), -1, dtype=np.intp), np.zeros(len(old.loop))

@@ -9,9 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, along_and_across, norms
+from meshonet.geometry.arrays import Bools, Floats, along_and_across, norms
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
@@ -150,9 +149,7 @@ def all_sectors(mesh: QuadMesh, sector: Sector) -> QuadMesh:
     return on_loops(QuadMesh(sector.whole, points, quads, places), rays)
 
 
-def _on_rays(
-    nodes: Floats, on_ray: NDArray[np.bool_], sector: Sector
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
+def _on_rays(nodes: Floats, on_ray: Bools, sector: Sector) -> tuple[Bools, Bools, Bools]:
     """Return which nodes are at the centre, on the first ray and on the last one."""
     first, between, last = sector.rays
     off = [np.abs(mirror.ahead_and_left(nodes)[1]) for mirror in (first, last)]

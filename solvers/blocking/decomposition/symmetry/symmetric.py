@@ -13,9 +13,8 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import distinct
+from meshonet.geometry.arrays import Bools, distinct
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.layout.quad_mesh import QuadMesh
@@ -149,7 +148,7 @@ def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Ima
     return made_symmetric(mesh, images), images
 
 
-def cut_on_mirrors(mesh: QuadMesh, images: Images, more: NDArray[np.bool_] | None = None) -> BaseComplex:
+def cut_on_mirrors(mesh: QuadMesh, images: Images, more: Bools | None = None) -> BaseComplex:
     """Return the blocks of a mesh, cut along mirrors that go through corners of the domain with two cells.
 
     They end at edges on `more` (e,) lines too. A mirror cuts a ring too, which is else cut open anywhere. So
