@@ -15,9 +15,8 @@ from PIL import Image, ImageChops
 from reduce_pictures import place
 
 import meshonet
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.polygon.corners import Indices
 
 FOLDER = Path(__file__).parent / "img"
 GAP = 40

@@ -11,6 +11,8 @@ Floats: TypeAlias = NDArray[np.float64]
 
 Complexes: TypeAlias = NDArray[np.complex128]
 """complex128 array of points x + iy."""
+Indices: TypeAlias = NDArray[np.intp]
+"""Array of numbers of nodes, cells and the like."""
 Bools: TypeAlias = NDArray[np.bool_]
 """Array of flags, a mask."""
 

@@ -11,8 +11,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Floats, Indices
 
 EQUAL = 1e-9
 """Difference, over the larger of two values, up to which they are equal."""

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.solvers.sparse import SparsePattern
 
 

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.errors import SolverError
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import sparse_analyse, sparse_factor, sparse_multiply, sparse_solve
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from meshonet.formats.layout.values import Values
 from meshonet.formats.layout.write import NAME, VERSION
 from meshonet.formats.source import Source, open_source, printable
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
@@ -25,7 +25,6 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.polygon.area import polygon_area
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.shapes.domain_shape import DomainShape
 
 MOST_BYTES = 256 << 20

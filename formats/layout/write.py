@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from meshonet.geometry.arrays import Indices
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.places import place_at
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
-from meshonet.geometry.polygon.corners import Indices
 
 NAME, VERSION = "meshonet-layout", 1
 """Format and version in the file."""

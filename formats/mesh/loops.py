@@ -13,13 +13,12 @@ import numpy as np
 
 from meshonet.formats.mesh.cell_faces import faces_of
 from meshonet.formats.mesh.unstructured import node_numbers, points_of
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
-from meshonet.geometry.polygon.corners import Indices
 
 
 @dataclass(frozen=True)

@@ -18,11 +18,11 @@ import numpy as np
 
 from meshonet.formats.mesh.cell_faces import cell_numbers, faces_of
 from meshonet.formats.mesh.names import unused
+from meshonet.geometry.arrays import Indices
 from meshonet.geometry.blocks.block import Range, face_of
 from meshonet.geometry.blocks.connection import Connection, Motion, cells_at
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.outer_patches import owners_of
-from meshonet.geometry.polygon.corners import Indices
 
 _SAME = 1e-9
 """Largest difference of motions that count as equal; for translations relative to their length."""

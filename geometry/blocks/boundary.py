@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.geometry.arrays import SIDES, TOPOLOGIES, Floats, Side, Topology, read_only
+from meshonet.geometry.arrays import SIDES, TOPOLOGIES, Floats, Indices, Side, Topology, read_only
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connected, Connection, connections_of
 from meshonet.geometry.blocks.grid import UNKNOWN, Grid, Origin
@@ -30,7 +30,7 @@ from meshonet.geometry.blocks.validate import check_edges
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
-from meshonet.geometry.polygon.corners import Indices, find_corners
+from meshonet.geometry.polygon.corners import find_corners
 from meshonet.geometry.spacing.sampling import Sampling
 
 _CORNERS = (  # side and end, twice: where neighbouring sides meet

@@ -23,11 +23,10 @@ from itertools import permutations, product
 import numpy as np
 
 from meshonet.geometry import elementary
-from meshonet.geometry.arrays import Bools, Floats, Side, norms
+from meshonet.geometry.arrays import Bools, Floats, Indices, Side, norms
 from meshonet.geometry.blocks.block import PLACES, Block, Range, form_of, sides_of
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.outer_patches import JOINED, rectangles
-from meshonet.geometry.polygon.corners import Indices
 
 AROUND: Mapping[Side, int] = {"west": -1, "east": 1, "south": 1, "north": -1}
 """Whether the nodes of a side of a planar block run counter-clockwise around it."""

@@ -14,10 +14,9 @@ from typing import Literal
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import joined_classes
 
 _PASSES = 9

@@ -9,14 +9,13 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, Side, norms
+from meshonet.geometry.arrays import Floats, Indices, Side, norms
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.handedness import flux_through
 from meshonet.geometry.blocks.six_faces import FACES, SixFaces, edge_of, edges, place_of, share_edges
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
-from meshonet.geometry.polygon.corners import Indices
 
 TOLERANCE = 1e-6
 """Largest distance between nodes of a shared edge, over the diagonal of the bounding box."""

@@ -14,11 +14,10 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats
+from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.shared_nodes import shared_nodes
-from meshonet.geometry.polygon.corners import Indices
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, distinct, read_only
+from meshonet.geometry.arrays import Bools, Floats, Indices, distinct, read_only
 from meshonet.geometry.curves.spline import checked_points, cubics, spline_slopes
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.polygon.corners import Indices, find_corners
+from meshonet.geometry.polygon.corners import find_corners
 from meshonet.kernels._native import curve_locate, curve_points, curve_slopes, curve_speeds
 
 _STEPS = 8  # parts of an interval in the table of arc length

@@ -11,10 +11,10 @@ one at its end; those of neighbouring intervals differ only at corners.
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.arrays import Floats, Indices, distinct
 from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.polygon.corners import Indices, angle_between, turning
+from meshonet.geometry.polygon.corners import angle_between, turning
 from meshonet.kernels._native import solve_tridiagonal
 
 SLACK = 0.25

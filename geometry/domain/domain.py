@@ -8,13 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.geometry.arrays import Floats, Indices, extent_of
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.domain.ring import ring_loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
-from meshonet.geometry.polygon.corners import Indices
 
 
 @dataclass(frozen=True, eq=False)

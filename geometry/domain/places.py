@@ -6,9 +6,8 @@ next corner. On a loop without corners a place is the fraction of its length fro
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.polygon.corners import Indices
 
 
 def place_at(loop: Loop, arc: Floats) -> Floats:

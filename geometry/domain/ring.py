@@ -7,11 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, ends_meet, extent_of
+from meshonet.geometry.arrays import Floats, Indices, ends_meet, extent_of
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.polygon.self_intersection import check_outline
 
 

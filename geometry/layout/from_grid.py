@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.block import Block, face_of
 from meshonet.geometry.blocks.grid import Grid
@@ -27,7 +27,7 @@ from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.area import polygon_area
-from meshonet.geometry.polygon.corners import Indices, find_corners
+from meshonet.geometry.polygon.corners import find_corners
 
 
 def layout_of(grid: Grid) -> Layout:

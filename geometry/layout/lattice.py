@@ -4,8 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import AnyArray, Floats, cross2
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import AnyArray, Floats, Indices, cross2
 
 
 def ring_of(nodes: AnyArray) -> AnyArray:

@@ -18,9 +18,8 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import distinct
+from meshonet.geometry.arrays import Indices, distinct
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,10 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.domain.periodic import Periodic, rounded
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 
 Sides = tuple[Periodic, Indices, Indices]
 """A pair of stretches, and the nodes of both, corners included, in the order of the first."""

@@ -10,9 +10,8 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats
+from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import connect_quads
 
 

@@ -6,9 +6,8 @@ from itertools import groupby
 from operator import itemgetter
 from typing import TypeAlias
 
-from meshonet.geometry.arrays import Side
+from meshonet.geometry.arrays import Indices, Side
 from meshonet.geometry.blocks.connection import Connection, Motion
-from meshonet.geometry.polygon.corners import Indices
 
 Line: TypeAlias = tuple[int, Side, Indices]
 """Number of a block, a side of it, and the nodes along that."""

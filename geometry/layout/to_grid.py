@@ -12,7 +12,7 @@ from itertools import groupby
 
 import numpy as np
 
-from meshonet.geometry.arrays import Side
+from meshonet.geometry.arrays import Indices, Side
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.grid import Grid
@@ -20,7 +20,6 @@ from meshonet.geometry.blocks.patches import Patch, kind_of
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import matched_nodes, sides_of
 from meshonet.geometry.layout.shared_sides import Line, connection_of, key_of, shared, shared_in_part
-from meshonet.geometry.polygon.corners import Indices
 
 _SIDES: tuple[Side, ...] = ("south", "north", "west", "east")
 

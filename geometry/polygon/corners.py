@@ -1,15 +1,11 @@
 """Turning angles of a polygon, and which of its points are corners."""
 
 import math
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Bools, Floats, along_and_across, cross2, norms
+from meshonet.geometry.arrays import Bools, Floats, Indices, along_and_across, cross2, norms
 from meshonet.geometry.elementary import arctan2
-
-Indices: TypeAlias = NDArray[np.intp]
 
 KINK = np.radians(8.0)
 """A turn that counts as a corner where its neighbours turn by less than a fifth of it."""

@@ -20,11 +20,10 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, cross2, middle, norms
+from meshonet.geometry.arrays import Floats, Indices, cross2, middle, norms
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError, in_place
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.rows.profile_points import apart
 from meshonet.kernels._native import (
     channel_nodes,

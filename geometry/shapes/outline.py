@@ -13,13 +13,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Topology, extent_of
+from meshonet.geometry.arrays import Floats, Indices, Topology, extent_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
-from meshonet.geometry.polygon.corners import Indices, turning
+from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.polygon.self_intersection import check_outline
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.spacing.along_curve import stretch_arcs

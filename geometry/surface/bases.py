@@ -16,10 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, arc_parts, extent_of, norms
+from meshonet.geometry.arrays import Floats, Indices, arc_parts, extent_of, norms
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.lattice import lattice_quads
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.surface.half_edges import open_sides, paired
 from meshonet.geometry.surface.merge import TOLERANCE, merged
 from meshonet.geometry.surface.planes import FLAT, planes_of

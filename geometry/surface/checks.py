@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, distinct, norms
+from meshonet.geometry.arrays import Floats, Indices, distinct, norms
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.surface.half_edges import ends_of
 from meshonet.geometry.surface.merge import SLANT, near_pairs
 

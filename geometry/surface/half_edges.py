@@ -11,7 +11,7 @@
 
 import numpy as np
 
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Indices
 
 
 def ends_of(quads: Indices) -> tuple[Indices, Indices]:

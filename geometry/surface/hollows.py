@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.elementary import arctan2
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.surface.half_edges import ends_of
 from meshonet.geometry.surface.surface import Surface
 

@@ -4,10 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.geometry.arrays import Floats, Indices, extent_of
 from meshonet.geometry.blocks.shared_nodes import joined_labels
 from meshonet.geometry.elementary import product
-from meshonet.geometry.polygon.corners import Indices
 
 TOLERANCE = 1e-8
 """Distance, over the size of a surface, within which edge nodes are one node."""

@@ -5,8 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, distinct, extent_of
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Floats, Indices, distinct, extent_of
 from meshonet.geometry.surface.planes import FLAT, Plane, edges_in
 
 NEARLY_CLOSED = 0.3

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, extent_of, norms
+from meshonet.geometry.arrays import Floats, Indices, extent_of, norms
 from meshonet.geometry.elementary import arctan2
-from meshonet.geometry.polygon.corners import Indices
 
 FLAT = 1e-6
 """Part of the size of a surface by which nodes may be off a plane of symmetry."""

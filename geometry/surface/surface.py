@@ -15,11 +15,10 @@ from typing import Literal
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.geometry.arrays import Floats, Indices, extent_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.lattice import lattice_quads
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.surface.bases import with_bases
 from meshonet.geometry.surface.checks import (
     check_gaps,

@@ -22,14 +22,13 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import AnyArray, Bools, Floats, Side, extent_of
+from meshonet.geometry.arrays import AnyArray, Bools, Floats, Indices, Side, extent_of
 from meshonet.geometry.blocks.block import PLACES, Block, face_of
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.handedness import signed_volume
 from meshonet.geometry.blocks.shared_nodes import joined_labels, node_table
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.polygon.corners import Indices
 
 FaceValues: TypeAlias = Callable[[int, Side], NDArray[Any]]
 """Gives a view (n, m) of values at a side of a block."""

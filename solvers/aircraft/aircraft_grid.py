@@ -13,14 +13,13 @@ from itertools import pairwise
 import numpy as np
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.blocks.block import Block, face_of
 from meshonet.geometry.blocks.find_connections import find_connections
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.halves import with_image
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.body_plane import WING_PATCHES, level_patches
 from meshonet.solvers.aircraft.exact_cells import at_height, between_walls

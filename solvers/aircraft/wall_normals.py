@@ -13,9 +13,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.elementary import exp
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.rows.columns import arcs_of
 
 _WAY = 0.6

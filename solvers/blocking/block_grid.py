@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from meshonet.geometry.arrays import Indices
 from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.errors import most_folded
 from meshonet.solvers.blocking.decomposition.named_counts import sums_of, with_counts
 from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides

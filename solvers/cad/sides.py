@@ -17,10 +17,9 @@ from typing import Literal
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.cad.model import CadFace, CadModel
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.ties import nearest_whole as rounded
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.quads.arc_counts import Row, nearest_whole

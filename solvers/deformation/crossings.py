@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from meshonet.geometry.arrays import Indices
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import contains
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.polygon.self_intersection import find_crossings
 from meshonet.solvers.deformation.outer import NodeTable, Piece, lines_of
 from meshonet.solvers.deformation.targets import NodeTargets

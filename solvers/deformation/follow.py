@@ -11,10 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, extent_of, middle
+from meshonet.geometry.arrays import Bools, Floats, Indices, extent_of, middle
 from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import singular_values
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.threads import thread_count
 from meshonet.kernels._native import blend_motions, blend_transposed
 from meshonet.solvers.deformation.motions import Turning, affine, turns_in_plane, turns_in_space

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.elementary import product, sin
 from meshonet.geometry.linear import inverse, nearest_rotation
-from meshonet.geometry.polygon.corners import Indices, angle_between
+from meshonet.geometry.polygon.corners import angle_between
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, norms
+from meshonet.geometry.arrays import Bools, Floats, Indices, norms
 from meshonet.geometry.blocks.across import rows_at
 from meshonet.geometry.blocks.block import Block, face_of, part_of
 from meshonet.geometry.blocks.grid import Grid
@@ -20,7 +20,6 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.shared_nodes import node_table
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.lattice import lattice_quads
-from meshonet.geometry.polygon.corners import Indices
 
 _BACKWARDS = ("north", "west")
 """Sides along which the domain is on the right in the direction of ascending indices."""

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, extent_of, norms
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Bools, Floats, Indices, extent_of, norms
 from meshonet.solvers.deformation.outer import NodeTable, Piece, elements_of, first_heights
 
 REACH = 0.1

@@ -12,11 +12,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError, NoValidGridError
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.measure import count_folded_in
 from meshonet.solvers.deformation.follow import Field, Follow
 from meshonet.solvers.deformation.motions import Turning, turns_in_plane

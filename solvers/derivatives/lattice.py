@@ -16,8 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Floats, Indices
 
 STEP = 1e-5
 """Step of central differences relative to the shortest edge at a node; errors are about its square."""

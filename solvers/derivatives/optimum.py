@@ -14,11 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError, SolverError
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import variational_energy
 from meshonet.solvers.derivatives.lattice import Equations, Jacobian, jacobian, shortest_edges
 from meshonet.solvers.elliptic.winslow import left_side

@@ -4,9 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, as_planar
+from meshonet.geometry.arrays import Floats, Indices, as_planar
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.measure import angles
 from meshonet.solvers.elliptic.multigrid import relax
 

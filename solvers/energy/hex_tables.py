@@ -13,9 +13,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Bools, Floats
+from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.elementary import exp
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.volume.hex_mesh import HexMesh, any_corner, corners_of
 
 BlockTargets: TypeAlias = tuple[Floats, Floats, Floats]

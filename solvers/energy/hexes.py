@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.threads import MANY_VISITS, threads_for
 from meshonet.geometry.volume.hex_mesh import HexMesh, corners_of
 from meshonet.kernels._native import HexDescent

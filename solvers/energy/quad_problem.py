@@ -10,11 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, cross2
+from meshonet.geometry.arrays import Bools, Floats, Indices, cross2
 from meshonet.geometry.elementary import arctan2, log, sin
 from meshonet.geometry.layout.lattice import corner_jacobians
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import QuadDescent, line_neighbours
 from meshonet.solvers.energy.walls import Walls, turned
 

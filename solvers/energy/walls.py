@@ -7,11 +7,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats
+from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 
 LEAST_GAP = 0.05
 """Distance of wall nodes after reordering, relative to the mean distance between two fixed nodes."""

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, wrapped
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Floats, Indices, wrapped
 from meshonet.geometry.threads import in_threads
 from meshonet.solvers.blocking.layers.even_line import PlaceLinks
 from meshonet.solvers.rows.section_plane import SectionPlane

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.layout import Layout
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.layers.attach import sampled
 
 _NEWTON = 12

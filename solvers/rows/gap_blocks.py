@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import least_squares
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.rows.gap_fill import GapFill, filled_outline
 from meshonet.solvers.rows.harmonic import harmonic

@@ -18,7 +18,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, norms
+from meshonet.geometry.arrays import Bools, Floats, Indices, norms
 from meshonet.geometry.curves.cubic import cubic_spline
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
@@ -27,7 +27,6 @@ from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.spacing.growth import cells_for_growth
 from meshonet.kernels._native import line_neighbours
 from meshonet.solvers.energy.quads import optimise

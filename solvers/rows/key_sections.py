@@ -18,10 +18,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms, wrapped
+from meshonet.geometry.arrays import Floats, Indices, norms, wrapped
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.layers.layer_rows import layer_lines
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.rows.columns import layer_columns

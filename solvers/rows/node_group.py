@@ -15,8 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.rows.span_lines import SpanLines, key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, LineArcs, Spacing

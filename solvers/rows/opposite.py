@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, wrapped
+from meshonet.geometry.arrays import Floats, Indices, wrapped
 from meshonet.geometry.curves.monotone import monotone_cubic
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.ties import first_least
 from meshonet.solvers.rows.across import ChannelLines
 

@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.arrays import Floats, Indices, Side
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.extrude import thick
@@ -25,7 +25,6 @@ from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.layout.to_grid import to_grid
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import in_threads, run_in_threads
 from meshonet.kernels._native import stacked_block

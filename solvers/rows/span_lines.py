@@ -8,10 +8,9 @@ from functools import cache
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.elementary import cos, product
 from meshonet.geometry.linear import inverse
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import chebyshev_sums
 
 

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, wrapped
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Floats, Indices, wrapped
 from meshonet.geometry.threads import in_threads
 from meshonet.solvers.rows.across import ChannelLines
 from meshonet.solvers.rows.opposite import opposite_places

@@ -12,8 +12,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, wrapped
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Floats, Indices, wrapped
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import in_threads, run_in_threads
 from meshonet.solvers.rows.columns import respaced_columns

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats
+from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import line_neighbours
 from meshonet.solvers.smoothing.spacing import THIN, thin_heights
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, extent_of, norms
+from meshonet.geometry.arrays import Bools, Floats, Indices, extent_of, norms
 from meshonet.geometry.blocks.block import face_of, part_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import symmetric_eigen
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.volume.hex_mesh import HexMesh
 from meshonet.solvers.energy.hexes import Slides
 

@@ -11,10 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, norms
+from meshonet.geometry.arrays import Bools, Floats, Indices, norms
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.elementary import exp, log
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.volume.hex_mesh import HexMesh
 from meshonet.solvers.energy.hex_tables import Targets
 

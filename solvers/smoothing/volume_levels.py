@@ -14,11 +14,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.elementary import exp
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.volume.hex_mesh import HexMesh
 from meshonet.solvers.energy.hex_tables import Targets
 

@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.volume.hex_mesh import HexMesh
 
 _MOST, _SMALL = 500, 1e-8

@@ -20,10 +20,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.elementary import cos, product, sin
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.sweeping.ring_steps import ring_steps
 
 CORE = 0.5

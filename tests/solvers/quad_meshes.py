@@ -4,13 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 
 
 def lattice_quads(lattice: Indices) -> Indices:

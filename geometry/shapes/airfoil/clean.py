@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, along_and_across, distinct, norms
+from meshonet.geometry.arrays import Floats, Indices, along_and_across, distinct, norms
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
-from meshonet.geometry.polygon.corners import Indices, find_corners, turning
+from meshonet.geometry.polygon.corners import find_corners, turning
 
 SHARP_GAP = 2e-4
 """Gap in chords below which a trailing edge counts as sharp: with less, grids of more real files fold."""

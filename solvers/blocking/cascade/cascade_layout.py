@@ -14,11 +14,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.elementary import log
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.cascade.cascade import COARSEST, Cascade, scaled
 from meshonet.solvers.blocking.cascade.passage import (
     BLADE,

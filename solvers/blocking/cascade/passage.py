@@ -16,14 +16,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of
+from meshonet.geometry.arrays import Complexes, Floats, Indices, complex_of, pairs_of
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.elementary import product, times
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.layers.attach import Rows, attach, loop_nodes
 
 BLADE, INLET, OUTLET = 0, 1, 2

@@ -18,13 +18,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, Indices
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import arccosh, cosh, exp, modulus
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.cascade.passage import BLADE, INLET, OUTLET, Passage
 from meshonet.solvers.blocking.cascade.passage_flow import PassageFlow
 

@@ -8,9 +8,9 @@ from types import MappingProxyType
 
 import numpy as np
 
+from meshonet.geometry.arrays import Indices
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.periodic_sides import following, sides_of
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.reach import check_reach
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.periodic_counts import rows_of

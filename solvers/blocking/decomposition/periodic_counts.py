@@ -7,10 +7,10 @@ from types import MappingProxyType
 
 import numpy as np
 
+from meshonet.geometry.arrays import Indices
 from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import following, sides_of
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.quads.arc_counts import Row, nearest_whole
 from meshonet.solvers.blocking.sizes.chords import Chords

@@ -7,12 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,10 +17,9 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats
+from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.layers.attach import loop_nodes
 from meshonet.solvers.blocking.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
 from meshonet.solvers.least_squares import NormalEquations, Residuals

@@ -20,11 +20,10 @@ from functools import partial
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Complexes, Floats
+from meshonet.geometry.arrays import Bools, Complexes, Floats, Indices
 from meshonet.geometry.blocks.shared_nodes import joined_labels
 from meshonet.geometry.elementary import angle, arctan2, log, modulus, times
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import line_neighbours
 from meshonet.solvers.blocking.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
 from meshonet.solvers.blocking.sizes.on_loops import on_loops

@@ -17,8 +17,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Complexes, Floats, Indices
 from meshonet.solvers.least_squares import Residuals
 
 EXCESS, RISE, MOST_WEIGHT = 10.0, 1.6, 1e4

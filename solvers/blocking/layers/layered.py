@@ -17,14 +17,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, middle
+from meshonet.geometry.arrays import Bools, Floats, Indices, middle
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.named_counts import with_counts
 from meshonet.solvers.blocking.decomposition.periodic_counts import alike_along_sides
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric, node_images

@@ -7,12 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, percentiles_of
+from meshonet.geometry.arrays import Bools, Floats, Indices, percentiles_of
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import exp, log, power
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.algebraic.tfi import interpolate, parameters
 from meshonet.solvers.blocking.layers.attach import spaced
 from meshonet.solvers.blocking.layers.layer_law import layer_arcs

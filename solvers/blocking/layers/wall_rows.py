@@ -16,10 +16,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, distinct
+from meshonet.geometry.arrays import Bools, Floats, Indices, distinct
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.quads.padding import pad_span
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.elementary import product
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric

@@ -12,14 +12,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import product
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.algebraic.resample import quad
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
 from meshonet.solvers.blocking.sizes.chords import Chords

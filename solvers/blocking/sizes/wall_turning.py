@@ -6,10 +6,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, running_sums
+from meshonet.geometry.arrays import Floats, Indices, running_sums
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import arctan2
-from meshonet.geometry.polygon.corners import Indices, turning
+from meshonet.geometry.polygon.corners import turning
 
 
 @lru_cache(maxsize=64)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from meshonet.geometry.arrays import Indices
 from meshonet.geometry.elementary import exp, log
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 

@@ -7,12 +7,11 @@ from itertools import groupby
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.arrays import Floats, Indices, Side
 from meshonet.geometry.blocks.block import Block, face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.layout.shared_sides import key_of, shared, shared_in_part
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.surface.surface import Surface
 
 _SIDES: tuple[Side, ...] = ("west", "east", "south", "north")

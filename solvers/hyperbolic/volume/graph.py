@@ -20,8 +20,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
 

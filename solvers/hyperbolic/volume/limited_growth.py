@@ -6,9 +6,8 @@ import math
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.elementary import exp, log
-from meshonet.geometry.polygon.corners import Indices
 
 _MARGIN = 1e-3
 """Part of the logarithm of the ratio that is kept for chords, which are shorter than lines."""

@@ -19,12 +19,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import BadCell, NoValidGridError
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, measure_volumes, worst_solids
 from meshonet.geometry.surface.hollows import Hollows, hollows_of
 from meshonet.geometry.surface.planes import Plane

@@ -14,9 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.surface.planes import FLAT, Plane, edges_in
 from meshonet.geometry.surface.surface import Surface
 

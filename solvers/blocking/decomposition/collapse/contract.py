@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, distinct
+from meshonet.geometry.arrays import Bools, Indices, distinct
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import joined_classes
 from meshonet.solvers.blocking.decomposition.quads.padding import wrong_count
 from meshonet.solvers.blocking.decomposition.quads.quad_mesh import conforms

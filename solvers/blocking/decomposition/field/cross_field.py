@@ -10,10 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, Indices
 from meshonet.geometry.elementary import angle, exp, modulus
 from meshonet.geometry.errors import SolverError
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.field.singular_pairs import without_pairs
 from meshonet.solvers.blocking.decomposition.field.wall_directions import (
     QUARTER,

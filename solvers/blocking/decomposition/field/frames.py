@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, middle
+from meshonet.geometry.arrays import Bools, Floats, Indices, middle
 from meshonet.geometry.elementary import angle, exp, times
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import surface_comb, surface_prune
 from meshonet.solvers.blocking.decomposition.field.cross_field import CrossField
 from meshonet.solvers.blocking.decomposition.field.wall_directions import QUARTER

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, Indices
 from meshonet.geometry.elementary import exp, modulus, times
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import joined_classes
 from meshonet.solvers.blocking.decomposition.field.frames import Frames
 from meshonet.solvers.blocking.decomposition.surface.surface import NEXT

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes
+from meshonet.geometry.arrays import Complexes, Indices
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.field.cross_field import cross_field
 from meshonet.solvers.blocking.decomposition.field.frames import cut_frames, frame_sizes
 from meshonet.solvers.blocking.decomposition.field.parametrisation import Parametrisation

@@ -17,9 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats, complex_of
+from meshonet.geometry.arrays import Complexes, Floats, Indices, complex_of
 from meshonet.geometry.elementary import angle, exp, modulus, product, times
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.surface.laplacian import Laplacian
 from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, Triangulation
 from meshonet.solvers.sparse import Factor

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Complexes, Floats
+from meshonet.geometry.arrays import Bools, Complexes, Floats, Indices
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import angle as angle_of
 from meshonet.geometry.elementary import exp, tan, times
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, Triangulation
 
 QUARTER = 0.5 * np.pi  # symmetry of the field, radians

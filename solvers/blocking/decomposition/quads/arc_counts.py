@@ -13,9 +13,8 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry import ties
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.elementary import product
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.quads.t_mesh import TMesh
 

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import distinct
+from meshonet.geometry.arrays import Indices, distinct
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.quads.padding import INSET
 
 

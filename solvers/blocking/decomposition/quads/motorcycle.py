@@ -12,8 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.kernels._native import joined_classes, probe_rays, trace_rays
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap

@@ -15,10 +15,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, distinct
+from meshonet.geometry.arrays import Bools, Floats, Indices, distinct
 from meshonet.geometry.layout.periodic_sides import following
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 
 INSET = 0.25
 """Displacement of old wall nodes into the domain, relative to the shorter adjacent edge."""

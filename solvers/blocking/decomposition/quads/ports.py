@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Bools
+from meshonet.geometry.arrays import Bools, Indices
 from meshonet.geometry.elementary import angle, times
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
 
 QUARTER = np.pi / 2  # angle between coordinate lines, radians

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of
+from meshonet.geometry.arrays import Complexes, Floats, Indices, complex_of, pairs_of
 from meshonet.geometry.elementary import modulus
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.algebraic.tfi import interpolate, parameters
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap

@@ -12,8 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.quads.motorcycle import MotorcycleGraph
 

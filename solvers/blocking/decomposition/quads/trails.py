@@ -8,9 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats, complex_of
+from meshonet.geometry.arrays import Complexes, Floats, Indices, complex_of
 from meshonet.geometry.elementary import modulus, times
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.polygon.corners import Indices, angle_between
+from meshonet.geometry.polygon.corners import angle_between
 from meshonet.kernels._native import wall_gaps, wall_growth
 
 GROWTH = 0.35

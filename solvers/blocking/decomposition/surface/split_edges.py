@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.arrays import Indices
 from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIOUS, Triangulation
 
 

@@ -10,11 +10,10 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Complexes, Floats, complex_of
+from meshonet.geometry.arrays import Bools, Complexes, Floats, Indices, complex_of
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.elementary import angle, modulus, times
 from meshonet.geometry.errors import SolverError
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import surface_fans
 
 NEXT = np.array([1, 2, 0])  # corner of a triangle after each

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import DelaunayMesh
 from meshonet.solvers.blocking.decomposition.surface.sizes import GROWTH, WallSizes, place_nodes, wall_sizes
 from meshonet.solvers.blocking.decomposition.surface.surface import Triangulation

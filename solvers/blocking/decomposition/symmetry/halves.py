@@ -12,12 +12,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, along_and_across, distinct
+from meshonet.geometry.arrays import Bools, Floats, Indices, along_and_across, distinct
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.quads.padding import Span
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror

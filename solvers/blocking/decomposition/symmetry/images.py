@@ -6,9 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import distinct, norms
+from meshonet.geometry.arrays import Indices, distinct, norms
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import nearest_points
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import (
     Mirror,

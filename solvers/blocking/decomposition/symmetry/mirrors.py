@@ -14,10 +14,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, along_and_across, norms
+from meshonet.geometry.arrays import Floats, Indices, along_and_across, norms
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.polygon.corners import Indices
 
 SAME = 1e-7
 """Largest distance of a symmetric boundary from its mirror image, relative to the extent. Drawings that are
