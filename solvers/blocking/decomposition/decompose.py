@@ -116,9 +116,12 @@ def _found(
     """Return the blocks of a domain by the first attempt that comes to any."""
     problem: SolverError | None = None
     for attempt in range(ATTEMPTS):
-        finer = int(count * (1.0 + 0.3 * attempt)), int(cells * (1.0 + 0.5 * attempt))
+        finer_count, finer_cells = int(count * (1.0 + 0.3 * attempt)), int(cells * (1.0 + 0.5 * attempt))
         try:
-            mesh = _quad_mesh(domain, *finer, attempt, timings, sizes)
+            with stage("map", timings):
+                seamless = seamless_map(domain, finer_count, seed=attempt, fewer=attempt < FEWER)
+            with stage("quad mesh", timings):
+                mesh = quad_mesh(seamless, finer_cells, sizes)
             if len(mesh.quads) > MOST and len(base_complex(mesh).blocks) > MOST:
                 break
             blocks = _blocks(mesh, price, timings, sizes, spans if attempt < PADDED else ())
@@ -185,13 +188,3 @@ def _optimised(mesh: QuadMesh, iterations: int, sizes: SizeMetric | None) -> Qua
     if not optimum.valid or not np.isfinite(optimum.value):
         raise BlockingError(f"the quad mesh stays folded {most_folded(optimum.mesh)}")
     return optimum.mesh
-
-
-def _quad_mesh(
-    domain: Domain, count: int, cells: int, seed: int, timings: Timings, sizes: SizeMetric | None
-) -> QuadMesh:
-    """Return a quad mesh along a cross field."""
-    with stage("map", timings):
-        seamless = seamless_map(domain, count=count, seed=seed, fewer=seed < FEWER)
-    with stage("quad mesh", timings):
-        return quad_mesh(seamless, cells=cells, sizes=sizes)

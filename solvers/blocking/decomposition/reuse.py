@@ -9,7 +9,7 @@ loops, then by a harmonic displacement that removes the rest (Helenbrook, Int. J
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -38,7 +38,7 @@ def carried_over(layout: Layout, domain: Domain) -> Layout:
     loop, arc, nodes = places.loop.copy(), places.arc.copy(), mesh.nodes.copy()
     for old, new in pairs.items():
         on = np.flatnonzero(places.loop == old)
-        arc[on] = _Way.between(mesh.domain.loops[old], domain.loops[new]).carried(places.arc[on])
+        arc[on] = _carried(mesh.domain.loops[old], domain.loops[new], places.arc[on])
         loop[on] = new
         nodes[on] = domain.loops[new].at(arc[on])
     on_loops = places.loop >= 0
@@ -73,32 +73,21 @@ def _by_name(holes: tuple[Loop, ...]) -> dict[tuple[str, ...], int]:
     return numbers if len(numbers) == len(holes) else {}
 
 
-@dataclass(frozen=True)
-class _Way:
-    """Arc lengths that belong together on two loops, ascending, one time around from the first."""
+def _carried(old: Loop, new: Loop, arc: Floats) -> Floats:
+    """Return the arc lengths (n,) on the new loop of those on the old one, `arc` (n,).
 
-    old: Floats
-    new: Floats
-    lengths: tuple[float, float]
-
-    @classmethod
-    def between(cls, old: Loop, new: Loop) -> _Way:
-        """Return the arc lengths of corners that belong together, or of where loops without them begin."""
-        lengths = old.length, new.length
-        if old.corners:
-            begins = old.corner_arcs, _around(new.corner_arcs, _corner_shift(old, new), lengths[1])
-        else:
-            begins = np.zeros(1), np.array([_begin(old, new)])
-        first, second = (
-            np.append(arcs, arcs[0] + length) for arcs, length in zip(begins, lengths, strict=True)
-        )
-        return cls(first, second, lengths)
-
-    def carried(self, arc: Floats) -> Floats:
-        """Return the arc lengths on the new loop of those on the old one."""
-        ahead = self.old[0] + np.mod(arc - self.old[0], self.lengths[0])
-        new = np.mod(np.interp(ahead, self.old, self.new), self.lengths[1])
-        return np.where(new >= self.lengths[1], 0.0, new)
+    Corners correspond to corners, of loops without them the places where they begin.
+    """
+    if old.corners:
+        begins = old.corner_arcs, _around(new.corner_arcs, _corner_shift(old, new), new.length)
+    else:
+        begins = np.zeros(1), np.array([_begin(old, new)])
+    ours, theirs = (
+        np.append(arcs, arcs[0] + loop.length) for arcs, loop in zip(begins, (old, new), strict=True)
+    )
+    ahead = ours[0] + np.mod(arc - ours[0], old.length)
+    places = np.mod(np.interp(ahead, ours, theirs), new.length)
+    return np.where(places >= new.length, 0.0, places)
 
 
 def _around(arcs: Floats, shift: int, length: float) -> Floats:
