@@ -126,8 +126,8 @@ def columns_on_blade(tuple tables, wall, double first, columns):
     """Put `columns` (n, rows, 3) of s, theta, h on the blade at `wall` (n, 2), first cells `first` high; see ``blade.h``."""
     cdef Channel channel = channel_of(tables)
     cdef ptrdiff_t n = columns.shape[0], rows = columns.shape[1]
-    if rows < 3:
-        raise ValueError("columns of fewer than 3 nodes")
+    if rows < 2:
+        raise ValueError("columns of one node")
     cdef Read w = reads(wall, (n, 2))
     cdef Written to = fills(columns, (n, rows, 3))
     with nogil:

@@ -6,6 +6,8 @@ import blade_row
 import numpy as np
 import pytest
 import radial_rows
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
@@ -47,6 +49,28 @@ def test_a_profile_is_met_at_its_height() -> None:
     away = np.hypot(lines[:, 0] - s[:, None], lines[:, 1] - theta[:, None])
     assert away.min(axis=1).max() < 5e-4  # half the distance of the samples
     assert lines[:, 2].min() == pytest.approx(h.min(), abs=1e-5)
+
+
+def test_sections_are_where_splines_through_profiles_reach_a_height_and_straight_beyond() -> None:
+    surface = blade_row.blade_row().surface
+    u, knots = np.linspace(0.02, 0.97, 23), surface.knots
+    values = np.stack([profile.at(u) for profile in surface.profiles])
+    heights = np.array([knots[0] - 0.02, *np.linspace(knots[0], knots[-1], 7), knots[-1] + 0.02])
+    sections = surface.at(u, np.repeat(heights[:, None], len(u), axis=1))
+    for column, lines in enumerate(values.swapaxes(0, 1)):
+        spline = CubicSpline(knots, lines, bc_type="not-a-knot")
+        met = [crossing(spline, height) for height in heights]
+        assert sections[:, column] == pytest.approx(np.array(met), abs=1e-12)
+
+
+def crossing(spline: CubicSpline, height: float) -> np.ndarray:
+    """Return s, theta where a line (s, theta, h), straight beyond its knots, has a height."""
+
+    def line(place: float) -> np.ndarray:
+        inside = np.clip(place, spline.x[0], spline.x[-1])
+        return spline(inside) + (place - inside) * spline(inside, 1)
+
+    return line(brentq(lambda place: line(place)[2] - height, height - 0.1, height + 0.1, xtol=1e-15))[:2]
 
 
 @pytest.mark.parametrize(

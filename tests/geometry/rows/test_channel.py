@@ -33,6 +33,33 @@ def test_places_in_space_are_those_of_the_meridional_plane_turned_about_the_axis
     np.testing.assert_allclose(space, np.stack([x, r * np.sin(theta), r * np.cos(theta)], -1), atol=1e-14)
 
 
+def test_columns_on_the_blade_begin_there_with_exact_first_cells_and_keep_their_ends() -> None:
+    channel = Channel(blade_row.HUB, blade_row.SHROUD, 0.01, 0.03)
+    rng = np.random.default_rng(3)
+    start, way = rng.uniform(0.3, 0.6, (4, 31, 1, 3)), rng.uniform(0.5, 1.0, (4, 31, 1, 3))
+    given = start + np.linspace(0.0, 0.05, 9)[:, None] ** 1.5 * way
+    wall, columns = given[:, :, 0, :2] + rng.uniform(-1e-4, 1e-4, (4, 31, 2)), given.copy()
+    channel.put_on_blade(columns, wall, 2e-3)
+    np.testing.assert_allclose(
+        columns[:, :, 0], np.concatenate([wall, given[:, :, 0, 2:]], axis=-1), rtol=1e-15
+    )
+    space = channel.in_space(columns)
+    np.testing.assert_allclose(np.linalg.norm(space[:, :, 1] - space[:, :, 0], axis=-1), 2e-3, rtol=1e-9)
+    assert (columns[:, :, -1] == given[:, :, -1]).all()
+    assert (np.diff(columns[..., 2], axis=2) > 0.0).all()
+
+
+def test_nodes_are_stored_at_their_numbers() -> None:
+    channel = Channel(blade_row.HUB, blade_row.SHROUD)
+    values, ids = np.random.default_rng(4).uniform(0.0, 1.0, (3, 70, 3)), 2 * np.arange(70)[::-1]
+    space = np.zeros((3, 140, 3))
+    channel.store(values, ids, space)
+    assert (space[:, ids] == channel.in_space(values)).all()
+    assert (space[:, 1::2] == 0.0).all()
+    with pytest.raises(ValueError, match="out of range"):
+        channel.store(values, ids + 2, space)
+
+
 def test_gaps_are_as_wide_everywhere_measured_at_right_angles_to_the_wall() -> None:
     channel = Channel(cone(1.0, 1.3), cone(2.0, 1.6), 0.02, 0.05)
     s = np.linspace(0.1, 0.9, 50)
