@@ -25,9 +25,7 @@ from meshonet.solvers.aircraft.body_plane import WING_PATCHES, level_patches
 from meshonet.solvers.aircraft.exact_cells import at_height, between_walls
 from meshonet.solvers.aircraft.plan import GROWTH, AircraftPlan, plan_of
 from meshonet.solvers.aircraft.request import AircraftRequest
-from meshonet.solvers.aircraft.tip_fill import tip_patches
 from meshonet.solvers.aircraft.wall_normals import off_body, off_tip, off_wing
-from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.blocking.layers.attach import sampled
 from meshonet.solvers.rows.columns import arcs_of, resampled, with_first
 from meshonet.solvers.rows.span_lines import SpanLines
@@ -63,7 +61,7 @@ def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, t
     table = np.stack([np.concatenate([patch.reshape(-1, 3) for patch in level]) for level in levels])
     rings = _rings(shapes, len(plan.wings))
     beside = _along_wings(space, plan, table, rings, first, growth)
-    caps = [cap for wing in plan.wings for cap in _cap(space, wing, first)]
+    caps = [space.places(patch) for tip in plan.tips for patch in tip]
     tip = np.concatenate([beside[-1], *(patch.reshape(-1, 3) for patch in caps)])
     beyond = _beyond_tip(space, tip, first, growth)
     shapes += [patch.shape[:2] for patch in caps]
@@ -173,12 +171,6 @@ def _resampled(lines: Floats, arcs: Floats, ends: Ends, growth: float, cells: in
     """Return places (p, cells + 1, 3) on lines (p, k, 3) with `arcs` (p, k), at those of `two_sided`."""
     wanted = two_sided(arcs[:, -1], ends, growth, cells)
     return sampled(lines, arcs, np.minimum(wanted, arcs[:, -1:]))
-
-
-def _cap(space: BodyMap, wing: WingLines, first: float) -> list[Floats]:
-    """Return the patches (ni, nj, 3) of s, theta, zeta that fill the last section: a ring and a core."""
-    loop = wing.points(np.ones((1, len(wing.roots))))[0]
-    return [space.places(patch) for patch in tip_patches(loop, first)]
 
 
 def _beyond_tip(space: BodyMap, tip: Floats, first: float, growth: float) -> Floats:

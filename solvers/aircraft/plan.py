@@ -14,6 +14,7 @@ from meshonet.solvers.aircraft.body_plane import LevelPlan, planned
 from meshonet.solvers.aircraft.collar_level import Hole
 from meshonet.solvers.aircraft.holes import holes_of
 from meshonet.solvers.aircraft.request import AircraftRequest
+from meshonet.solvers.aircraft.tip_fill import tip_patches
 from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.rows.span_lines import key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, spaced_cells
@@ -38,6 +39,7 @@ class AircraftPlan:
     sections : of each wing, (SAMPLES, n, 3) s, theta and zeta around it on the key levels.
     holes : of each wing, on the key levels.
     levels : counts that levels share.
+    tips : of each wing, nodes (m, k, 3) of the ring and of the core that fill its last section.
     span, beyond : cells from the body to the tips, and from there to the far field.
     halves : 2 if the grid has both halves of the aircraft, else 1.
     """
@@ -46,6 +48,7 @@ class AircraftPlan:
     sections: tuple[Floats, ...]
     holes: tuple[tuple[Hole, ...], ...]
     levels: LevelPlan
+    tips: tuple[tuple[Floats, Floats], ...]
     span: int
     beyond: int
     halves: int
@@ -71,8 +74,9 @@ class AircraftPlan:
         length = max(wing.length for wing in wings)
         span = spaced_cells(length, (first, first), growth, length / (request.span - 1), 8)
         beyond = cells_for_growth(first, request.far_field * chord, growth)
+        tips = tuple(tip_patches(wing.points(np.ones((1, len(wing.roots))))[0], first) for wing in wings)
         halves = 1 if aircraft.half else 2
-        return cls(tuple(wings), tuple(sections), tuple(holes), levels, span, beyond, halves)
+        return cls(tuple(wings), tuple(sections), tuple(holes), levels, tips, span, beyond, halves)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -81,16 +85,16 @@ class AircraftPlan:
 
     @property
     def cells(self) -> int:
-        """About how many cells there will be; sections of wings beyond their tips are left out."""
+        """About how many cells there will be."""
         around, columns = self.sections[0].shape[1] - 1, 0
         for each in self.levels.collars:
             columns += around * each.rows + (around // 2 - each.edge - each.nose) * each.bands
         for each, cells in zip(self.levels.collars, self.levels.between, strict=False):
             columns += cells * (2 * each.edge + each.bands)
         for end in self.levels.ends:
-            a, b = end.core.nodes.shape[:2]
-            columns += (len(end.theta) - 1) * (len(end.core.rows) - 1 + end.cells) + (a - 1) * (b - 1)
-        return self.halves * columns * (self.span + self.beyond)
+            columns += (len(end.theta) - 1) * (len(end.core.rows) - 1 + end.cells) + _cells(end.core.nodes)
+        filled = sum(_cells(patch) for tip in self.tips for patch in tip)
+        return self.halves * (columns * (self.span + self.beyond) + filled * self.beyond)
 
 
 def plan_of(
@@ -111,6 +115,10 @@ def plan_of(
         return plan, plan.notes
     note = f"layers need about {plan.cells} cells, more than {request.cells}"
     return plan, (*plan.notes, note)
+
+
+def _cells(patch: Floats) -> int:
+    return (patch.shape[0] - 1) * (patch.shape[1] - 1)
 
 
 def _on_keys(space: BodyMap, wing: WingLines) -> Floats:
