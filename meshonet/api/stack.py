@@ -29,10 +29,9 @@ def stack(
     surface : bool, optional
         Return the patches of the surface instead of a volume.
     **parameters
-        Fields of `meshonet.StackRequest`, such as ``around``, ``span``, ``first_cell``, ``y_plus``,
-        ``reynolds``, ``layers``, ``growth``, ``far_field``; for a row those
-        of `meshonet.RowRequest`: ``first_cell``, ``y_plus``, ``reynolds``, ``growth``, ``cells``;
-        an aircraft takes ``cells`` too, in place of ``around``.
+        Fields of `meshonet.StackRequest`, such as ``around``, ``span``, ``cells``, ``first_cell``,
+        ``y_plus``, ``reynolds``, ``layers``, ``growth``, ``far_field``; for a row those
+        of `meshonet.RowRequest`: ``first_cell``, ``y_plus``, ``reynolds``, ``growth``, ``cells``.
 
     Returns
     -------

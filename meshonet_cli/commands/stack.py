@@ -54,9 +54,9 @@ def stack(
     )] = None,
     cells: Annotated[int | None, _sampling(
         "--cells", metavar="N",
-        help="Approximate number of cells in a passage of a blade row, or around an aircraft instead of "
-        "--around. "
-        "[default: 500000 in a blade row]",
+        help="Approximate number of cells: around a wing or blade instead of --around and --span or one of "
+        "them, around an aircraft instead of --around, or in a passage of a blade row. [default: 500000 in a "
+        "blade row]",
     )] = None,
     copies: Annotated[int | None, _sampling(
         "--copies", metavar="K", min=1,

@@ -72,7 +72,7 @@ class AircraftPlan:
         known = [[each[k] for k in _PLANNED] for each in holes]
         levels = planned(known, aircraft.body.length, first, growth)
         length = max(wing.length for wing in wings)
-        span = spaced_cells(length, (first, first), growth, length / (request.span - 1), 8)
+        span = spaced_cells(length, (first, first), growth, length / (request.surface.span - 1), 8)
         beyond = cells_for_growth(first, request.far_field * chord, growth)
         tips = tuple(tip_patches(wing.points(np.ones((1, len(wing.roots))))[0], first) for wing in wings)
         halves = 1 if aircraft.half else 2
@@ -105,7 +105,7 @@ def plan_of(
     Raises InputError: as `AircraftPlan.of`.
     """
     if request.cells is None:
-        plan = AircraftPlan.of(aircraft, request, space, request.around)
+        plan = AircraftPlan.of(aircraft, request, space, request.surface.around)
         return plan, plan.notes
     few, many = (AircraftPlan.of(aircraft, request, space, nodes) for nodes in _TRIED)
     slope = (many.cells - few.cells) / (_TRIED[1] - _TRIED[0])

@@ -1,9 +1,9 @@
-"""Options of the grid of an aircraft: those of a stack that it has a use for, and its number of cells."""
+"""Options of the grid of an aircraft: those of a stack that it has a use for."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.keywords import refuse_given, request_from
@@ -11,31 +11,13 @@ from meshonet.solvers.stacking.request import StackRequest
 
 _OTHERS = ("layers", "revolve", "axis", "copies")
 """Options of other stacks."""
-_FEWEST_CELLS, _MOST_CELLS = 20_000, 200_000_000
 
 
 @dataclass(frozen=True)
 class AircraftRequest(StackRequest):
-    """Options of the grid of an aircraft: those of `StackRequest`, and its number of cells.
+    """Options of the grid of an aircraft: those of `StackRequest`, where `cells` are in place of `around`."""
 
-    Parameters
-    ----------
-    cells : int, optional
-        About how many cells there are, in place of `around`.
-
-    Raises
-    ------
-    InputError
-        As `StackRequest`, or a number of cells out of range.
-    """
-
-    cells: int | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.cells is not None and not _FEWEST_CELLS <= self.cells <= _MOST_CELLS:
-            remedy = f"use {_FEWEST_CELLS} to {_MOST_CELLS}"
-            raise InputError(f"{self.cells} cells", remedy, parameter="cells")
+    fewest_cells: ClassVar[int] = 20_000
 
 
 def aircraft_request(**parameters: Any) -> AircraftRequest:

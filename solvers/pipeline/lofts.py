@@ -45,10 +45,9 @@ def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, 
     Raises InputError: node counts that are too small; NoValidGridError: the grid of a section has folded
     cells.
     """
-    plan = around(request.around, gap=request.base, edge=stack.te_spacing, nose=stack.le_spacing)
+    plan = around(request.surface.around, gap=request.base, edge=stack.te_spacing, nose=stack.le_spacing)
     height = request.height() * stack.chord
-    least = height / stack.chord
-    rows = request.layers or 1 + cells_for_growth(least, request.far_field, request.growth or GROWTH)
+    rows = 1 + blade_rows(request)
     planes, notes = [], []
     for section in stack.sections:
         nodes, note = unit_nodes(section, plan)
@@ -63,10 +62,17 @@ def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, 
     planes = [
         plane.with_nodes(each) for plane, each in zip(planes, _alike_far_away(nodes_of, weight), strict=True)
     ]
-    grid = _lofted(stack, planes, request.span, (("hub", "wall"), ("shroud", "wall")), weight.ravel())
+    grid = _lofted(stack, planes, request.surface.span, (("hub", "wall"), ("shroud", "wall")), weight.ravel())
     named = [replace(p, name="blade", kind="wall") if p.name == "wall" else p for p in grid.patches]
     changes = dict.fromkeys(note for note in notes if note)
     return replace(grid, patches=tuple(named)), (*stack.notes, *changes)
+
+
+def blade_rows(request: StackRequest) -> int:
+    """Return the number of cells along each line away from a blade."""
+    if request.layers:
+        return request.layers - 1
+    return cells_for_growth(request.height(), request.far_field, request.growth or GROWTH)
 
 
 def _alike_far_away(grids: Floats, weight: Floats) -> Floats:
@@ -101,7 +107,9 @@ def duct_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, .
     first = request.height() * stack.chord if chosen else None
     single = all(section.shape.topology == "quad" for section in stack.sections)  # type: ignore[union-attr]
     planes = _four_sided(stack, request, first) if single else _five_blocks(stack, request, first)
-    return _lofted(stack, planes, request.span, (("inlet", "inlet"), ("outlet", "outlet"))), stack.notes
+    return _lofted(
+        stack, planes, request.surface.span, (("inlet", "inlet"), ("outlet", "outlet"))
+    ), stack.notes
 
 
 def _four_sided(stack: Stack, request: StackRequest, first: float | None) -> list[Grid]:
@@ -138,12 +146,12 @@ def _five_blocks(stack: Stack, request: StackRequest, first: float | None) -> li
 
 def _side(request: StackRequest) -> int:
     """Return the number of cells along a quarter of a section."""
-    if (request.around - 1) % 4:
+    if (request.surface.around - 1) % 4:
         remedy = "use a multiple of 4, and one more"
         raise InputError(
-            f"{request.around} nodes around the four sides of a duct", remedy, parameter="around"
+            f"{request.surface.around} nodes around the four sides of a duct", remedy, parameter="around"
         )
-    return (request.around - 1) // 4
+    return (request.surface.around - 1) // 4
 
 
 def _unit(plane: Grid, section: Section) -> Grid:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
@@ -11,12 +12,17 @@ from meshonet.geometry.blocks.revolve import bent
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.threads import limited_to
+from meshonet.solvers.keywords import refuse_given
 from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.pipeline.wall_facts import wall_facts
 from meshonet.solvers.solution import Solution
+from meshonet.solvers.stacking.cell_count import with_counts
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.wing_surface import wing_surface
 from meshonet.solvers.stages import stage
+
+if TYPE_CHECKING:
+    from meshonet.solvers.hyperbolic.volume.settings import VolumeMarch
 
 _REMEDY = "use more nodes {around}, a larger {first_cell} or a higher {base}"  # where cells fold
 
@@ -28,8 +34,10 @@ def stack_surface(stack: Stack, request: StackRequest | None = None) -> tuple[Gr
     """
     if stack.kind == "duct":
         raise InputError("a duct has no surface of its own", "leave {surface} out", parameter="surface")
+    request, more = _counted(stack, request or StackRequest())
     shown = stack if stack.kind == "wing" else replace(stack, tip="open")
-    return wing_surface(shown, (request or StackRequest()).surface)
+    grid, notes = wing_surface(shown, request.surface)
+    return grid, (*notes, *more)
 
 
 def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
@@ -42,8 +50,39 @@ def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
     seconds: dict[str, float] = {}
     with limited_to(request.threads):
         make = _wing if stack.kind == "wing" else _loft
-        solution = make(stack, request, seconds)
+        counted, notes = _counted(stack, request)
+        solution = make(stack, counted, seconds)
+        if request.cells is not None and stack.kind == "wing":
+            rows = solution.grid.blocks[0].counts[2] - 1
+            again, notes = with_counts(stack, request, request.cells, rows)
+            if again != counted:  # lines that diverge have more layers than was known beforehand
+                solution = make(stack, again, seconds)
+        solution = replace(solution, notes=(*solution.notes, *notes))
         return judged(solution, seconds, request, remedy=_REMEDY)
+
+
+def _counted(stack: Stack, request: StackRequest) -> tuple[StackRequest, tuple[str, ...]]:
+    """Return the request with the nodes that its number of cells needs, if it has one, and notes."""
+    if request.cells is None:
+        return request, ()
+    if stack.kind == "duct":
+        refuse_given("a duct", {"cells": request.cells})
+    if stack.kind == "blade":
+        from meshonet.solvers.pipeline.lofts import blade_rows
+
+        return with_counts(stack, request, request.cells, blade_rows(request))
+    return with_counts(stack, request, request.cells, len(_march(stack, request).steps(stack.chord)))
+
+
+def _march(stack: Stack, request: StackRequest) -> VolumeMarch:
+    """Return the settings of the march from the surface of a wing."""
+    from meshonet.solvers.hyperbolic.volume.settings import VolumeMarch
+
+    chord = stack.chord
+    return VolumeMarch(
+        first_cell=request.height() * chord, layers=request.layers, far_field=request.far_field * chord,
+        symmetry="z", growth=request.growth,
+    )  # fmt: skip
 
 
 def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
@@ -68,15 +107,12 @@ def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
         raise InputError(problem, "leave {revolve} out, or make a blade or duct", parameter="revolve")
     with stage("load", seconds):
         from meshonet.geometry.surface.surface import surface_of
-        from meshonet.solvers.hyperbolic.volume.march import VolumeMarch, march_surface
+        from meshonet.solvers.hyperbolic.volume.march import march_surface
     with stage("boundary", seconds):
         grid, notes = wing_surface(stack, request.surface)
         surface = surface_of(grid)
     chord = stack.chord
-    settings = VolumeMarch(
-        first_cell=request.height() * chord, layers=request.layers, far_field=request.far_field * chord,
-        symmetry="z", growth=request.growth,
-    )  # fmt: skip
+    settings = _march(stack, request)
     with stage("grid", seconds):
         solution = march_surface(surface, settings, wing=True)
     note = request.height_note(f"on a chord of {chord:.6g}", scale=chord)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from meshonet.geometry.blocks.revolve import AxisLine, Revolution, revolution
 from meshonet.geometry.errors import InputError
@@ -13,6 +13,7 @@ from meshonet.solvers.keywords import request_from
 from meshonet.solvers.stacking.section_nodes import GAP
 from meshonet.solvers.stacking.wing_surface import DEFAULT_AROUND, DEFAULT_SPAN, WingSurface
 
+MOST_CELLS = 200_000_000
 DEFAULT_FIRST_CELL, DEFAULT_FAR_FIELD = 1e-3, 15.0  # chords
 
 
@@ -23,9 +24,12 @@ class StackRequest(FirstCell):
     Parameters
     ----------
     around : int, optional
-        Number of nodes around a section, including the repeated first one; odd.
+        Number of nodes around a section, including the repeated first one; odd. None is 129.
     span : int, optional
-        Number of nodes from the first section to the last.
+        Number of nodes from the first section to the last. None is 49.
+    cells : int, optional
+        Approximate number of cells of the volume around a wing or blade, in place of `around` and `span` or
+        of one of them.
     base : float, optional
         Smallest height of trailing edges, in chords of their section.
     first_cell : float, optional
@@ -56,8 +60,10 @@ class StackRequest(FirstCell):
         A value out of its range; parameters that need or exclude each other.
     """
 
-    around: int = DEFAULT_AROUND
-    span: int = DEFAULT_SPAN
+    fewest_cells: ClassVar[int] = 1000
+    around: int | None = None
+    span: int | None = None
+    cells: int | None = None
     base: float = GAP
     layers: int | None = None
     growth: float | None = None
@@ -84,6 +90,9 @@ class StackRequest(FirstCell):
         turn = self.turn
         if turn is not None and turn.closed:
             raise InputError("a whole turn", "use less than 360", parameter="revolve")
+        if self.cells is not None and not self.fewest_cells <= self.cells <= MOST_CELLS:
+            remedy = f"use {self.fewest_cells} to {MOST_CELLS}"
+            raise InputError(f"{self.cells} cells", remedy, parameter="cells")
         if self.threads is not None and self.threads < 1:
             raise InputError(f"{self.threads} threads", "use 1 or more", parameter="threads")
 
@@ -95,7 +104,7 @@ class StackRequest(FirstCell):
     @property
     def surface(self) -> WingSurface:
         """Node counts of the surface."""
-        return WingSurface(self.around, self.span, self.base)
+        return WingSurface(self.around or DEFAULT_AROUND, self.span or DEFAULT_SPAN, self.base)
 
     def height(self, unit: float = 1.0) -> float:
         """Return the first-cell height in chords; `unit` is the reference length of a y+, in chords."""

@@ -54,6 +54,10 @@ class Cap:
     rows: int = ROWS
     bulge: float = 1.0
 
+    def cells(self, nodes: int) -> int:
+        """Return the number of cells of ring and core for so many nodes around the section."""
+        return (nodes - 1) * self.rows + (nodes // 2 - 2 * self.short) * 2 * self.short
+
     def patches(self, loop: Floats) -> tuple[Floats, Floats]:
         """Return nodes of the ring (n, rows + 1, 3) and of the core (n // 2 - 2 short + 1, 2 short + 1, 3).
 

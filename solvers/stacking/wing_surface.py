@@ -67,7 +67,7 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
     plan = around(settings.around, gap=settings.base, edge=stack.te_spacing, nose=stack.le_spacing)
     units, notes = zip(*(unit_nodes(section, plan) for section in stack.sections), strict=True)
     unit = np.stack(units)
-    cap = None if stack.tip == "open" else Cap(BASE_CELLS // 2, bulge=1.0 if stack.tip == "round" else 0.0)
+    cap = cap_of(stack)
     last = stack.lofted(unit, stack.z[-1:])[0]
     tip = cap.patches(last) if cap else None
     main = _lofted(stack, unit, tip[0] if tip else None, settings.span)
@@ -85,6 +85,11 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
     zones = {"zones": ("wing", "tip", "tip")[: len(blocks)]}
     grid = Grid(tuple(blocks), tuple(patches), tuple(connections), stack.name, zones)
     return grid, (*stack.notes, *dict.fromkeys(note for note in notes if note))
+
+
+def cap_of(stack: Stack) -> Cap | None:
+    """Return the cap of the tip of a wing, or None where the tip is open."""
+    return None if stack.tip == "open" else Cap(BASE_CELLS // 2, bulge=1.0 if stack.tip == "round" else 0.0)
 
 
 def _tip_cells(ring: Floats) -> Floats:

@@ -1,5 +1,6 @@
 """``meshonet stack``: from sections in TOML to volumes and surfaces."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -44,6 +45,57 @@ def test_a_wing_is_valid_with_its_names_first_cells_and_far_field(meshonet: Mesh
     assert np.concatenate([each.ravel() for each in first]) == pytest.approx(0.004, rel=1e-9)
     far = grid.blocks[0].nodes[:, :, -1]
     assert np.linalg.norm(far - [1.0, 0.0, 1.5], axis=-1).min() > 20.0
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "--cells 30000",
+        "--cells 60000 --growth 1.4",
+        "--cells 25000 --around 65 --tip open",
+        "--cells 30000 --span 21 --layers 20",
+    ],
+)
+def test_cells_of_a_wing_are_about_those_wanted(meshonet: Meshonet, wing: Path, words: str) -> None:
+    done = meshonet("stack", str(wing), *words.split(), "--first-cell", ".01", "-o", "w.h5")
+    assert done.code == 0, done.err
+    (grid,) = read_grids("w.h5")
+    made = sum(int(np.prod(np.array(block.counts) - 1)) for block in grid.blocks)
+    assert made == pytest.approx(int(words.split()[1]), rel=0.1)
+    counts = grid.blocks[0].counts
+    for option, kept in (("--around", counts[0]), ("--span", counts[1]), ("--layers", counts[2])):
+        assert option not in words or f"{option} {kept}" in words
+    assert "cells in all" not in done.err
+
+
+def test_cells_of_a_wing_that_its_layers_exceed_are_noted_with_the_least(
+    meshonet: Meshonet, wing: Path
+) -> None:
+    words = ("--first-cell", "0.01", "--growth", "1.3", "-o", "w.h5", "--json")
+    few = meshonet("stack", str(wing), "--cells", "2000", *words).only
+    (note,) = (note for note in few["notes"] if "cells in all" in note)
+    match = re.fullmatch(r"(\d+) layers of cells need at least (\d+) cells in all, more than 2000", note)
+    assert match is not None
+    (grid,) = read_grids("w.h5")
+    assert sum(int(np.prod(np.array(block.counts) - 1)) for block in grid.blocks) == int(match[2])
+    assert {block.counts[2] - 1 for block in grid.blocks} == {int(match[1])}
+    enough = meshonet("stack", str(wing), "--cells", match[2], *words).only
+    assert not any("cells in all" in note for note in enough["notes"])
+
+
+def test_cells_of_blades_are_counted_and_those_of_ducts_are_not(meshonet: Meshonet, wing: Path) -> None:
+    Path("blade.toml").write_text('kind = "blade"\n' + SECTIONS)
+    assert meshonet("stack", "blade.toml", "--cells", "20000", "-o", "b.h5", "-q").code == 0
+    (grid,) = read_grids("b.h5")
+    assert int(np.prod(np.array(grid.blocks[0].counts) - 1)) == pytest.approx(20000, rel=0.1)
+    section = '[[sections]]\noutline = "circle:0.5"\nchord = {}\nz = {}\n'
+    Path("duct.toml").write_text('kind = "duct"\n' + section.format(1, 0) + section.format(1.6, 2))
+    for file, more, line in (
+        ("duct.toml", (), "a duct has no --cells; leave --cells out"),
+        (wing, ("--around", "65", "--span", "9"), "give two of them at most"),
+    ):
+        done = meshonet("stack", str(file), "--cells", "20000", *more, "-o", "none.h5")
+        assert (done.code, line in done.err, Path("none.h5").exists()) == (2, True, False)
 
 
 def test_changed_trailing_edges_are_told_and_y_plus_says_its_height(meshonet: Meshonet, wing: Path) -> None:
