@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.ties import first_least
 from meshonet.solvers.aircraft.collar import (
     Rectangle,
     collar,
@@ -32,7 +33,7 @@ _EVEN = 1.15
 WIDEST = 1.25
 """Growth of cells from a collar to nose, tail, keel and crown."""
 _STRAIGHT = 0.0, 0.3, 0.6, 1.0
-"""Shares of straight lines in collars that are tried, until no angle has a sine below the next number.
+"""Shares of straight lines in collars that are tried, until no angle has a sine below `_SINE`; else the best.
 
 Elliptic grids may fold at a thin trailing edge that lies far from the middle of the rectangle.
 """
@@ -68,6 +69,7 @@ class CollarPlan:
     low, top : cells from keel and crown to a collar.
     first : height of the cells at the wing.
     straight : of the lines of collars (`collar`).
+    sine : the least of an angle in them.
     """
 
     edge: int
@@ -77,6 +79,7 @@ class CollarPlan:
     top: int
     first: float
     straight: float = 0.0
+    sine: float = 1.0
 
     @property
     def bands(self) -> int:
@@ -95,11 +98,14 @@ def planned_collar(holes: list[Hole], first: float, growth: float) -> tuple[Coll
         away = float(lengths(plane, outer_loop(plane, box, (edge, nose))).max())
         last = min(outer_cells(box, (edge, nose)))
         plan = replace(plan, rows=max(plan.rows, smooth_cells(away, (first, last), growth, 4)))
+    tried: list[tuple[CollarPlan, list[CollarLevel]]] = []
     for straight in _STRAIGHT:
         plan = replace(plan, straight=straight)
         levels = [CollarLevel.of(plan, hole) for hole in holes]
-        if all(level.sine > _SINE for level in levels):
+        tried.append((replace(plan, sine=min(level.sine for level in levels)), levels))
+        if tried[-1][0].sine > _SINE:
             break
+    plan, levels = first_least(tried, lambda each: -each[0].sine)
     low, top = (
         max(smooth_cells(level.bands[k], (level.last[1 + k], None), WIDEST, FEWEST) for level in levels)
         for k in (0, 1)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import cells_for_growth
 from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.body_plane import LevelPlan, planned
@@ -25,6 +27,8 @@ _PLANNED = (0, 4, 8, 12, 16)
 """Key levels from which counts are taken."""
 _TRIED = 49, 97
 """Nodes around a wing by which others are found; the first is the fewest."""
+_ACUTE = math.radians(45.0)
+"""Angle of wing and body below which it is the reason why cells beside the root are folded."""
 _ENOUGH = 1.15
 """Cells over those wanted above which a note says so."""
 
@@ -58,7 +62,7 @@ class AircraftPlan:
         """Return the plan for `around` nodes around each wing.
 
         Raises InputError: a wing that does not begin inside the body or does not leave it; wings that are too
-        close to each other.
+        close to each other, or a root too close to keel or crown.
         """
         chord = aircraft.wing.chord
         first, growth = request.height() * chord, request.growth or GROWTH
@@ -71,6 +75,9 @@ class AircraftPlan:
         holes = holes_of(space, wings, sections)
         known = [[each[k] for k in _PLANNED] for each in holes]
         levels = planned(known, aircraft.body.length, first, growth)
+        for wing, each, made in zip(wings, sections, levels.collars, strict=True):
+            if made.sine <= 0.0 and not request.allow_invalid:
+                _refuse_acute(space, wing.name, each[0])
         length = max(wing.length for wing in wings)
         span = spaced_cells(length, (first, first), growth, length / (request.surface.span - 1), 8)
         beyond = cells_for_growth(first, request.far_field * chord, growth)
@@ -115,6 +122,20 @@ def plan_of(
         return plan, plan.notes
     note = f"layers need about {plan.cells} cells, more than {request.cells}"
     return plan, (*plan.notes, note)
+
+
+def _refuse_acute(space: BodyMap, name: str, root: Floats) -> None:
+    """Raise InputError for a wing whose `root` (n, 3) is so near to keel or crown that collars fold there."""
+    angles = np.minimum(root[:, 1], np.pi - root[:, 1])
+    least = int(angles.argmin())
+    if angles[least] < _ACUTE:
+        x, y, z = space.points(root[least])
+        angle = math.degrees(angles[least])
+        problem = (
+            f"the {name} meets the {space.body.name} at {angle:.0f} degrees, at x={x:.6g}, y={y:.6g}, "
+            f"z={z:.6g}, and cells between it and the plane of symmetry are folded"
+        )
+        raise InputError(problem, "move it towards the axis, or make its root thinner", place="wings")
 
 
 def _cells(patch: Floats) -> int:

@@ -1,5 +1,7 @@
 """Grids around a body with a wing: matched blocks, exact first cells, nodes on both surfaces."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from aircraft_shapes import aircraft, body, unclaimed_faces, wall
@@ -84,6 +86,15 @@ def test_a_wing_that_does_not_pierce_the_body_is_refused(z: float, span: float, 
     with pytest.raises(InputError, match=words) as error:
         aircraft_grid(Aircraft(body(), wing), SMALL)
     assert "x=" in str(error.value)
+
+
+def test_a_wing_that_meets_the_body_at_a_sharp_angle_is_refused_with_place_and_angle() -> None:
+    """Its upper side is 0.592 above the axis of a body of radius 0.6: arccos(0.592 / 0.6) is 9 degrees."""
+    near = aircraft(0.5, 1.0)
+    with pytest.raises(InputError, match=r"wing meets the fuselage at 9 degrees, at x=.*, y=0\.692.*, z="):
+        aircraft_grid(near, SMALL)
+    folded, _ = aircraft_grid(near, replace(SMALL, allow_invalid=True))
+    assert sum(count_folded_solids(block.nodes, BEZIER) for block in folded.blocks) > 0
 
 
 def test_places_around_a_body_are_those_of_the_points_there() -> None:
