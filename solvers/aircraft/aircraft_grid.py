@@ -25,11 +25,19 @@ from meshonet.solvers.aircraft.body_plane import WING_PATCHES, level_patches
 from meshonet.solvers.aircraft.exact_cells import at_height, between_walls
 from meshonet.solvers.aircraft.plan import GROWTH, AircraftPlan, plan_of
 from meshonet.solvers.aircraft.request import AircraftRequest
+from meshonet.solvers.aircraft.tip_cells import last_cells
 from meshonet.solvers.aircraft.wall_normals import off_body, off_tip, off_wing
 from meshonet.solvers.blocking.layers.attach import sampled
 from meshonet.solvers.rows.columns import arcs_of, resampled, with_first
 from meshonet.solvers.rows.span_lines import SpanLines
-from meshonet.solvers.rows.span_spacing import SAMPLES, Ends, line_parts, spaced_cells, two_sided
+from meshonet.solvers.rows.span_spacing import (
+    SAMPLES,
+    Ends,
+    LineArcs,
+    smooth_arcs,
+    spaced_cells,
+    two_sided,
+)
 
 _UNBOUNDED = 1e9
 """Length of the last cells of lines, which nothing limits but their growth."""
@@ -60,10 +68,16 @@ def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, t
     shapes = [patch.shape[:2] for patch in levels[0]]
     table = np.stack([np.concatenate([patch.reshape(-1, 3) for patch in level]) for level in levels])
     rings = _rings(shapes, len(plan.wings))
-    beside = _along_wings(space, plan, table, rings, first, growth)
+    walls = np.concatenate([ring[:, 0] for ring in rings])
+    points = space.points(table)
+    lines = LineArcs.through(points)
+    last = last_cells(points[-1], walls, lines.lengths / plan.span, first, growth)
+    beside = _along_wings(space, plan, table, rings, lines, (first, last), growth)
     caps = [space.places(patch) for tip in plan.tips for patch in tip]
     tip = np.concatenate([beside[-1], *(patch.reshape(-1, 3) for patch in caps)])
-    beyond = _beyond_tip(space, tip, first, growth)
+    on_tip = np.append(walls, np.arange(len(last), len(tip)))
+    ends = np.append(last, np.full(len(tip) - len(last), first))
+    beyond = _beyond_tip(space, tip, on_tip, ends, growth)
     shapes += [patch.shape[:2] for patch in caps]
     normal = at_height(space, beside[0], beside[0] + [0.0, 0.0, _ABOVE], first)
     low = _flat(space.points(beside), aircraft)
@@ -74,7 +88,7 @@ def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, t
         low[1, near] = between_walls((low[1, wall], low[0, near]), low[1, near], first)
     high = _flat(space.points(beyond), aircraft)
     for cap, ring in zip(_filled(shapes, plan), rings, strict=True):
-        high = off_tip(high, cap, ring, first)
+        high = off_tip(high, cap, ring)
     half = _joined(aircraft, plan, shapes, low, high)
     return half if aircraft.half else with_image(half), (*notes, *_flat_tips(aircraft))
 
@@ -131,10 +145,13 @@ def _fade(columns: Floats) -> Floats:
 
 
 def _along_wings(
-    space: BodyMap, plan: AircraftPlan, table: Floats, rings: Sequence[Indices], first: float, growth: float
-) -> Floats:
+    space: BodyMap, plan: AircraftPlan, table: Floats, rings: Sequence[Indices], lines: LineArcs,
+    ends: tuple[float, Floats], growth: float,
+) -> Floats:  # fmt: skip
     """Return places (cells + 1, p, 3) on the levels from body to tips, given those of key levels."""
-    parts = line_parts(space.points(table), (first, first), growth, plan.span)
+    first, last = ends
+    arcs = two_sided(lines.lengths, ends, growth, plan.span) / lines.lengths[:, None]
+    parts = lines.parts_at(arcs.T)
     places = SpanLines.through(table).at(parts)
     places[0], places[-1] = table[0], table[-1]
     walls = [ring[:, 0] for ring in rings]
@@ -149,16 +166,16 @@ def _along_wings(
     height = norms(space.points(places[1]) - space.points(places[0]))
     uneven = rest[np.abs(height[rest] - first) > _UNEVEN * first]
     if len(uneven):
-        places[:, uneven] = _spaced(space, places[:, uneven], first, growth)
+        places[:, uneven] = _spaced(space, places[:, uneven], (first, last[uneven]), growth)
     places[1, rest] = at_height(space, places[0, rest], places[1, rest], first)
     return places
 
 
-def _spaced(space: BodyMap, places: Floats, first: float, growth: float) -> Floats:
+def _spaced(space: BodyMap, places: Floats, ends: Ends, growth: float) -> Floats:
     """Return places (k, p, 3) on their lines again, at the arcs of `two_sided` in space."""
     lines = np.moveaxis(places, 0, 1)
     for _ in range(_MEASURED):
-        lines = _resampled(lines, _arcs(space, lines), (first, first), growth, len(places) - 1)
+        lines = _resampled(lines, _arcs(space, lines), ends, growth, len(places) - 1)
     return np.moveaxis(lines, 1, 0)
 
 
@@ -173,14 +190,18 @@ def _resampled(lines: Floats, arcs: Floats, ends: Ends, growth: float, cells: in
     return sampled(lines, arcs, np.minimum(wanted, arcs[:, -1:]))
 
 
-def _beyond_tip(space: BodyMap, tip: Floats, first: float, growth: float) -> Floats:
-    """Return places (k, p, 3) on the levels from the tip to the far field, given those at the tip (p, 3)."""
+def _beyond_tip(space: BodyMap, tip: Floats, on_tip: Indices, first: Floats, growth: float) -> Floats:
+    """Return places (k, p, 3) on the levels from the tip to the far field, given those at the tip (p, 3).
+
+    First cells are `first` (p,) high, to the last digits where lines are `on_tip`.
+    """
     table = np.repeat(tip[:, None], _FINE, axis=1)
     table[..., 2] += np.linspace(0.0, 1.0, _FINE) * (1.0 - tip[:, 2:])
-    arcs, ends = _arcs(space, table), (first, _UNBOUNDED)
-    cells = spaced_cells(float(arcs[:, -1].max()), ends, growth, _UNBOUNDED, 8)
-    places = np.moveaxis(_resampled(table, arcs, ends, growth, cells), 1, 0)
-    places[1] = at_height(space, places[0], places[1], first)
+    arcs = _arcs(space, table)
+    cells = spaced_cells(float(arcs[:, -1].max()), (float(first.min()), _UNBOUNDED), growth, _UNBOUNDED, 8)
+    wanted = smooth_arcs(arcs[:, -1], (first, None), cells)
+    places = np.moveaxis(sampled(table, arcs, np.minimum(wanted, arcs[:, -1:])), 1, 0)
+    places[1, on_tip] = at_height(space, places[0, on_tip], places[1, on_tip], float(first.min()))
     return places
 
 

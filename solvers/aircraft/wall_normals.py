@@ -67,7 +67,7 @@ def off_wing(points: Floats, ring: Indices, first: float) -> Floats:
     return out
 
 
-def off_tip(points: Floats, cap: Indices, ring: Indices, first: float) -> Floats:
+def off_tip(points: Floats, cap: Indices, ring: Indices) -> Floats:
     """Return points (k, p, 3) of lines beyond a tip, row k = 0, whose first cells on it are normal.
 
     `cap` (c,) are the columns that fill the last section, `ring` (n, m) those of its collar. Lines of the
@@ -76,10 +76,9 @@ def off_tip(points: Floats, cap: Indices, ring: Indices, first: float) -> Floats
     apart = arcs_of(norms(np.diff(points[0, ring], axis=1)))
     fade = 1.0 - apart / apart[:, -1:]
     columns = np.concatenate([cap, ring.ravel()])
-    turned = (
-        np.broadcast_to([0.0, 0.0, 1.0], (len(columns), 3))
-        - (points[1, columns] - points[0, columns]) / first
-    )
+    away = points[1, columns] - points[0, columns]
+    first = norms(away)
+    turned = np.array([0.0, 0.0, 1.0]) - away / first[:, None]
     chord = 0.5 * float(norms(np.diff(points[0, ring[:, 0]], axis=0)).sum())
     share = np.concatenate([np.ones(len(cap)), (fade * fade).ravel()])
     out = points.copy()
@@ -98,7 +97,7 @@ def _moved(lines: Floats, beside: Floats) -> Floats:
     return np.where(beside > 0.0, arcs * exp(-arcs / way) * fade * fade, 0.0)
 
 
-def _at(wall: Floats, beside: Floats, first: float) -> Floats:
-    """Return points (n, 3) towards `beside` at the distance `first` from a wall."""
+def _at(wall: Floats, beside: Floats, first: Floats | float) -> Floats:
+    """Return points (n, 3) towards `beside` at the distance `first`, one or (n,), from a wall."""
     away = beside - wall
     return wall + away * (first / norms(away))[:, None]

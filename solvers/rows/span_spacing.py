@@ -22,8 +22,8 @@ _MOST_BENT = 60.0  # of the logarithm of sizes, at which cells in the middle are
 MOST_CELLS = 1000
 
 
-Ends: TypeAlias = tuple[float, float]
-"""Heights of the first and of the last cell of lines."""
+Ends: TypeAlias = tuple[Floats | float, Floats | float]
+"""Heights of the first and of the last cells of lines, each for all lines or (n,)."""
 
 
 def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least: int) -> int:
@@ -85,7 +85,8 @@ def smooth_cells(length: float, ends: tuple[float, float | None], growth: float,
 def _sizes(largest: Floats, ends: Ends, growth: float, cells: int) -> Floats:
     """Return sizes (n, cells) that grow from both ends up to `largest` (n,)."""
     grown = power(growth, np.arange(cells, dtype=np.float64))
-    both = power(ends[0] * grown, _POWER) + power(ends[1] * grown[::-1], _POWER)
+    low, high = (np.reshape(end, (-1, 1)) for end in ends)
+    both = power(low * grown, _POWER) + power(high * grown[::-1], _POWER)
     return np.asarray(power(both + power(largest, _POWER)[:, None], 1.0 / _POWER))
 
 
@@ -146,7 +147,10 @@ class LineArcs:
 
     def parts(self, spacing: Spacing) -> Floats:
         """Return parts (cells + 1, n), 0 to 1, of the way along the lines for a spacing of their arcs."""
-        arcs = spacing.at(self.lengths)
+        return self.parts_at(spacing.at(self.lengths))
+
+    def parts_at(self, arcs: Floats) -> Floats:
+        """Return parts (cells + 1, n), 0 to 1, of the way along the lines at arcs over their lengths."""
         parts = np.clip(arcs + self.ahead.at(arcs), 0.0, 1.0)
         parts[0], parts[-1] = 0.0, 1.0
         return parts

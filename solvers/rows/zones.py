@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from meshonet.geometry.rows.row import Row
-from meshonet.solvers.rows.span_spacing import Ends, spaced_cells
+from meshonet.solvers.rows.span_spacing import spaced_cells
 
 PARTS, PARTS_CELLS = 42.0, 800_000
 """Cells along the span away from walls, if all of it were divided like that, of a row of so many cells."""
@@ -35,7 +35,7 @@ class Zone:
 
     low: float
     high: float
-    ends: Ends
+    ends: tuple[float, float]
     cells: int
     gap: bool
 

@@ -39,6 +39,13 @@ def test_first_cells_are_exact_on_every_wall(grid: Grid, name: str) -> None:
         assert np.linalg.norm(beside - nodes, axis=-1) == pytest.approx(FIRST * 2.0, rel=1e-9)
 
 
+def test_layers_of_the_tip_do_not_go_around_the_aircraft(grid: Grid) -> None:
+    _, level = next(patch.across for patch in grid.patches if patch.name == "wing" and patch.across)
+    steps = [np.diff(block.nodes[:, :, level : level + 2], axis=2)[:, :, 0] for block in grid.blocks[1:7]]
+    far = np.concatenate([np.linalg.norm(each, axis=-1).ravel() for each in steps])
+    assert np.median(far) > 3.0 * FIRST * 2.0
+
+
 def test_nodes_lie_on_body_and_wing(grid: Grid) -> None:
     for nodes, _ in wall(grid, "fuselage"):
         assert np.abs(body().outside(nodes.reshape(-1, 3))).max() < 1e-9
