@@ -182,6 +182,14 @@ def test_sides_that_bound_no_batch_are_refused(change: Any, said: str) -> None:
         layer.winslow(change(given), *given[1:])
 
 
+@pytest.mark.parametrize("function", QUADS)
+def test_sides_without_common_corners_are_refused_with_the_member(function: Any) -> None:
+    sides = sides_of(domains(9, 9, 3))
+    sides[3][2, -1, 0] += 0.1
+    with pytest.raises(InputError, match=r"north and east of member 2 end 0\.1 apart"):
+        function(*sides)
+
+
 def test_variational_grids_whose_systems_are_too_large_are_refused() -> None:
     given = sides_of(domains(601, 601, 1))
     with pytest.raises(InputError, match=r"the optimum of 601 x 601 nodes needs factors of 56 GB"):

@@ -176,3 +176,14 @@ def test_folds_are_refused_with_the_worst_cells() -> None:
     text = str(error.value)
     assert "block=" in text
     assert "z=" in text
+
+
+@pytest.mark.parametrize(("far", "overlap"), [(5.0, True), (0.9, False)])
+def test_parts_whose_grids_would_overlap_are_refused(far: float, overlap: bool) -> None:
+    two = [*sphere(6), *(patch + np.array([4.0, 0.0, 0.0]) for patch in sphere(6))]
+    if not overlap:
+        assert len(marched(two, layers=9, first=1e-2, far=far).grid.blocks) == 12
+        return
+    with pytest.raises(InputError, match=r"parts of the surface, .*, are 2 apart") as refused:
+        marched(two, layers=9, first=1e-2, far=far)
+    assert "far_field} below 1" in str(refused.value.remedy)

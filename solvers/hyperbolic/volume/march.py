@@ -37,6 +37,7 @@ from meshonet.solvers.hyperbolic.volume.limited_growth import (
     limit_growth,
     slower_steps,
 )
+from meshonet.solvers.hyperbolic.volume.parts import check_parts
 from meshonet.solvers.hyperbolic.volume.settings import Smoothing, VolumeMarch, attempts_for
 from meshonet.solvers.hyperbolic.volume.symmetry import in_planes, symmetry_of
 from meshonet.solvers.solution import Solution, timed
@@ -70,11 +71,12 @@ def march_surface(surface: Surface, settings: VolumeMarch, *, wing: bool = False
 
     Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` has what differs.
 
-    Raises InputError: settings that no march can meet; NoValidGridError with the worst cells: cells stay
-    folded, by their corners or a Bezier coefficient of their Jacobian.
+    Raises InputError: settings that no march can meet, parts whose grids would overlap; NoValidGridError with
+    the worst cells: cells stay folded, by their corners or a Bezier coefficient of their Jacobian.
     """
-    steps = settings.steps(surface.size)
-    planes, inside, found = symmetry_of(surface, settings.symmetry, settings.distance(surface.size))
+    steps, far = settings.steps(surface.size), settings.distance(surface.size)
+    check_parts(surface, far)
+    planes, inside, found = symmetry_of(surface, settings.symmetry, far)
     nodes = in_planes(surface, planes, inside)
     hollows = hollows_of(surface)
     volume, tries = _best(surface, planes, inside, nodes, hollows, steps, settings.limit, wing=wing)

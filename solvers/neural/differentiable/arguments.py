@@ -39,6 +39,36 @@ def check_sides(least: int, nj: int = 2, **sides: Tensor) -> None:
         raise InputError(f"nj is {nj} nodes", "use at least 2")
 
 
+_CLOSE = 1e-5
+"""Distance between corners of two sides, over the extent of the sides, up to which they are one."""
+
+
+def check_corners(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> None:
+    """Raise InputError, with the index of the member, for sides (..., n, 2) that do not meet at the corners.
+
+    Under `vmap`, where numbers are not known, nothing is checked.
+    """
+    pairs = {
+        "south and west": (south[..., 0, :], west[..., 0, :]),
+        "south and east": (south[..., -1, :], east[..., 0, :]),
+        "north and west": (north[..., 0, :], west[..., -1, :]),
+        "north and east": (north[..., -1, :], east[..., -1, :]),
+    }
+    extents = (side.amax(dim=-2) - side.amin(dim=-2) for side in (south, west))
+    size = sum(extent.amax(dim=-1) for extent in extents)
+    for words, (a, b) in pairs.items():
+        apart = (a - b).abs().amax(dim=-1)
+        wrong = (apart > _CLOSE * size).reshape(-1)
+        try:
+            if not wrong.any():
+                continue
+        except RuntimeError:
+            return
+        member = int(wrong.int().argmax())
+        problem = f"{words} of member {member} end {float(apart.reshape(-1)[member]):.3g} apart"
+        raise InputError(problem, "give sides with common corners")
+
+
 def batched(
     make: Callable[..., Tensor], sides: Sequence[Tensor], dtype: torch.dtype = torch.float64,
     device: str | torch.device | None = None,

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from torch import Tensor
 
-from meshonet.solvers.neural.differentiable.arguments import batched, check_sides
+from meshonet.solvers.neural.differentiable.arguments import batched, check_corners, check_sides
 from meshonet.solvers.neural.differentiable.implicit import Converged, Equations
 from meshonet.solvers.neural.differentiable.transfinite import Sides, arc_lengths, interpolated
 from meshonet.solvers.neural.differentiable.variational import Optimum
@@ -23,6 +23,7 @@ def transfinite(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Ten
     ------
     InputError
         Tensors of other shapes, of unequal counts, of different dtypes or not of floating-point numbers.
+        Sides that do not meet at the corners, except under `vmap`.
     """
     return _four_sided(lambda sides: interpolated(sides, arc_lengths(sides)), south, north, west, east)
 
@@ -82,6 +83,7 @@ def _four_sided(
 ) -> Tensor:
     """Return the nodes (..., ni, nj, 2); `make` takes sides (batch, 2, n) and returns (batch, 2, ni, nj)."""
     check_sides(3, south=south, north=north, west=west, east=east)
+    check_corners(south, north, west, east)
 
     def nodes(*sides: Tensor) -> Tensor:
         return make(tuple(side.movedim(-1, 1) for side in sides)).movedim(1, -1)

@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from meshonet.geometry.arrays import Topology
-from meshonet.solvers.neural.differentiable.arguments import check_sides
+from meshonet.solvers.neural.differentiable.arguments import check_corners, check_sides
 from meshonet.solvers.neural.differentiable.resample import between, folded, refined
 from meshonet.solvers.neural.differentiable.sides import (
     NetworkGrids,
@@ -34,6 +34,7 @@ class QuadGrids(NetworkGrids):
         different dtypes.
         """
         check_sides(2, south=south, north=north, west=west, east=east)
+        check_corners(south, north, west, east)
         return self._batched(self._nodes, south, north, west, east)
 
     def _nodes(self, south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
