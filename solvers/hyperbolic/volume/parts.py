@@ -6,9 +6,8 @@ from itertools import combinations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.surface.surface import Surface
 
 _SAMPLES = 2000
