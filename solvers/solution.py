@@ -15,6 +15,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import spelled
 
 if TYPE_CHECKING:
+    from meshonet.geometry.aircraft.dimensions import AircraftDimensions
     from meshonet.geometry.rows.dimensions import RowDimensions
 
 P = ParamSpec("P")
@@ -68,7 +69,7 @@ class Solution:
     boundary : boundary of the grid if it differs from the given one: marching ends at its own far field.
     confidence : expected error of a network's answer.
     first_cells : prescribed first-cell heights by side, in the unit of the boundary.
-    dimensions : those of the blade row whose passage the grid fills.
+    dimensions : those of the blade row whose passage the grid fills, or of the aircraft around which it is.
     growth : largest ratio of neighbouring cells that the method was to keep to along lines from walls.
     """
 
@@ -84,7 +85,7 @@ class Solution:
     outcome: Outcome = Outcome.DONE
     confidence: Confidence | None = None
     first_cells: Mapping[str, float] = field(default_factory=dict)
-    dimensions: RowDimensions | None = None
+    dimensions: RowDimensions | AircraftDimensions | None = None
     growth: float = math.inf
 
 

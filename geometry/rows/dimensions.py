@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -53,9 +54,11 @@ class RowDimensions:
     leading_edge: dict[str, tuple[float, float]]
     trailing_edge: dict[str, tuple[float, float]]
 
+    kind: ClassVar = "row"
+
     @property
-    def lines(self) -> tuple[str, str]:
-        """Two lines of text."""
+    def lines(self) -> dict[str, str]:
+        """Lines of text by their headings."""
         unit = f" {self.unit}" if self.unit else ""
         gaps = "".join(
             f", {name} gap {gap:.4g}{unit} ({100.0 * gap / self.span:.3g} %)"
@@ -73,7 +76,7 @@ class RowDimensions:
             for each in ends
         )
         edges = f"leading {first[0]} at the hub, {first[1]} at the shroud; trailing {last[0]}, {last[1]}"
-        return size, f"({self.axis}, r){' in' + unit if unit else ''}: {edges}"
+        return {"row": size, "edges": f"({self.axis}, r){' in' + unit if unit else ''}: {edges}"}
 
 
 def row_dimensions(row: Row) -> RowDimensions:

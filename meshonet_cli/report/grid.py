@@ -13,6 +13,7 @@ from meshonet_cli.terminal.errors import with_options
 from meshonet_cli.terminal.text import span
 
 if TYPE_CHECKING:
+    from meshonet.geometry.aircraft.dimensions import AircraftDimensions
     from meshonet.geometry.quality.blocks import BlockCounts
     from meshonet.geometry.quality.gates import Judgement
     from meshonet.geometry.rows.dimensions import RowDimensions
@@ -48,7 +49,7 @@ class Report(Timed):
     blocks: BlockCounts | None = None
     judgement: Judgement | None = None
     confidence: Confidence | None = None
-    dimensions: RowDimensions | None = None
+    dimensions: RowDimensions | AircraftDimensions | None = None
 
     @property
     def warning(self) -> str:
@@ -72,10 +73,10 @@ class Report(Timed):
 
         figures = self.blocks.as_dict() if isinstance(self.blocks, BlockFigures) else None
         blocks = {} if figures is None else {"cells": self.quality.cells, **figures}
-        row = {} if self.dimensions is None else {"row": asdict(self.dimensions)}
+        sizes = {} if self.dimensions is None else {self.dimensions.kind: asdict(self.dimensions)}
         checked = self.judgement.profile if self.judgement else None
         return {
-            **self.member_json(), **row, "method": self.method, "model": self.model,
+            **self.member_json(), **sizes, "method": self.method, "model": self.model,
             "ni": self.ni, "nj": self.nj, "topology": self.topology, **self._along_wall(), **blocks,
             "folded": self.quality.folded, "path": list(self.path), "confidence": self._confidence_json(),
             "residual": self.residual, "cycles": self.cycles,
@@ -95,8 +96,7 @@ class Report(Timed):
             head += f" with {counts['body_nodes']} nodes on the body and {counts['wake_nodes']} on the wake"
         lines = [head]
         if self.dimensions is not None:
-            size, edges = self.dimensions.lines
-            lines += [f"row        {size}", f"edges      {edges}"]
+            lines += [f"{name:10} {text}" for name, text in self.dimensions.lines.items()]
         lines.append(f"method     {self._made()}" + (f", model {self.model}" if self.model else ""))
         if self.confidence is not None:
             judged = "accepted" if self.confidence.accepted else "not accepted"

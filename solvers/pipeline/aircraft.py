@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.aircraft.dimensions import aircraft_dimensions
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.aircraft.request import AircraftRequest, aircraft_request
@@ -40,7 +41,9 @@ def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) ->
             grid, notes = aircraft_grid(aircraft, request)
         note = request.height_note(f"on a chord of {chord:.6g}", chord)
         notes = (*notes, *[note] * bool(note))
-        solution = Solution(grid, "aircraft", notes=notes, growth=request.growth or GROWTH)
+        sizes = aircraft_dimensions(aircraft, request.height(), request.far_field)
+        growth = request.growth or GROWTH
+        solution = Solution(grid, "aircraft", notes=notes, dimensions=sizes, growth=growth)
         return judged(solution, seconds, request, remedy=_REMEDY)
 
 

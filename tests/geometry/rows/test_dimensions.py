@@ -48,7 +48,7 @@ def test_lengths_are_in_the_unit_of_the_file(tmp_path: Path) -> None:
     made = row_dimensions(row)
     assert row.chord == pytest.approx(0.001, rel=0.01)
     assert (made.unit, made.longest_chord) == ("mm", pytest.approx(1000.0 * row.chord))
-    size, edges = made.lines
+    size, edges = made.lines.values()
     assert size.startswith(f"{BLADES} blades, 15.65 degrees apart; chord 0.99")
     assert "mm at mid-span" in size
     assert "tip gap 0.02 mm (2.16 %)" in size
@@ -57,7 +57,11 @@ def test_lengths_are_in_the_unit_of_the_file(tmp_path: Path) -> None:
 
 def test_places_are_along_the_axis_of_the_file() -> None:
     frame = axis_along(AXES["-z"])
-    assert row_dimensions(Row(profiles(), HUB, SHROUD, BLADES, frame=frame)).lines[1].startswith("(-z, r): ")
+    assert (
+        row_dimensions(Row(profiles(), HUB, SHROUD, BLADES, frame=frame))
+        .lines["edges"]
+        .startswith("(-z, r): ")
+    )
 
 
 @pytest.mark.parametrize(
