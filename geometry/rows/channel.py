@@ -84,7 +84,7 @@ class Channel:
         widths = norms(high - low)
         _check_sides(low, high)
         self.radii = float(low[:, 1].min()), float(high[:, 1].max())
-        self.span = middle(widths)
+        self.span, self.widest = middle(widths), float(widths.max())
         self.length = middle(np.array([norms(np.diff(line, axis=0)).sum() for line in (low, high)]))
         self._check_gaps({"tip_gap": tip_gap, "hub_gap": hub_gap}, float(widths.min()))
         self.foot, self.tip = hub_gap / self.span, 1.0 - tip_gap / self.span

@@ -180,7 +180,9 @@ def _carried(
     lines, walls = ring.columns(front)
     inner = norms(start[plan.outward] - start[plan.columns[:, -1]])
     rows = plan.columns.shape[1] - 1
-    end[plan.columns] = layer_lines(lines, ring.front.at(front), inner, rows, plane.cascade.layers)
+    layers = plane.cascade.layers
+    first = layers.first * plane.cascade.factors_at(walls)
+    end[plan.columns] = layer_lines(lines, ring.front.at(front), inner, rows, layers, first)
     for own, at in zip(plan.ends, (0.0, plane.map.length), strict=True):
         end[own, 0] = at
     held = np.zeros(len(start), dtype=bool)

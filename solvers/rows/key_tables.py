@@ -13,6 +13,7 @@ from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import in_threads
 from meshonet.solvers.blocking.cascade.passage import INLET, NEAR, OUTLET
+from meshonet.solvers.rows.behind import even_behind
 from meshonet.solvers.rows.key_sections import KeySection, SectionPlan, next_section, planned
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.span_lines import key_heights
@@ -52,7 +53,7 @@ def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
 
     ways = planes[half - 1 :: -1], planes[half + 1 :]
     below, above = in_threads(chain, ways)
-    return KeyTables(plan, (*below[::-1], middle, *above))
+    return KeyTables(plan, even_behind((*below[::-1], middle, *above), plan.columns))
 
 
 def _planes(row: Row, first: float, growth: float) -> list[SectionPlane]:

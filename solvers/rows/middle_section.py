@@ -86,6 +86,7 @@ def _joined(plane: SectionPlane, scale: float, rows: int) -> SizeMetric:
     cascade = plane.cascade
     sizes, thickness = cascade.metric, cascade.ring.thickness
     none = np.full(len(thickness), np.inf)
-    arcs = layer_arcs(thickness, cascade.layers.first, none, rows)
+    first = cascade.layers.first * cascade.factors_at(cascade.ring.arcs)
+    arcs = layer_arcs(thickness, first, none, rows)
     last = JOIN * (arcs[:, -1] - arcs[:, -2])
     return replace(scaled(sizes, scale), across=np.tile(last, len(sizes.across) // len(last)))

@@ -59,11 +59,18 @@ class SectionPlane:
         edges = tuple(corners.tolist())
         loop = Loop(Curve(points, closed=True, corners=corners), edges, ("blade",))
         low, high = float(points[:, 0].min()), float(points[:, 0].max())
-        # in the plane a height is least where the radius is largest: there layers need the most rows
-        radius = float(row.channel.at(s, np.full(len(s), height))[:, 1].max())
-        settings = LayerSettings(first / radius, growth)
+        radii = row.channel.at(s, np.full(len(s), height))[:, 1]
+        settings = LayerSettings(first / float(radii.max()), growth)
         chord, pitch = high - low, (0.0, 2.0 * np.pi / row.blades)
-        cascade = Cascade(loop, pitch, low / chord, (to.length - high) / chord, settings, row.name)
+        cascade = Cascade(
+            loop,
+            pitch,
+            low / chord,
+            (to.length - high) / chord,
+            settings,
+            row.name,
+            factors=radii.max() / radii,
+        )
         return cls(height, to, cascade, u)
 
     @property

@@ -37,7 +37,7 @@ def whole_section(
     cascade = plane.cascade
     mesh = beyond.mesh
     inner = heights_inside(beyond, BLADE)
-    rows = [ring_rows(mesh, BLADE, cascade.ring, layers, cascade.layers, inner)]
+    rows = [ring_rows(mesh, BLADE, cascade.ring, layers, cascade.layers, inner, cascade.factors_at)]
     for number, length, way in straight_rows(cascade):
         start = mesh.nodes[loop_nodes(mesh, number)]
         first = math.exp(log(heights_inside(beyond, number)).mean())

@@ -59,7 +59,8 @@ def zones_of(row: Row, first: float, growth: float, cells: int) -> list[Zone]:
     zones = []
     if row.hub_gap > 0.0:
         zones.append(_gap(0.0, channel.foot, row.hub_gap, ends[0], growth))
-    cells = spaced_cells(width, ends, growth, width / parts, 8)
+    widest = _LONGER * channel.widest * (channel.tip - channel.foot)
+    cells = spaced_cells(width, ends, growth, width / parts, spaced_cells(widest, ends, growth, widest, 8))
     zones.append(Zone(channel.foot, channel.tip, ends, cells, False))
     if row.tip_gap > 0.0:
         zones.append(_gap(channel.tip, 1.0, row.tip_gap, ends[1], growth))

@@ -57,6 +57,8 @@ class Cascade:
         inlet and outlet are that far away.
     centre : origin of axial distances, inside the blade; the default is a point far from its surface.
     marched : the layers around the blade, where they are known.
+    factors : (n,) at the points of the blade, by which first cells are higher there than by the settings; the
+        default is 1.
     """
 
     blade: Loop
@@ -68,6 +70,7 @@ class Cascade:
     near: tuple[float, float] = (NEAR, NEAR)
     centre: complex | None = None
     marched: Ring | None = None
+    factors: Floats | None = None
 
     def ending(self, near: tuple[float, float], centre: complex) -> Cascade:
         """Return the cascade with another `near` and `centre`, which layers do not depend on."""
@@ -136,6 +139,12 @@ class Cascade:
         largest = self.blade.length / COLUMNS
         return march_ring(self.blades, 0, self.layers.first, self.thickness, largest)
 
+    def factors_at(self, arcs: Floats) -> Floats:
+        """Return the factors (k,) at arc lengths (k,) of the blade."""
+        if self.factors is None:
+            return np.ones(len(arcs))
+        return np.interp(arcs, self.blade.curve.knots, self.factors, period=self.blade.length)
+
     @cached_property
     def ends(self) -> tuple[float, float]:
         """Lengths from the front to inlet and outlet."""
@@ -160,12 +169,13 @@ class Cascade:
     @cached_property
     def rows_of_layers(self) -> int:
         """Number of rows of the layers."""
-        return self.layers.rows(float(self.ring.thickness.max()))
+        return self.layers.rows(float((self.ring.thickness / self.factors_at(self.ring.arcs)).max()))
 
     @cached_property
     def metric(self) -> SizeMetric:
         """Cell sizes outside of the layers of the blade and of its neighbours."""
-        sizes = replace(ring_metric(self.ring, self.layers), largest=abs(self.left) / ACROSS)
+        own = self.factors_at(self.ring.arcs)
+        sizes = replace(ring_metric(self.ring, self.layers, own), largest=abs(self.left) / ACROSS)
         shift = pairs_of(np.array([0.0, -self.left, self.left]))
         points = (shift[:, None] + sizes.points).reshape(-1, 2)
         normals, across, along = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -67,14 +67,18 @@ class LayerSettings:
         return -(-rows // self.multiple) * self.multiple
 
 
-def ring_metric(ring: Ring, settings: LayerSettings) -> SizeMetric:
-    """Return the cell sizes that the front of a ring requires: those of its columns and its last layer."""
+def ring_metric(ring: Ring, settings: LayerSettings, factors: Floats | float = 1.0) -> SizeMetric:
+    """Return the cell sizes that the front of a ring requires: those of its columns and its last layer.
+
+    First cells are higher than those of the settings by `factors` (n,) at the columns.
+    """
     points = ring.front.curve.points
     step = np.roll(points, -1, axis=0) - points
     length = np.hypot(*step.T)
     along = _smooth(0.5 * (length + np.roll(length, 1)))
     tangent = step + np.roll(step, 1, axis=0)
-    across = last_layers(ring.thickness, settings.rows(float(ring.thickness.max())), settings)
+    rows = settings.rows(float((ring.thickness / factors).max()))
+    across = last_layers(ring.thickness, rows, settings, settings.first * factors)
     return SizeMetric(points, _normals(tangent), across, along, np.inf)
 
 
@@ -94,27 +98,34 @@ def _normals(tangents: Floats) -> Floats:
 
 
 def ring_rows(
-    mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats
-) -> Rows:
-    """Return the layers below the nodes of a front; `inner` (k,) are the heights of the cells beyond it."""
+    mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats,
+    factors: Callable[[Floats], Floats] | None = None,
+) -> Rows:  # fmt: skip
+    """Return the layers below the nodes of a front; `inner` (k,) are the heights of the cells beyond it.
+
+    First cells are higher than those of the settings by `factors` of arc lengths (k,) of the wall, if given.
+    """
     order = loop_nodes(mesh, loop)
     columns, starts = ring.columns(mesh.places.arc[order])
-    lines = layer_lines(columns, mesh.nodes[order], inner, rows, settings)
+    first = settings.first * (factors(starts) if factors else np.ones(len(starts)))
+    lines = layer_lines(columns, mesh.nodes[order], inner, rows, settings, first)
     return Rows(loop, lines[:, ::-1], starts, True)
 
 
-def layer_lines(columns: Floats, ends: Floats, inner: Floats, rows: int, settings: LayerSettings) -> Floats:
+def layer_lines(
+    columns: Floats, ends: Floats, inner: Floats, rows: int, settings: LayerSettings, first: Floats
+) -> Floats:
     """Return the nodes (k, rows + 1, 2) of layers along columns (k, m, 2), from the wall to `ends` (k, 2).
 
-    `inner` (k,) are the heights of the cells beyond.
+    `inner` (k,) are the heights of the cells beyond, `first` (k,) those of the first ones.
     """
     columns = columns + arc_shares(columns)[..., None] * (ends - columns[:, -1])[:, None]
 
     def law(length: Floats) -> Floats:
-        return layer_arcs(length, settings.first, inner / JOIN, rows, settings.constant, settings.growth)
+        return layer_arcs(length, first, inner / JOIN, rows, settings.constant, settings.growth)
 
     lines = spaced(columns, law)
-    exact(lines, settings.first)
+    exact(lines, first)
     return lines
 
 
@@ -147,7 +158,7 @@ def arc_shares(lines: Floats) -> Floats:
     return np.concatenate([np.zeros((len(lines), 1)), total / total[:, -1:]], axis=1)
 
 
-def exact(lines: Floats, first: float) -> None:
+def exact(lines: Floats, first: float | Floats) -> None:
     """Move the first node of each line (k, m, 2) exactly to the distance `first` from the wall, in place."""
     step = lines[:, 1] - lines[:, 0]
     lines[:, 1] = lines[:, 0] + step * (first / np.hypot(*step.T))[:, None]

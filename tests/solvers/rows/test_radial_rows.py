@@ -22,6 +22,7 @@ ROWS = {
     "diffuser with a corner at its nose": radial_rows.diffuser(11),
     "turbine with an oblique base": radial_rows.turbine(13),
 }
+NARROW = radial_rows.impeller(144)  # five times as wide at the inlet as at the outlet
 PUMP = radial_rows.pump(26, gap=True)  # with a narrow edge cut at a slant
 
 
@@ -73,6 +74,35 @@ def test_first_cells_have_their_height_in_space_at_the_blade(name: str) -> None:
             rows = np.moveaxis(grid.blocks[patch.block].nodes, axis, 0)
             rows = rows if end == 0 else rows[::-1]
             assert np.linalg.norm(rows[1] - rows[0], axis=-1) == pytest.approx(wanted, rel=1e-9)
+
+
+def test_first_cells_are_the_smallest_where_the_radius_is_small() -> None:
+    grid = made("impeller")
+    least = []
+    for patch in grid.patches:
+        if patch.name == "blade":
+            steps = np.linalg.norm(np.diff(grid.blocks[patch.block].nodes, axis=patch.place[0]), axis=-1)
+            least.append(float(steps.min()))
+    assert min(least) > 0.5 * FIRST * ROWS["impeller"].chord
+
+
+def test_cells_grow_by_the_limit_along_the_span_where_the_channel_is_wide() -> None:
+    grid = make_row(NARROW, RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
+    for block in grid.blocks:
+        steps = np.linalg.norm(np.diff(block.nodes, axis=2), axis=-1)
+        assert np.abs(np.log(steps[..., 1:] / steps[..., :-1])).max() < np.log(1.23)
+
+
+def test_lines_along_the_span_lean_little_behind_the_blade() -> None:
+    grid, row = made("impeller"), ROWS["impeller"]
+    leaning = []
+    for block in grid.blocks:
+        steps = np.diff(block.nodes, axis=2)
+        radius = np.hypot(block.nodes[:, :, :-1, 1], block.nodes[:, :, :-1, 2])
+        behind = radius > 1.02 * max(np.hypot(each[:, 1], each[:, 2]).max() for each in row.profiles)
+        along_axis = np.abs(steps[..., 0]) / np.linalg.norm(steps, axis=-1)  # the channel is radial there
+        leaning.append(np.degrees(np.arccos(np.minimum(along_axis[behind], 1.0))))
+    assert np.concatenate(leaning).max() < 60.0
 
 
 def test_cells_behind_narrow_edges_in_a_gap_grow_little_across_the_outline_of_the_blade() -> None:

@@ -1,0 +1,89 @@
+"""Nodes behind the blade whose places change evenly along the span.
+
+The optimum of a section changes little if its nodes move with the flow, so that those of neighbouring
+sections differ by more than the sections do. Where the span is short, lines along it would lean far behind
+the blade.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.layers.finished import smallest_corners
+from meshonet.solvers.rows.key_sections import KeySection
+from meshonet.solvers.rows.span_lines import SpanLines, key_heights
+
+_DEGREE = 2
+"""Of polynomials of the height."""
+_FROM, _TO = 1.0, 1.15
+"""Shares of the way along the blade from which on nodes are moved, and from which on by all."""
+_CELLS = 4
+"""Cells beyond the layers from which on nodes are moved by all."""
+
+_PARTS = 1.0, 0.5, 0.25
+"""Of the way to these polynomials, tried in turn."""
+_KEPT = 0.4
+"""Least part of the smallest Jacobian of a cell that is left to it."""
+
+
+def even_behind(sections: Sequence[KeySection], columns: Indices) -> tuple[KeySection, ...]:
+    """Return sections at `key_heights` with nodes behind the blade on polynomials of the height.
+
+    These are of the share of the way, and of theta from that of the trailing edge. Nodes of layers, which are
+    in `columns` (k, m), stay; those near them and near the blade move by a part. Where cells would shrink
+    much, all move by less.
+    """
+    mesh = sections[0].layout.mesh
+    values = []
+    for section in sections:
+        nodes, edge = section.layout.mesh.nodes, section.plane.edges[1]
+        values.append(np.stack([section.plane.shares(nodes), nodes[:, 1] - edge[1]], axis=1))
+    shares = values[len(values) // 2][:, 0]
+    part = _smooth((shares - _FROM) / (_TO - _FROM)) * _smooth(_cells_from(mesh, columns) / _CELLS)
+    moved = np.flatnonzero(part > 0.0)
+    lines = SpanLines.through(np.array(values)[:, moved], _DEGREE)
+    even = lines.at(key_heights(len(sections))[:, None])
+    for less in _PARTS:
+        made = [
+            _moved(section, moved, wanted, less * part[moved])
+            for section, wanted in zip(sections, even, strict=True)
+        ]
+        pairs = (
+            [smallest_corners(each.layout.mesh) for each in two] for two in zip(sections, made, strict=True)
+        )
+        if all((after > _KEPT * before).all() for before, after in pairs):
+            return tuple(made)
+    return tuple(sections)
+
+
+def _moved(section: KeySection, moved: Indices, wanted: Floats, part: Floats) -> KeySection:
+    """Return a section with nodes `moved` (k,) by a part (k,) of the way to shares and theta (k, 2)."""
+    plane, mesh = section.plane, section.layout.mesh
+    nodes = mesh.nodes.copy()
+    to = np.stack([plane.stations(wanted[:, 0]), wanted[:, 1] + plane.edges[1, 1]], axis=1)
+    nodes[moved] += part[:, None] * (to - nodes[moved])
+    return replace(section, layout=replace(section.layout, mesh=mesh.with_nodes(nodes)))
+
+
+def _smooth(t: Floats) -> Floats:
+    t = np.clip(t, 0.0, 1.0)
+    return np.asarray(t * t * (3.0 - 2.0 * t))
+
+
+def _cells_from(mesh: QuadMesh, columns: Indices) -> Floats:
+    """Return how many edges (n,) nodes are away from the layers, up to `_CELLS`."""
+    away = np.full(len(mesh.nodes), float(_CELLS))
+    away[columns] = 0.0
+    partner = mesh.places.partner
+    own = np.where(partner >= 0, partner, np.arange(len(partner)))
+    ends = own[mesh.edges]
+    for _ in range(_CELLS - 1):
+        for one, other in (ends.T, ends.T[::-1]):
+            np.minimum.at(away, one, away[other] + 1.0)
+    return away[own]
