@@ -12,9 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.layers.finished import smallest_corners
 from meshonet.solvers.rows.key_sections import KeySection
 from meshonet.solvers.rows.span_lines import SpanLines, key_heights
