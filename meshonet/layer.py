@@ -12,6 +12,13 @@ sides and of their dtype; the arithmetic is in double precision. `torch.func.vma
 to these functions. They need torch (extra ``train``).
 """
 
+from meshonet.solvers.neural.devices import INSTALL_TORCH
+
+try:
+    import torch  # noqa: F401 - all below are functions of its tensors
+except ModuleNotFoundError:
+    raise ModuleNotFoundError(f"meshonet.layer needs torch; {INSTALL_TORCH}", name="torch") from None
+
 from meshonet.solvers.neural.differentiable import AirfoilGrids, BodyGrids, QuadGrids
 from meshonet.solvers.neural.differentiable.airfoil import conformal
 from meshonet.solvers.neural.differentiable.grids import transfinite, variational, winslow

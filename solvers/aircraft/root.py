@@ -40,7 +40,16 @@ def root_heights(stack: Stack, name: str, unit: Floats, body: Body) -> Floats:
 
 
 def _error(stack: Stack, name: str, unit: Floats, z: float, body: Body, what: str) -> InputError:
+    """Return the error for a line at the height z, with its place in relation to the body."""
     x, y, z = stack.lofted(unit[:, None], np.array([z]))[0, 0]
-    problem = f"a line of the {name} {what} the {body.name} at x={x:.6g}, y={y:.6g}, z={z:.6g}"
+    nose, tail = body.meridian[0, 0], body.meridian[-1, 0]
+    if nose < x < tail:
+        radius = float(np.interp(x, *body.meridian.T))
+        where = f"{np.hypot(y - body.y, z):.4g} from its axis, where its radius is {radius:.4g}"
+    else:
+        where = (
+            f"{'ahead of its nose' if x <= nose else 'behind its tail'}: it is from x={nose:g} to {tail:g}"
+        )
+    problem = f"a line of the {name} {what} the {body.name} at x={x:.6g}, y={y:.6g}, z={z:.6g}, {where}"
     remedy = "give a first section inside the body, such as in z = 0, and a last one outside"
     return InputError(problem, remedy, place="wings")

@@ -273,6 +273,23 @@ def test_a_wing_that_does_not_fit_its_body_gets_a_line(
     assert not (tmp_path / "jet.cgns").exists()
 
 
+@pytest.mark.parametrize(
+    ("place", "where"),
+    [
+        ("x = -1", "ahead of its nose: it is from x=0 to 10"),
+        ("x = 9", "behind its tail: it is from x=0 to 10"),
+        ("x = 3\ny = 2", "2 from its axis, where its radius is 0.6"),
+    ],
+)
+def test_a_wing_outside_of_the_body_is_said_to_be_where_it_is(
+    meshonet: Meshonet, tmp_path: Path, place: str, where: str
+) -> None:
+    (tmp_path / "jet.toml").write_text(AIRCRAFT.replace("x = 3.5", place))
+    done = meshonet("stack", "jet.toml", "-o", "jet.cgns")
+    assert (done.code, done.err.count("\n")) == (2, 1)
+    assert f"{where}; give a first section inside the body" in done.err
+
+
 def test_the_warnings_of_a_profile_are_in_the_report(meshonet: Meshonet, wing: Path) -> None:
     done = meshonet("stack", str(wing), *SMALL, "--profile", "viscous", "-o", "wing.h5")
     assert done.code == 0, done.err

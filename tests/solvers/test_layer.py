@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import Any
 
 import numpy as np
@@ -188,6 +190,12 @@ def test_sides_without_common_corners_are_refused_with_the_member(function: Any)
     sides[3][2, -1, 0] += 0.1
     with pytest.raises(InputError, match=r"north and east of member 2 end 0\.1 apart"):
         function(*sides)
+
+
+def test_without_torch_its_installation_is_said() -> None:
+    words = "import sys; sys.modules['torch'] = None; from meshonet import layer"
+    done = subprocess.run([sys.executable, "-c", words], capture_output=True, text=True)
+    assert "ModuleNotFoundError: meshonet.layer needs torch; install" in done.stderr
 
 
 def test_variational_grids_whose_systems_are_too_large_are_refused() -> None:
