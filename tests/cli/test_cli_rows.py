@@ -54,14 +54,6 @@ def test_the_report_says_what_edges_are_and_how_cells_grow(meshonet: Meshonet, r
     assert re.search(r"\d+ cells in a passage instead of 20000", done.err)
 
 
-def test_a_wing_has_no_cells(meshonet: Meshonet, tmp_path: Path) -> None:
-    section = '[[sections]]\nairfoil = "naca:0012"\nchord = 1\nz = {}\n'
-    (tmp_path / "wing.toml").write_text(section.format(0) + section.format(2))
-    done = meshonet("stack", str(tmp_path / "wing.toml"), "--cells", "50000", "-o", "wing.cgns")
-    assert done.code == 2
-    assert "a stack has no --cells" in done.err
-
-
 def test_a_hub_that_ends_within_the_blade_is_named(meshonet: Meshonet, tmp_path: Path) -> None:
     row = blade_row.write_row(tmp_path, hub=blade_row.HUB[:14])
     done = meshonet("stack", str(row), *SMALL, "-o", "row.cgns")

@@ -190,7 +190,7 @@ def test_a_body_with_a_wing_is_made_with_its_names(meshonet: Meshonet, tmp_path:
     assert (done.only["folded"], done.only["method"]) == (0, "aircraft")
     assert "the tip of the wing is flat" in str(done.only["notes"])
     sizes = done.only["aircraft"]
-    assert (sizes["length"], sizes["spans"]) == (10.0, {"wing": 10.0})
+    assert (sizes["length"], sizes["spans"]) == (10.0, {"wing": 6.0})
     (grid,) = read_grids("jet.cgns")
     assert {patch.name for patch in grid.patches} == {"fuselage", "wing", "tip", "symmetry", "farfield"}
 
