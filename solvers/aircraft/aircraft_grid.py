@@ -8,7 +8,6 @@ half is the mirror image.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
 
 import numpy as np
 
@@ -65,20 +64,19 @@ def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, t
     space = BodyMap(aircraft.body, request.far_field * chord + 0.5 * aircraft.body.extent)
     plan, notes = plan_of(aircraft, request, space)
     levels = [_level(space, plan, k, first) for k in range(SAMPLES)]
-    shapes = [patch.shape[:2] for patch in levels[0]]
+    caps = [space.places(patch) for tip in plan.tips for patch in tip]
+    lattices = _columns([*levels[0], *caps])
     table = np.stack([np.concatenate([patch.reshape(-1, 3) for patch in level]) for level in levels])
-    rings = _rings(shapes, len(plan.wings))
+    rings = lattices[: WING_PATCHES * len(plan.wings) : WING_PATCHES]
     walls = np.concatenate([ring[:, 0] for ring in rings])
     points = space.points(table)
     lines = LineArcs.through(points)
     last = last_cells(points[-1], walls, lines.lengths / plan.span, first, growth)
     beside = _along_wings(space, plan, table, rings, lines, (first, last), growth)
-    caps = [space.places(patch) for tip in plan.tips for patch in tip]
     tip = np.concatenate([beside[-1], *(patch.reshape(-1, 3) for patch in caps)])
     on_tip = np.append(walls, np.arange(len(last), len(tip)))
     ends = np.append(last, np.full(len(tip) - len(last), first))
     beyond = _beyond_tip(space, tip, on_tip, ends, growth)
-    shapes += [patch.shape[:2] for patch in caps]
     normal = at_height(space, beside[0], beside[0] + [0.0, 0.0, _ABOVE], first)
     low = _flat(space.points(beside), aircraft)
     low = off_body(low, space.points(normal), rings, first)
@@ -87,9 +85,10 @@ def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, t
         wall, near = ring[:, 0], ring[:, 1]
         low[1, near] = between_walls((low[1, wall], low[0, near]), low[1, near], first)
     high = _flat(space.points(beyond), aircraft)
-    for cap, ring in zip(_filled(shapes, plan), rings, strict=True):
-        high = off_tip(high, cap, ring)
-    half = _joined(aircraft, plan, shapes, low, high)
+    inside = lattices[plan.levels.patches :]
+    for ring, *cap in zip(rings, inside[::2], inside[1::2], strict=True):
+        high = off_tip(high, np.concatenate([each.ravel() for each in cap]), ring)
+    half = _joined(aircraft, plan, lattices, low, high)
     return half if aircraft.half else with_image(half), (*notes, *_flat_tips(aircraft))
 
 
@@ -100,18 +99,11 @@ def _flat_tips(aircraft: Aircraft) -> Iterator[str]:
             yield f"the tip of the {name} is flat"
 
 
-def _rings(shapes: Sequence[tuple[int, int]], wings: int) -> list[Indices]:
-    """Return the columns (n, m) of the collar of each wing."""
-    starts = np.cumsum([0, *(ni * nj for ni, nj in shapes)])
-    numbers = range(0, WING_PATCHES * wings, WING_PATCHES)
-    return [starts[k] + np.arange(shapes[k][0] * shapes[k][1]).reshape(shapes[k]) for k in numbers]
-
-
-def _filled(shapes: Sequence[tuple[int, int]], plan: AircraftPlan) -> list[Indices]:
-    """Return the columns (c,) that fill the last section of each wing, by ring and core."""
-    starts = np.cumsum([0, *(ni * nj for ni, nj in shapes)])
-    numbers = plan.levels.patches + 2 * np.arange(len(plan.wings) + 1)
-    return [np.arange(*each) for each in pairwise(starts[numbers].tolist())]
+def _columns(patches: Sequence[Floats]) -> list[Indices]:
+    """Return the numbers (ni, nj) of the nodes of each patch (ni, nj, 3), patch after patch."""
+    sizes = [ni * nj for ni, nj, _ in (patch.shape for patch in patches)]
+    numbers = np.split(np.arange(sum(sizes)), np.cumsum(sizes)[:-1])
+    return [each.reshape(patch.shape[:2]) for each, patch in zip(numbers, patches, strict=True)]
 
 
 def _flat(points: Floats, aircraft: Aircraft) -> Floats:
@@ -206,22 +198,19 @@ def _beyond_tip(space: BodyMap, tip: Floats, on_tip: Indices, first: Floats, gro
 
 
 def _joined(
-    aircraft: Aircraft, plan: AircraftPlan, shapes: Sequence[tuple[int, int]], low: Floats, high: Floats
+    aircraft: Aircraft, plan: AircraftPlan, lattices: Sequence[Indices], low: Floats, high: Floats
 ) -> Grid:
     """Return the grid of points (k, p, 3) from the body to the tips, and from there to the far field.
 
-    The first of `shapes` are patches of all levels, the others fill the sections beyond the tips.
+    The first of `lattices` (ni, nj) are columns of all levels, the others fill the sections beyond the tips.
     """
     tip = len(low) - 1
     blocks: list[Block] = []
-    start = 0
-    for number, (ni, nj) in enumerate(shapes):
-        columns = slice(start, start + ni * nj)
-        start += ni * nj
+    for number, columns in enumerate(lattices):
         nodes = high[:, columns]
         if number < plan.levels.patches:
             nodes = np.concatenate([low[:-1, columns], nodes])
-        blocks.append(_right_handed(np.moveaxis(nodes.reshape(len(nodes), ni, nj, 3), 0, 2)))
+        blocks.append(_right_handed(np.moveaxis(nodes, 0, 2)))
     connections = find_connections(blocks)
     joined = with_equal_nodes(blocks, connections)
     return Grid(joined, tuple(_patches(joined, plan, tip, aircraft)), connections, aircraft.name)

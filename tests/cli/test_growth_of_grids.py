@@ -44,13 +44,13 @@ def test_growth_beyond_its_limit_is_in_the_report_and_no_other(
     words, limit, keeps = KINDS[kind]
     made = meshonet(*words.split(), "-o", "grid.cgns")
     assert made.code == 0, made.err
-    found = re.findall(r"differ by up to (\S+) at node (.*), more than the growth of (\S+)", made.err)
+    reported = re.findall(r"differ by up to (\S+) at node (.*), more than the growth of (\S+)", made.err)
     judged = meshonet("quality", "grid.cgns", "--fail-on", f"wall_growth>{limit}", "--json")
     figures = json.loads(judged.out)
     across = figures.get("lines", {}).get("growth_across", {}).get("max", 1.0)
     values = [across, *map(float, re.findall(r"wall_growth is (\S+)", judged.err))]
-    assert keeps == (not found)
+    assert keeps == (not reported)
     assert keeps == (judged.code == 0 and across <= limit)
-    if found:
-        assert float(found[0][0]) == pytest.approx(max(values), abs=6e-4)
-        assert float(found[0][2]) == limit
+    if reported:
+        assert float(reported[0][0]) == pytest.approx(max(values), abs=6e-4)
+        assert float(reported[0][2]) == limit

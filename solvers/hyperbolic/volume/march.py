@@ -76,14 +76,14 @@ def march_surface(surface: Surface, settings: VolumeMarch, *, wing: bool = False
     """
     steps, far = settings.steps(surface.size), settings.distance(surface.size)
     check_parts(surface, far)
-    planes, inside, found = symmetry_of(surface, settings.symmetry, far)
+    planes, inside, assumed = symmetry_of(surface, settings.symmetry, far)
     nodes = in_planes(surface, planes, inside)
     hollows = hollows_of(surface)
     volume, tries = _best(surface, planes, inside, nodes, hollows, steps, settings.limit, wing=wing)
     if volume.made < len(steps) or volume.folded:
         raise _refusal(volume, len(steps), tries, surface, hollows)
     grid = volume_grid(surface, volume.blocks, np.any(inside, axis=0))
-    notes = [*surface.notes, *found]
+    notes = [*surface.notes, *assumed]
     if tries > 1:
         notes.append(f"{tries} marches were made: others left folded cells or worse ones")
     return Solution(

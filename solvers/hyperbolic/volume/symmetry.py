@@ -55,8 +55,8 @@ def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
             raise InputError(problem, remedy, parameter="symmetry")
         notes.append(f"the open edges at {plane} are not in a plane of symmetry: {facing}")
     planes, inside = tuple(planes[k] for k in kept), inside[kept]
-    found = (planes_note(planes, axis), *notes, free_edges_note(surface, inside))
-    return Symmetry(planes, inside, tuple(note for note in found if note))
+    every = (planes_note(planes, axis), *notes, free_edges_note(surface, inside))
+    return Symmetry(planes, inside, tuple(note for note in every if note))
 
 
 def closes_in(surface: Surface, plane: Plane) -> float:

@@ -37,15 +37,15 @@ def test_columns_on_the_blade_begin_there_with_exact_first_cells_and_keep_their_
     channel = Channel(blade_row.HUB, blade_row.SHROUD, 0.01, 0.03)
     rng = np.random.default_rng(3)
     start, way = rng.uniform(0.3, 0.6, (4, 31, 1, 3)), rng.uniform(0.5, 1.0, (4, 31, 1, 3))
-    given = start + np.linspace(0.0, 0.05, 9)[:, None] ** 1.5 * way
-    wall, columns = given[:, :, 0, :2] + rng.uniform(-1e-4, 1e-4, (4, 31, 2)), given.copy()
+    before = start + np.linspace(0.0, 0.05, 9)[:, None] ** 1.5 * way
+    wall, columns = before[:, :, 0, :2] + rng.uniform(-1e-4, 1e-4, (4, 31, 2)), before.copy()
     channel.put_on_blade(columns, wall, 2e-3)
     np.testing.assert_allclose(
-        columns[:, :, 0], np.concatenate([wall, given[:, :, 0, 2:]], axis=-1), rtol=1e-15
+        columns[:, :, 0], np.concatenate([wall, before[:, :, 0, 2:]], axis=-1), rtol=1e-15
     )
     space = channel.in_space(columns)
     np.testing.assert_allclose(np.linalg.norm(space[:, :, 1] - space[:, :, 0], axis=-1), 2e-3, rtol=1e-9)
-    assert (columns[:, :, -1] == given[:, :, -1]).all()
+    assert (columns[:, :, -1] == before[:, :, -1]).all()
     assert (np.diff(columns[..., 2], axis=2) > 0.0).all()
 
 

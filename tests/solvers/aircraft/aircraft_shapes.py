@@ -36,7 +36,7 @@ def tail(x: float = 8.2, y: float = 0.3, span: float = 1.9, name: str = "tail") 
 
 def wall(grid: Grid, name: str) -> list[tuple[Floats, Floats]]:
     """The nodes on a wall and those next to them, of each of its patches."""
-    found = []
+    pairs = []
     for patch in grid.patches:
         if patch.name == name:
             nodes = grid.blocks[patch.block].nodes
@@ -44,8 +44,8 @@ def wall(grid: Grid, name: str) -> list[tuple[Floats, Floats]]:
                 nodes = np.moveaxis(nodes, 1, 2)
                 assert patch.across is not None
                 nodes = nodes[:, patch.across[0] : patch.across[1] + 1]
-            found.append((nodes[:, :, 0], nodes[:, :, 1]))
-    return found
+            pairs.append((nodes[:, :, 0], nodes[:, :, 1]))
+    return pairs
 
 
 def unclaimed_faces(grid: Grid) -> int:

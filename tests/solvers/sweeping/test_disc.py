@@ -25,9 +25,9 @@ def first_cells(grid: Grid) -> np.ndarray:
 
 
 def largest(grid: Grid) -> float:
-    found = largest_growth(grid)
-    assert found is not None
-    return found.max
+    largest = largest_growth(grid)
+    assert largest is not None
+    return largest.max
 
 
 @pytest.mark.parametrize("cells", [None, 200, 800, 2000, 6000, 20_000])
