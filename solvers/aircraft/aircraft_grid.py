@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.aircraft.dimensions import aircraft_dimensions
 from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.blocks.block import Block, face_of
 from meshonet.geometry.blocks.find_connections import find_connections
@@ -59,9 +60,9 @@ def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, t
     Raises InputError: a wing that does not begin inside the body or does not leave it; wings that are too
     close to each other.
     """
-    chord = aircraft.wing.chord
-    first, growth = request.height() * chord, request.growth or GROWTH
-    space = BodyMap(aircraft.body, request.far_field * chord + 0.5 * aircraft.body.extent)
+    sizes = aircraft_dimensions(aircraft, request.height(), request.far_field)
+    first, growth = sizes.first_cell, request.growth or GROWTH
+    space = BodyMap(aircraft.body, sizes.far_field)
     plan, notes = plan_of(aircraft, request, space)
     levels = [_level(space, plan, k, first) for k in range(SAMPLES)]
     caps = [space.places(patch) for tip in plan.tips for patch in tip]

@@ -30,18 +30,17 @@ def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) ->
     """
     request = request or aircraft_request()
     seconds: dict[str, float] = {}
-    chord = aircraft.wing.chord
-    _refuse_thick_cells(aircraft, request.height() * chord)
-    _refuse_far_tip(aircraft, request.far_field * chord + 0.5 * aircraft.body.extent)
+    sizes = aircraft_dimensions(aircraft, request.height(), request.far_field)
+    _refuse_thick_cells(aircraft, sizes.first_cell)
+    _refuse_far_tip(aircraft, sizes.far_field)
     with limited_to(request.threads):
         with stage("load", seconds):
             from meshonet.solvers.aircraft.aircraft_grid import aircraft_grid
             from meshonet.solvers.aircraft.plan import GROWTH
         with stage("grid", seconds):
             grid, notes = aircraft_grid(aircraft, request)
-        note = request.height_note(f"on a chord of {chord:.6g}", chord)
+        note = request.height_note(f"on a chord of {sizes.chord:.6g}", sizes.chord)
         notes = (*notes, *[note] * bool(note))
-        sizes = aircraft_dimensions(aircraft, request.height(), request.far_field)
         growth = request.growth or GROWTH
         solution = Solution(grid, "aircraft", notes=notes, dimensions=sizes, growth=growth)
         return judged(solution, seconds, request, remedy=_REMEDY)
