@@ -27,6 +27,9 @@ _SIZE = 0.35
 """Half the width of a core, over the arc length from the pole to the column `at`."""
 _ROUNDING = 0.5
 """Exponent of the map from the square to the core: 0 keeps the square's corners, 1 makes a disc's rim."""
+_EVEN = 0.25
+"""Share a of the map x sqrt(1 - a y^2), y sqrt(1 - a x^2) from the square to an even core: with 0 it is the
+square, with 1/2 a disc, whose corners are flat. Here they have 127 degrees, as with `_ROUNDING`."""
 _NOSE = 0.65
 """Least width of a column over its distance from the pole, relative to the largest: no nose is beyond it."""
 _FEWEST = 3
@@ -49,8 +52,11 @@ class PoleCore:
     at: int
 
 
-def core_of(fan: Floats, quarters: int, most: int) -> PoleCore:
+def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> PoleCore:
     """Return the core of a `fan` (m + 1, n, 3) of curves out of a pole at j = 0.
+
+    Rings around the pole are as round as the core, which a march from the surface needs there. Those of an
+    `even` core are square, and its lines have no kinks, across which cells differ by a factor up to 2.
 
     `quarters` is the angle of the fan in right angles; a closed one repeats its first curve, and has an even
     number m of cells. At most `most` columns are replaced, up to the first where cells are as long as wide.
@@ -60,7 +66,7 @@ def core_of(fan: Floats, quarters: int, most: int) -> PoleCore:
     arc = np.concatenate([[0.0], np.cumsum(steps)])
     at = _column(norms(np.diff(fan, axis=0)).mean(axis=0), arc, most)
     y, x = _knots(m, quarters)
-    radius, turn = _polar(y, x, quarters)
+    radius, turn = _polar(y, x, quarters, even=even)
     surface = _Fan(fan, arc / arc[at], closed=quarters == 4)
     nodes = surface(_SIZE * radius, turn * m)
     rim = _rim(np.stack([_SIZE * radius, turn], axis=-1), quarters)
@@ -104,14 +110,18 @@ def _both_ways(cells: int) -> Floats:
     return np.concatenate([np.linspace(-1.0, 0.0, low + 1)[:-1], np.linspace(0.0, 1.0, cells - low + 1)])
 
 
-def _polar(y: Floats, x: Floats, quarters: int) -> tuple[Floats, Floats]:
+def _polar(y: Floats, x: Floats, quarters: int, *, even: bool) -> tuple[Floats, Floats]:
     """Return radii and turns (0 to 1 over the fan) of the nodes (a + 1, b + 1) of a core of half width 1."""
     y, x = np.broadcast_arrays(y[:, None], x[None])
+    if even:
+        y, x = y * np.sqrt(1.0 - _EVEN * (x * x)), x * np.sqrt(1.0 - _EVEN * (y * y))
     square, radius = np.maximum(np.abs(x), np.abs(y)), np.sqrt(x * x + y * y)
-    shrunk = np.divide(square, radius, out=np.ones(square.shape), where=radius > 0.0)
     turn = arctan2(y, x)
-    turn = np.where(turn < 0.0, turn + 2.0 * math.pi, turn)
-    return radius * power(shrunk, _ROUNDING), turn / (0.5 * math.pi * quarters)
+    turn = np.where(turn < 0.0, turn + 2.0 * math.pi, turn) / (0.5 * math.pi * quarters)
+    if even:
+        return radius, turn
+    shrunk = np.divide(square, radius, out=np.ones(square.shape), where=radius > 0.0)
+    return radius * power(shrunk, _ROUNDING), turn
 
 
 def _rim(core: Floats, quarters: int) -> Floats:

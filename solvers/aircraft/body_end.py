@@ -45,7 +45,7 @@ class BodyEnd:
         polar = np.stack(
             [s * cos(theta)[:, None], s * sin(theta)[:, None], np.zeros((len(theta), len(s)))], axis=-1
         )
-        core = core_of(polar, 2, max(count // 2, 3))
+        core = core_of(polar, 2, max(count // 2, 3), even=True)
         at, step = float(s[core.at]), float(s[core.at + 1] - s[core.at])
         cells = max(smooth_cells(far - at, (step, size), WIDEST, FEWEST) for far, size in levels)
         return cls(theta, core, at, step, cells)

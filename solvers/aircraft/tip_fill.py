@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
-from meshonet.solvers.rows.span_spacing import smooth_arcs
+from meshonet.solvers.rows.span_spacing import smooth_arcs, spaced_cells, two_sided
 from meshonet.solvers.stacking.tip import ROWS, Cap
 
-_GROWTH = 1.3
+_GROWTH = 1.25
 """Growth of the rows of the ring: the section is thin, and its edge is no place of boundary layers."""
 _LONGEST = 0.2
-"""Longest first and last cells of the ring over the lengths of its lines: less than 1 - 1 / `_GROWTH`."""
-_MOST_ROWS = 200
+"""Longest outermost cells of the ring over the lengths of its lines: 1 - 1 / `_GROWTH`."""
 
 
 def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
@@ -23,14 +22,13 @@ def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
     """
     ring, core = Cap(bulge=0.0).patches(loop)
     edge, inner = ring[:, 0], ring[:, -1]
-    lengths = norms(inner - edge)
-    last = np.minimum(norms(inner - ring[:, -2]), _LONGEST * lengths)
-    outermost = np.minimum(first, _LONGEST * lengths)
-    for rows in range(ROWS, _MOST_ROWS):
-        arcs = smooth_arcs(lengths, (outermost, last), rows)
-        steps = np.diff(arcs)
-        if (steps[:, 1] <= _GROWTH * steps[:, 0]).all():
-            break
+    lengths, last = norms(inner - edge), norms(inner - ring[:, -2])
+    widest = int(lengths.argmax())
+    length, ends = float(lengths[widest]), (first, float(last[widest]))
+    rows = spaced_cells(length, ends, _GROWTH, length, ROWS)
+    wide, outermost = lengths > rows * first, np.minimum(first, _LONGEST * lengths)
+    arcs = smooth_arcs(lengths, (outermost, None), rows)
+    arcs[wide] = two_sided(lengths[wide], (first, last[wide]), _GROWTH, rows)
     parts = (arcs / lengths[:, None])[..., None]
     nodes = edge[:, None] + parts * (inner - edge)[:, None]
     nodes[:, -1] = inner

@@ -13,8 +13,8 @@ from meshonet.geometry.elementary import exp, log, power
 from meshonet.kernels._native import way_ahead
 from meshonet.solvers.rows.span_lines import SpanLines, integrals_at_keys, key_heights, slopes_at_keys
 
-_POWER = -4.0  # of the mean of what both ends and the middle ask for
-_BISECTIONS = 60
+_NEWTON = 12
+_FLATTEST, _FARTHEST = 1e-9, (-30.0, 30.0)  # of Newton's method: least slope, steps of the logarithm
 _LENGTHS = 33  # of lines for which nodes are spaced; others lie between
 SAMPLES = 17
 """Heights at which positions along a line have to be known."""
@@ -30,19 +30,24 @@ def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least
     """Return how many cells fill a length, as at its `ends` and growing to `largest`; `least` or more."""
 
     def reach(cells: int) -> float:
-        return float(_sizes(np.array([largest]), ends, growth, cells).sum())
+        return float(_sizes(np.array([largest]), _from_ends(ends, growth, cells))[0].sum())
 
     return bisect_left(range(MOST_CELLS), length, max(least, 4), key=reach)
 
 
 def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
     """Return arcs (n, cells + 1) on lines of `lengths` (n,) of cells that grow from both `ends`."""
-    low, high = log(1e-6 * lengths / cells), log(lengths)
-    for _ in range(_BISECTIONS):
-        mid = 0.5 * (low + high)
-        more = _sizes(exp(mid), ends, growth, cells).sum(axis=1) > lengths
-        low, high = np.where(more, low, mid), np.where(more, mid, high)
-    sizes = _sizes(exp(0.5 * (low + high)), ends, growth, cells)
+    from_ends = _from_ends(ends, growth, cells)
+    least, most = lengths / cells, lengths
+    largest = least
+    for _ in range(_NEWTON):  # on the logarithms, between bounds
+        sizes, share = _sizes(largest, from_ends)
+        total = sizes.sum(axis=1)
+        least, most = np.where(total < lengths, largest, least), np.where(total < lengths, most, largest)
+        slope = (sizes * share).sum(axis=1) / total
+        next_ = largest * exp(np.clip(log(lengths / total) / np.maximum(slope, _FLATTEST), *_FARTHEST))
+        largest = np.where((next_ >= least) & (next_ <= most), next_, np.sqrt(least * most))
+    sizes, _ = _sizes(largest, from_ends)
     sizes *= (lengths / sizes.sum(axis=1))[:, None]
     return np.concatenate([np.zeros((len(lengths), 1)), np.cumsum(sizes, axis=1)], axis=1)
 
@@ -58,12 +63,13 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
     straight, bump = log(first) + 0.0 * t, t
     if last is not None:
         straight, bump = straight + (log(last) - log(first)) * t, t * (1.0 - t)
-    low, high = (np.full((len(lengths), 1), way * _MOST_BENT) for way in (-1.0, 1.0))
-    for _ in range(_BISECTIONS):
-        bend = 0.5 * (low + high)
-        less = exp(straight + bend * bump).sum(axis=1) < lengths
-        low, high = np.where(less[:, None], bend, low), np.where(less[:, None], high, bend)
-    sizes = exp(straight + low * bump)
+    bend = np.zeros((len(lengths), 1))
+    for _ in range(_NEWTON):  # on the logarithm of the sum, which is convex
+        sizes = exp(straight + bend * bump)
+        total = sizes.sum(axis=1)
+        slope = (sizes * bump).sum(axis=1) / total
+        bend = np.clip(bend + (log(lengths / total) / slope)[:, None], -_MOST_BENT, _MOST_BENT)
+    sizes = exp(straight + bend * bump)
     sizes *= (lengths / sizes.sum(axis=1))[:, None]
     arcs = np.concatenate([np.zeros((len(lengths), 1)), np.cumsum(sizes, axis=1)], axis=1)
     arcs[:, -1] = lengths
@@ -82,12 +88,22 @@ def smooth_cells(length: float, ends: tuple[float, float | None], growth: float,
     return MOST_CELLS
 
 
-def _sizes(largest: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return sizes (n, cells) that grow from both ends up to `largest` (n,)."""
+def _from_ends(ends: Ends, growth: float, cells: int) -> Floats:
+    """Return what both `ends` ask for of sizes (n or 1, cells), to the power -4."""
     grown = power(growth, np.arange(cells, dtype=np.float64))
     low, high = (np.reshape(end, (-1, 1)) for end in ends)
-    both = power(low * grown, _POWER) + power(high * grown[::-1], _POWER)
-    return np.asarray(power(both + power(largest, _POWER)[:, None], 1.0 / _POWER))
+    return np.asarray(_fourth(1.0 / (low * grown)) + _fourth(1.0 / (high * grown[::-1])))
+
+
+def _sizes(largest: Floats, from_ends: Floats) -> tuple[Floats, Floats]:
+    """Return sizes (n, cells) that grow from both ends up to `largest` (n,), and relative slopes by that."""
+    middle = _fourth(1.0 / largest)[:, None]
+    both = 1.0 / (from_ends + middle)
+    return np.sqrt(np.sqrt(both)), both * middle
+
+
+def _fourth(values: Floats) -> Floats:
+    return np.square(np.square(values))
 
 
 @dataclass(frozen=True, eq=False)

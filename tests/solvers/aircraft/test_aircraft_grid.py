@@ -8,6 +8,7 @@ from aircraft_shapes import aircraft, body, unclaimed_faces, wall
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -199,6 +200,22 @@ def test_cells_go_on_across_the_edge_of_the_tip(grid: Grid) -> None:
     collar, ring = np.asarray(grid.blocks[0].nodes)[:, :, tip], np.asarray(grid.blocks[7].nodes)[:, :, 0]
     outside, inside = (np.linalg.norm(each[:, 1] - each[:, 0], axis=-1) for each in (collar, ring))
     assert outside.mean() / inside.mean() == pytest.approx(1.0, abs=0.1)
+
+
+def ratios(nodes: Floats, axis: int) -> Floats:
+    """Of neighbouring cells along lines, at least 1."""
+    steps = np.moveaxis(np.linalg.norm(np.diff(nodes, axis=axis), axis=-1), axis, 0)
+    return np.asarray(np.maximum(steps[1:] / steps[:-1], steps[:-1] / steps[1:]))
+
+
+def test_no_line_in_the_cores_at_nose_and_tail_has_a_kink(grid: Grid) -> None:
+    for core in (grid.blocks[4], grid.blocks[6]):
+        assert max(float(ratios(np.asarray(core.nodes)[:, :, 0], axis).max()) for axis in (0, 1)) < 1.3
+
+
+def test_rows_inside_a_tip_grow_evenly_where_it_is_thin_too(grid: Grid) -> None:
+    ring = np.asarray(grid.blocks[7].nodes)[:, :, 0]
+    assert ratios(ring, 1).max() < 1.27
 
 
 def test_a_drooped_wing_with_a_thin_edge_is_made() -> None:
