@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from meshonet.geometry.arrays import AnyArray, Floats, Indices, cross2
+from meshonet.kernels._native import smallest_corners
 
 
 def ring_of(nodes: AnyArray) -> AnyArray:
@@ -15,6 +16,11 @@ def ring_of(nodes: AnyArray) -> AnyArray:
 def corner_jacobians(corners: Floats) -> Floats:
     """Return the Jacobians (m, 4) at the corners (m, 4, 2) of planar quadrilaterals."""
     return cross2(np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners)
+
+
+def smallest_jacobians(nodes: Floats, quads: Indices) -> Floats:
+    """Return the smallest corner Jacobian (m,) of each of the quads (m, 4) of nodes (n, 2)."""
+    return smallest_corners(np.ascontiguousarray(nodes), np.ascontiguousarray(quads, dtype=np.intp))
 
 
 def lattice_quads(blocks: Sequence[Indices]) -> Indices:

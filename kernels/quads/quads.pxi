@@ -4,6 +4,10 @@ cdef extern from "quads/topology.h":
         const ptrdiff_t *quads, const ptrdiff_t *edge_of, ptrdiff_t m, ptrdiff_t n, ptrdiff_t e, const ptrdiff_t *node,
         const ptrdiff_t *edge, ptrdiff_t *line, ptrdiff_t *room) nogil
 
+cdef extern from "quads/corners.h":
+    void c_smallest_corners "smallest_corners"(
+        const double *nodes, const ptrdiff_t *quads, ptrdiff_t m, double *smallest) nogil
+
 cdef extern from "quads/walls.h":
     ctypedef struct WallLoop:
         ArcLengths lengths
@@ -69,6 +73,18 @@ def line_neighbours(quads, edge_of, node, edge):
     with nogil:
         pairs = c_line_neighbours(q, s, m, n, e, v, w, to, scratch)
     return line, pairs
+
+
+def smallest_corners(nodes, quads):
+    """Return the smallest corner Jacobian (m,) of each of the quads (m, 4) of nodes (n, 2); see ``corners.h``."""
+    cdef ptrdiff_t m = len(quads), n = len(nodes)
+    smallest = np.empty(m)
+    cdef const double *x = reads(nodes, (n, 2))
+    cdef const ptrdiff_t *q = reads_places(quads, (m, 4), n)
+    cdef double *to = fills(smallest, (m,))
+    with nogil:
+        c_smallest_corners(x, q, m, to)
+    return smallest
 
 
 cdef class QuadDescent:

@@ -12,7 +12,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, Indices, cross2
 from meshonet.geometry.elementary import arctan2, log, sin
-from meshonet.geometry.layout.lattice import corner_jacobians
+from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.kernels._native import QuadDescent, line_neighbours
 from meshonet.solvers.energy.walls import Walls, turned
@@ -51,7 +51,7 @@ def unknowns_of(mesh: QuadMesh, held: Bools | None) -> Unknowns:
 
 def smallest_jacobian(nodes: Floats, quads: Indices, areas: Floats | None = None) -> float:
     """Return the smallest corner Jacobian of `quads` (m, 4) of `nodes` (n, 2), relative to `areas` (m,)."""
-    least = corner_jacobians(nodes[quads]).min(axis=1, initial=np.inf)
+    least = smallest_jacobians(nodes, quads)
     return float((least if areas is None else least / areas).min(initial=np.inf))
 
 
@@ -127,19 +127,23 @@ class Problem:
         These are the edges that leave a side of a block to both sides where the side ends in the node.
         """
         mesh, parts = self.mesh, [np.empty((0, 2), dtype=np.intp)]
-        for vertex in np.flatnonzero(mesh.irregular & ~mesh.wall_nodes & self.moves).tolist():
-            edges = np.flatnonzero((mesh.edges == vertex).any(axis=1))
+        irregular = mesh.irregular & ~mesh.wall_nodes & self.moves
+        near = np.flatnonzero(irregular[mesh.edges].any(axis=1))
+        for vertex in np.flatnonzero(irregular).tolist():
+            edges = near[(mesh.edges[near] == vertex).any(axis=1)]
             away = mesh.nodes[mesh.edges[edges].sum(axis=1) - vertex] - mesh.nodes[vertex]
             edges = edges[np.argsort(arctan2(away[:, 1], away[:, 0]), kind="stable")]
             parts.append(np.stack([edges, np.roll(edges, -2)], axis=1))
         return np.ascontiguousarray(np.concatenate(parts))
 
     def _areas(self) -> Floats:
-        """Return the target areas (m,) of cells for untangling, which are near their current areas."""
+        """Return the areas (m,) of cells; for untangling, if one is folded, target areas near these."""
         z, n = self.nodes[self.quads], len(self.nodes)
         across, other = z[:, 2] - z[:, 0], z[:, 3] - z[:, 1]
         signed = 0.5 * cross2(across, other)
         area = np.abs(signed)
+        if smallest_jacobian(self.nodes, self.quads) > 0.0:
+            return area
         flat, count = self.quads.ravel(), np.maximum(np.bincount(self.quads.ravel(), minlength=n), 1)
         around = area
         for _ in range(SPREAD):

@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.solvers.blocking.layers.finished import smallest_corners
 from meshonet.solvers.rows.key_sections import KeySection
 from meshonet.solvers.rows.span_lines import SpanLines, key_heights
 
@@ -48,13 +48,15 @@ def even_behind(sections: Sequence[KeySection], columns: Indices) -> tuple[KeySe
     moved = np.flatnonzero(part > 0.0)
     lines = SpanLines.through(np.array(values)[:, moved], _DEGREE)
     even = lines.at(key_heights(len(sections))[:, None])
+    quads = mesh.quads[(part > 0.0)[mesh.quads].any(axis=1)]
     for less in _PARTS:
         made = [
             _moved(section, moved, wanted, less * part[moved])
             for section, wanted in zip(sections, even, strict=True)
         ]
         pairs = (
-            [smallest_corners(each.layout.mesh) for each in two] for two in zip(sections, made, strict=True)
+            [smallest_jacobians(each.layout.mesh.nodes, quads) for each in two]
+            for two in zip(sections, made, strict=True)
         )
         if all((after > _KEPT * before).all() for before, after in pairs):
             return tuple(made)

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.cascade.cascade import scaled
 from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of
 from meshonet.solvers.blocking.cascade.passage_template import template
-from meshonet.solvers.blocking.layers.finished import smallest_corners
 from meshonet.solvers.blocking.layers.layer_law import layer_arcs
 from meshonet.solvers.blocking.layers.layer_rows import JOIN
 from meshonet.solvers.blocking.sizes.chords import Chords
@@ -76,7 +76,7 @@ def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout
 
 def folded_section(plane: SectionPlane, mesh: QuadMesh) -> NoValidGridError:
     """Return the error for a section whose mesh is folded, with the place of its worst cell."""
-    worst = int(smallest_corners(mesh).argmin())
+    worst = int(smallest_jacobians(mesh.nodes, mesh.quads).argmin())
     place = plane.place(mesh.nodes[mesh.quads[worst]].mean(axis=0))
     return NoValidGridError(f"cells stay folded in the {place}; {REMEDY}")
 

@@ -29,12 +29,13 @@ from meshonet.solvers.blocking.cascade.passage import (
 )
 from meshonet.solvers.blocking.cascade.passage_template import cut_of, template
 from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
-from meshonet.solvers.blocking.layers.finished import evened, smallest_corner
+from meshonet.solvers.blocking.layers.finished import evened
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
+from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.stages import Timings, stage
 
@@ -81,7 +82,7 @@ def cascade_layout(
         rows = _rows(cascade, fine, metric)
         whole = extended(fine, cut_of(fine), passage, cascade.blade, rows)
         whole = evened(whole, cascade.layers)
-    if smallest_corner(whole.mesh) <= 0.0:
+    if smallest_jacobian(whole.mesh.nodes, whole.mesh.quads) <= 0.0:
         raise NoValidGridError("cells of the passage are folded")
     return turned_round(whole) if cascade.opposite else whole
 

@@ -7,11 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats
+from meshonet.geometry.arrays import Bools
 from meshonet.geometry.errors import NoValidGridError, SolverError
-from meshonet.geometry.layout.lattice import corner_jacobians
+from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.layout import Layout
-from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.decomposition.collapse.score import deviations
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
@@ -42,7 +41,7 @@ def finished(layout: Layout, settings: LayerSettings, held: Bools) -> Layout:
         block = layout.blocks[number]
         held[block[:, : 2 * block.shape[1] // 3]] = True
     layout = unfolded(layout, held)
-    corner = smallest_corners(layout.mesh)
+    corner = smallest_jacobians(layout.mesh.nodes, layout.mesh.quads)
     if corner.min() <= 0.0:
         x, y = layout.mesh.nodes[layout.mesh.quads[int(corner.argmin())]].mean(axis=0)
         raise NoValidGridError(f"layers or cells beside them are folded at ({x:.6g}, {y:.6g})")
@@ -70,7 +69,7 @@ def evened(layout: Layout, settings: LayerSettings, held: Bools | None = None) -
 def unfolded(layout: Layout, held: Bools) -> Layout:
     """Return the layout with nodes near folded cells moved to unfold them; `held` (n,) nodes are fixed."""
     mesh = layout.mesh
-    bad = smallest_corners(mesh) <= 0.0
+    bad = smallest_jacobians(mesh.nodes, mesh.quads) <= 0.0
     if not bad.any():
         return layout
     free = np.zeros(len(mesh.nodes), dtype=bool)
@@ -79,13 +78,3 @@ def unfolded(layout: Layout, held: Bools) -> Layout:
         free[mesh.quads[free[mesh.quads].any(axis=1)]] = True
     optimum = optimise(mesh, iterations=FEW_ITERATIONS, held=held | ~free)
     return replace(layout, mesh=made_symmetric(optimum.mesh)) if optimum.valid else layout
-
-
-def smallest_corner(mesh: QuadMesh) -> float:
-    """Return the smallest corner Jacobian of the quads of a mesh."""
-    return float(smallest_corners(mesh).min())
-
-
-def smallest_corners(mesh: QuadMesh) -> Floats:
-    """Return the smallest corner Jacobian (m,) of each quad of a mesh."""
-    return np.asarray(corner_jacobians(mesh.nodes[mesh.quads]).min(axis=1))

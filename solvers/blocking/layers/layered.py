@@ -30,7 +30,7 @@ from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetr
 from meshonet.solvers.blocking.layers.attach import attach
 from meshonet.solvers.blocking.layers.even_line import evened_loops
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
-from meshonet.solvers.blocking.layers.finished import finished, smallest_corner, unfolded
+from meshonet.solvers.blocking.layers.finished import finished, unfolded
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, heights_inside, ring_rows
 from meshonet.solvers.blocking.layers.outside import found_outside, taken_outside
 from meshonet.solvers.blocking.layers.placed_rows import held_nodes, layers_of, with_layers
@@ -41,6 +41,7 @@ from meshonet.solvers.blocking.layers.wall_rows import WallRows, with_wall_rows
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.even_metric import metric_places
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
+from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.stages import Timings, stage
 
@@ -129,7 +130,7 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
         on = np.isin(coarse.mesh.places.loop, list(walls.measures))
         for limit in (EVEN * np.array(LIMITS)).tolist():
             even = walls.symmetric(evened_loops(coarse, walls.measures, times * limit))
-            if smallest_corner(even.mesh) > 0.0:
+            if smallest_jacobian(even.mesh.nodes, even.mesh.quads) > 0.0:
                 coarse = _optimised(even, walls, rows, counts, ITERATIONS, on)
                 break
         coarse = replace(coarse, mesh=evened_mesh(coarse.mesh, on | coarse.mesh.tied, times * EVEN))
@@ -149,7 +150,7 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
         fine = _tied(walls.symmetric(refine(coarse, cells, chords)))
         fine = walls.symmetric(unfolded(fine, np.isin(fine.mesh.places.loop, list(walls.measures))))
         moved = walls.symmetric(evened_loops(fine, walls.measures, EVEN))
-        fine = moved if smallest_corner(moved.mesh) > 0.0 else fine
+        fine = moved if smallest_jacobian(moved.mesh.nodes, moved.mesh.quads) > 0.0 else fine
         return _tied(walls.symmetric(with_layers(fine, rows, walls.of_rows)))
 
 

@@ -9,10 +9,10 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.blocks import block_figures
-from meshonet.solvers.blocking.layers.finished import smallest_corner
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.blocking.layers.layered import layered
 from meshonet.solvers.blocking.layers.outside import found_outside
+from meshonet.solvers.energy.quad_problem import smallest_jacobian
 
 
 def cylinder(x, y, radius, points=80):
@@ -47,7 +47,7 @@ ARRANGEMENTS = {
 def test_bodies_get_layers_of_the_first_cells_asked_for(name):
     domain, first = ARRANGEMENTS[name]
     layout = layered(domain, list(range(1, len(domain.loops))), LayerSettings(first), cells=12000)
-    assert smallest_corner(layout.mesh) > 0.0
+    assert smallest_jacobian(layout.mesh.nodes, layout.mesh.quads) > 0.0
     assert 0.7 * 12000 < layout.cells < 1.4 * 12000
     nodes = layout.mesh.nodes
     for number in layout.layers:

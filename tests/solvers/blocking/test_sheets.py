@@ -8,10 +8,10 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.solvers.blocking.layers import layered as pipeline
-from meshonet.solvers.blocking.layers.finished import smallest_corner
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.blocking.layers.layered import layered
 from meshonet.solvers.blocking.layers.sheet import has_sharp_edge
+from meshonet.solvers.energy.quad_problem import smallest_jacobian
 
 FIRST = LayerSettings(1e-5)
 
@@ -72,7 +72,7 @@ def case(request):
 
 def test_grids_are_valid_and_have_the_first_cells_asked_for_at_every_wall(case):
     _, layout = case
-    assert smallest_corner(layout.mesh) > 0.0
+    assert smallest_jacobian(layout.mesh.nodes, layout.mesh.quads) > 0.0
     assert 0.7 * 12000 < layout.cells < 1.4 * 12000
     mesh = layout.mesh
     wall = mesh.places.loop > 0
@@ -118,4 +118,4 @@ def test_wakes_go_along_a_line_of_the_grid_as_fine_as_the_wall_at_the_edge():
 def test_bodies_with_other_than_one_sharp_edge_keep_rings(body):
     assert not has_sharp_edge(body)
     chosen = layered(Domain((TUNNEL, body)), [1], FIRST, cells=6000)
-    assert smallest_corner(chosen.mesh) > 0.0
+    assert smallest_jacobian(chosen.mesh.nodes, chosen.mesh.quads) > 0.0

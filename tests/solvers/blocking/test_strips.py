@@ -8,10 +8,10 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.to_grid import to_grid
-from meshonet.solvers.blocking.layers.finished import smallest_corner
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.blocking.layers.layered import layered
 from meshonet.solvers.blocking.layers.stretches import layered_walls
+from meshonet.solvers.energy.quad_problem import smallest_jacobian
 
 FIRST = 1e-3
 SIDES = {"south": (0, 1), "north": (-1, -2)}
@@ -192,4 +192,4 @@ def test_walls_shorter_than_layers_are_thick_still_get_exact_first_cells():
     loops, stretches = layered_walls(domain, ("star",))
     layout = layered(domain, loops, LayerSettings(1.7e-3), stretches=stretches, cells=2000)
     np.testing.assert_allclose(first_cells(layout, ["star"]), 1.7e-3, rtol=1e-6)
-    assert smallest_corner(layout.mesh) > 0.0
+    assert smallest_jacobian(layout.mesh.nodes, layout.mesh.quads) > 0.0
