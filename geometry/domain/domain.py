@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.domain.ring import ring_loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.threads import cached_property
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,12 +14,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 
 import numpy as np
 
 from meshonet.geometry.arrays import Indices, distinct
 from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.threads import cached_property
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,12 +6,12 @@ Unlike blocks, quads share their nodes: a node of an interface or a singular ver
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.threads import cached_property
 from meshonet.kernels._native import connect_quads
 
 

@@ -16,7 +16,6 @@ of constant h; likewise `foot` above a gap at the hub.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -25,6 +24,7 @@ from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.profile_points import apart
+from meshonet.geometry.threads import cached_property
 from meshonet.kernels._native import (
     channel_nodes,
     channel_points,

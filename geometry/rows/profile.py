@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import copy
-from functools import cached_property
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.rows.channel import Channel
 from meshonet.geometry.rows.profile_points import check_profile, distinct_points
+from meshonet.geometry.threads import cached_property
 
 _SAMPLES = 2000  # points of the curve among which the edges are looked for
 _BASE = 0.1  # of the chord: corners that are no farther apart than this, and blunt, have an edge between them

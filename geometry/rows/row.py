@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from numbers import Integral, Real
 
 import numpy as np
@@ -17,6 +16,7 @@ from meshonet.geometry.rows.blade import BladeSurface
 from meshonet.geometry.rows.channel import Channel
 from meshonet.geometry.rows.frame import UNITS
 from meshonet.geometry.rows.profile_points import as_points
+from meshonet.geometry.threads import cached_property
 
 FEWEST, MOST = 2, 1000
 """Blades of a row."""

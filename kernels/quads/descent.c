@@ -10,7 +10,7 @@
 #define MANY 100000 /* unknowns from which on inner and wall nodes do not know of each other: a fourth of the work */
 #define STIFFNESS 3.0  /* of an edge, over its length squared and the number of cells */
 
-/* Unknown k's share of the moves of a node, (2,) or for free nodes a row of the unit matrix. */
+/* Row k's share of the moves of a node, (2,) or for free nodes a row of the unit matrix. */
 typedef struct {
     ptrdiff_t first;
     int count;
@@ -22,7 +22,9 @@ static Moves moves_of(const QuadDescent *d, ptrdiff_t node)
     Moves m = {d->unknown[node], 0, {{0.0}}};
     if (m.first < 0)
         return m;
-    if (d->wall[node] >= 0) {
+    if (d->stiffness.sides == 2) {
+        m.first /= 2, m.count = 1, m.along[0][0] = 1.0;
+    } else if (d->wall[node] >= 0) {
         const double *tangent = d->walls.tangent + 2 * d->wall[node];
         m.count = 1, m.along[0][0] = tangent[0], m.along[0][1] = tangent[1];
     } else {
@@ -31,12 +33,12 @@ static Moves moves_of(const QuadDescent *d, ptrdiff_t node)
     return m;
 }
 
-/* Entries of the matrix: the diagonal, then those between the unknowns of the ends of each edge; with `rows` where they
+/* Entries of the matrix: the diagonal, then those between the rows of the ends of each edge; with `rows` where they
    are, with `values` what is added where. */
 static ptrdiff_t assemble(const QuadDescent *d, ptrdiff_t *rows, ptrdiff_t *columns, double *values,
                           const ptrdiff_t *slot, const double *stiff)
 {
-    const ptrdiff_t n = d->steps.n;
+    const ptrdiff_t n = d->stiffness.pattern.n;
     ptrdiff_t entry = n;
     if (rows)
         for (ptrdiff_t k = 0; k < n; k++)
@@ -65,7 +67,8 @@ static ptrdiff_t assemble(const QuadDescent *d, ptrdiff_t *rows, ptrdiff_t *colu
 static int analyse(QuadDescent *d)
 {
     Stiffness *s = &d->stiffness;
-    const ptrdiff_t n = d->steps.n, most = n + 2 * d->mesh.edges;
+    s->sides = d->steps.n == 2 * d->free_count ? 2 : 1;
+    const ptrdiff_t n = d->steps.n / s->sides, most = n + 2 * d->mesh.edges;
     ptrdiff_t *rows = malloc(2 * (size_t)(most + 1) * sizeof *rows);
     s->slot = malloc((size_t)(most + 1) * sizeof *s->slot);
     s->pattern.order = malloc(2 * (size_t)(n + 1) * sizeof(int));
@@ -74,18 +77,18 @@ static int analyse(QuadDescent *d)
     int failed = !rows || !s->slot || !s->pattern.order || !s->pattern.start || !s->pattern.row;
     if (!failed) {
         s->pattern.parent = s->pattern.order + n + 1, s->pattern.fill = s->pattern.start + n + 1;
-        s->entries = assemble(d, rows, rows + most, NULL, NULL, NULL);
         s->pattern.n = (int)n;
+        s->entries = assemble(d, rows, rows + most, NULL, NULL, NULL);
         failed = sparse_analyse((int)n, s->entries, rows, rows + most, &s->pattern, s->slot) < 0;
     }
     if (!failed) {
         const size_t distinct = (size_t)s->pattern.start[n], fill = (size_t)s->pattern.fill[n];
-        s->values = malloc((distinct + fill + 3 * (size_t)n + 1) * sizeof(double));
+        s->values = malloc((distinct + fill + (1 + 2 * (size_t)s->sides) * (size_t)n + 1) * sizeof(double));
         s->lower_row = malloc((fill + 1) * sizeof(int));
         failed = !s->values || !s->lower_row;
         if (!failed) {
             s->lower = s->values + distinct, s->pivots = s->lower + fill;
-            s->right = s->pivots + n, s->scratch = s->right + n;
+            s->right = s->pivots + n, s->scratch = s->right + s->sides * n;
         }
     }
     free(rows);
@@ -97,10 +100,11 @@ static int analyse(QuadDescent *d)
 static int make_stiffness(QuadDescent *d)
 {
     Stiffness *s = &d->stiffness;
-    const ptrdiff_t n = d->steps.n, edges = d->mesh.edges;
+    const ptrdiff_t edges = d->mesh.edges;
     double *stiff = d->mesh.length, mean = 0.0;
     if (!s->slot && analyse(d) < 0)
         return -1;
+    const ptrdiff_t n = s->pattern.n;
     for (ptrdiff_t e = 0; e < edges; e++) {
         const ptrdiff_t a = 2 * d->mesh.edge[2 * e], b = 2 * d->mesh.edge[2 * e + 1];
         const double dx = d->x[b] - d->x[a], dy = d->x[b + 1] - d->x[a + 1];
@@ -217,7 +221,7 @@ static void precondition(void *problem, const double *gradient, float *result)
     if (n == 0)
         return;
     memcpy(s->right, gradient, (size_t)n * sizeof *gradient);
-    sparse_solve(&s->pattern, s->lower_row, s->lower, s->pivots, 1, s->right, s->scratch);
+    sparse_solve(&s->pattern, s->lower_row, s->lower, s->pivots, s->sides, s->right, s->scratch);
     for (ptrdiff_t k = 0; k < n; k++)
         result[k] = (float)s->right[k];
 }

@@ -5,9 +5,11 @@
 #include "sparse/factor.h"
 #include "walls.h"
 
-/* The preconditioner: the Laplacian of the graph of edges, for moves of all nodes, P^T (L x I) P, factored. */
+/* The preconditioner: the Laplacian of the graph of edges, for moves of all nodes, P^T (L x I) P, factored. Where no wall
+   node slides, both coordinates have the same factor, of as many rows as there are nodes. */
 typedef struct {
     SparsePattern pattern;
+    ptrdiff_t sides; /* unknowns of each row */
     ptrdiff_t entries, *slot;
     double *values, *lower, *pivots, *right, *scratch;
     int *lower_row;

@@ -12,6 +12,7 @@
 #include "topology.h"
 #include "clones.h"
 #include "energy/corner.h"
+#include "sums.h"
 #include <math.h>
 #include <string.h>
 
@@ -135,19 +136,26 @@ static double all_pairs(const QuadMesh *mesh, const double *restrict x, double *
         const double dx = x[b] - x[a], dy = x[b + 1] - x[a + 1];
         length[k] = 0.5 * logarithm(dx * dx + dy * dy + 1e-300, force + k) - target[k];
     }
-    MESHONET_INDEPENDENT
-    for (ptrdiff_t k = 0; k < n; k++) {
-        double sum = 0.0, beyond = 0.0;
-        for (int i = 0; i < 4; i++) {
-            const double d = length[k] - length[line[4 * k + i]];
-            sum += d, energy += d * d;
+    for (ptrdiff_t first = 0; first < n; first += BATCH) {
+        const ptrdiff_t count = n - first < BATCH ? n - first : BATCH;
+        double squares[BATCH], excesses[BATCH];
+        MESHONET_INDEPENDENT
+        for (ptrdiff_t l = 0; l < count; l++) {
+            const ptrdiff_t k = first + l;
+            double sum = 0.0, square = 0.0, beyond = 0.0, over = 0.0;
+            for (int i = 0; i < 4; i++) {
+                const double d = length[k] - length[line[4 * k + i]];
+                sum += d, square += d * d;
+            }
+            for (int i = FIRST_BEHIND; i < 4; i++) {
+                const double d = length[k] - length[line[4 * k + i]];
+                const double more = d > limit ? d - limit : d < -limit ? d + limit : 0.0;
+                beyond += more, over += more * more;
+            }
+            force[k] *= 2.0 * (by * sum + steep * beyond);
+            squares[l] = square, excesses[l] = over;
         }
-        for (int i = FIRST_BEHIND; i < 4; i++) {
-            const double d = length[k] - length[line[4 * k + i]];
-            const double more = d > limit ? d - limit : d < -limit ? d + limit : 0.0;
-            beyond += more, excess += more * more;
-        }
-        force[k] *= 2.0 * (by * sum + steep * beyond);
+        energy += sum_of(squares, count), excess += sum_of(excesses, count);
     }
     for (ptrdiff_t k = 0; k < mesh->crossed_count && steep > 0.0; k++)
         for (int i = 0; i < 2; i++) {

@@ -1,6 +1,7 @@
 /* Row by row (Davis, ACM Trans. Math. Softw. 31 (2005) 587-591): row k of L solves L D l = a with the rows above it,
    and the elimination tree says which of its entries are not zero. */
 #include "factor.h"
+#include "clones.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -62,43 +63,27 @@ ptrdiff_t sparse_factor(const SparsePattern *a, const double *values, int *lower
     return bad;
 }
 
-static void solve_one(const SparsePattern *a, const int *lower_row, const double *lower, const double *pivots, double *x)
+/* Solve for one right side or two, which begin `sides` numbers after those of the row before. */
+MESHONET_INLINE void solve(const SparsePattern *a, const int *lower_row, const double *lower, const double *pivots,
+                           ptrdiff_t sides, const int count, double *x)
 {
     const int n = a->n;
+    double own[2];
     for (int k = 0; k < n; k++) {
-        const double xk = x[k];
+        for (int c = 0; c < count; c++)
+            own[c] = x[k * sides + c];
         for (ptrdiff_t p = a->fill[k]; p < a->fill[k + 1]; p++)
-            x[lower_row[p]] -= lower[p] * xk;
+            for (int c = 0; c < count; c++)
+                x[lower_row[p] * sides + c] -= lower[p] * own[c];
     }
     for (int k = n - 1; k >= 0; k--) {
-        double xk = x[k] / pivots[k];
+        for (int c = 0; c < count; c++)
+            own[c] = x[k * sides + c] / pivots[k];
         for (ptrdiff_t p = a->fill[k]; p < a->fill[k + 1]; p++)
-            xk -= lower[p] * x[lower_row[p]];
-        x[k] = xk;
-    }
-}
-
-static void solve_several(const SparsePattern *a, const int *lower_row, const double *lower, const double *pivots,
-                          ptrdiff_t sides, double *x)
-{
-    const int n = a->n;
-    for (int k = 0; k < n; k++) {
-        const double *restrict xk = x + k * sides;
-        for (ptrdiff_t p = a->fill[k]; p < a->fill[k + 1]; p++) {
-            double *restrict below = x + lower_row[p] * sides;
-            for (ptrdiff_t c = 0; c < sides; c++)
-                below[c] -= lower[p] * xk[c];
-        }
-    }
-    for (int k = n - 1; k >= 0; k--) {
-        double *restrict xk = x + k * sides;
-        for (ptrdiff_t c = 0; c < sides; c++)
-            xk[c] /= pivots[k];
-        for (ptrdiff_t p = a->fill[k]; p < a->fill[k + 1]; p++) {
-            const double *restrict below = x + lower_row[p] * sides;
-            for (ptrdiff_t c = 0; c < sides; c++)
-                xk[c] -= lower[p] * below[c];
-        }
+            for (int c = 0; c < count; c++)
+                own[c] -= lower[p] * x[lower_row[p] * sides + c];
+        for (int c = 0; c < count; c++)
+            x[k * sides + c] = own[c];
     }
 }
 
@@ -108,10 +93,11 @@ void sparse_solve(const SparsePattern *a, const int *lower_row, const double *lo
     for (int k = 0; k < a->n; k++)
         for (ptrdiff_t c = 0; c < sides; c++)
             scratch[k * sides + c] = x[a->order[k] * sides + c];
-    if (sides == 1)
-        solve_one(a, lower_row, lower, pivots, scratch);
-    else
-        solve_several(a, lower_row, lower, pivots, sides, scratch);
+    ptrdiff_t side = 0;
+    for (; side + 2 <= sides; side += 2)
+        solve(a, lower_row, lower, pivots, sides, 2, scratch + side);
+    if (side < sides)
+        solve(a, lower_row, lower, pivots, sides, 1, scratch + side);
     for (int k = 0; k < a->n; k++)
         for (ptrdiff_t c = 0; c < sides; c++)
             x[a->order[k] * sides + c] = scratch[k * sides + c];

@@ -82,6 +82,12 @@ class Problem:
         self._number()
         self.descent = self._descent(aspects, targets, turning)
 
+    def take(self, mesh: QuadMesh) -> None:
+        """Begin again with a mesh of other nodes, all of whose wall nodes are where they were, and stay."""
+        self.mesh = mesh
+        self.nodes[:] = (mesh.nodes - self.centre) / self.unit
+        self.areas[:] = self._areas()
+
     def _number(self) -> None:
         """Assign numbers to the unknowns: coordinates of inner nodes, then arc lengths of wall nodes."""
         n, known, walls = len(self.nodes), self.unknowns, self.walls

@@ -15,6 +15,7 @@ and shape).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,16 +65,35 @@ def optimise(
     and β of the functional if there are `targets` or if growth counts. `growth` is the weight of ratios of
     consecutive edges, and the logarithm from which on these count.
     """
+    problem = problem_of(mesh, held, aspects, targets, turning)
+    if problem is None:
+        return QuadOptimum(mesh, False, np.inf, 0)
+    steps = (weights,) if growth[0] > 0.0 else (FREE,) if targets is None else (FREE, weights)
+    return minimise(problem, iterations, tolerance, steps, growth)
+
+
+def problem_of(
+    mesh: QuadMesh, held: Bools | None, aspects: Floats | None = None, targets: Floats | None = None,
+    turning: float = ALLOWED,
+) -> Problem | None:  # fmt: skip
+    """Return the minimisation over the nodes of a mesh; see `optimise`. None: fixed wall nodes overtake."""
     unknowns = unknowns_of(mesh, held)
     walls = walls_of(mesh, unknowns.fixed, unknowns.tied)
-    if walls is None:
-        return QuadOptimum(mesh, False, np.inf, 0)
-    problem = Problem(mesh, unknowns, walls, aspects, targets, turning)
+    return Problem(mesh, unknowns, walls, aspects, targets, turning) if walls else None
+
+
+def minimise(
+    problem: Problem, iterations: int, tolerance: float, steps: Sequence[tuple[float, float]],
+    growth: tuple[float, float],
+) -> QuadOptimum:  # fmt: skip
+    """Return the mesh of a problem with all nodes at the minimum; see `optimise`.
+
+    `steps` are w and β of the functionals that are minimised one after the other.
+    """
     low, done = problem.smallest(), 0
     if low <= 0.0:
         low, done = _unfold(problem, low)
     value = np.inf
-    steps = (weights,) if growth[0] > 0.0 else (FREE,) if targets is None else (FREE, weights)
     for own in steps:
         if low > 0.0:
             value, low, more = problem.descent.run(

@@ -12,7 +12,7 @@ from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import least_squares
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.rows.gap_fill import GapFill, filled_outline
-from meshonet.solvers.rows.harmonic import harmonic
+from meshonet.solvers.rows.harmonic import HarmonicMoves
 from meshonet.solvers.rows.span_lines import key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, line_parts
 from meshonet.solvers.rows.zones import Zone
@@ -107,7 +107,7 @@ def _carried(fill: GapFill, outline: Floats) -> Floats:
     nodes = product(local, least_squares(local[:k], wanted))
     moves = np.zeros_like(nodes)
     moves[:k] = wanted - nodes[:k]
-    return np.asarray(nodes + harmonic(mesh, moves, np.arange(len(moves)) < k))
+    return np.asarray(nodes + HarmonicMoves(mesh, np.arange(len(moves)) < k).of(mesh, moves))
 
 
 def _between(

@@ -9,33 +9,43 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.sparse import SparsePattern
 
 
-def harmonic(mesh: QuadMesh, moves: Floats, given: Bools) -> Floats:
-    """Return displacements (n, 2): `moves` (n, 2) where `given` (n,), elsewhere means of neighbours.
+class HarmonicMoves:
+    """Harmonic displacements of the nodes of meshes of the same quads, of which the same nodes are given.
 
     Neighbours weigh as the inverse square of their distance, so that small cells keep their form. Nodes with
     a partner move as that does.
+
+    Parameters
+    ----------
+    mesh : one of the meshes.
+    given : (n,) nodes whose displacements are given.
     """
-    partner = mesh.places.partner
-    own = np.where(partner >= 0, partner, np.arange(len(partner)))
-    given = given | given[own]
-    moves = np.where(given[:, None], moves, 0.0)
-    free = np.flatnonzero(~given & (partner < 0))
-    number = np.full(len(given), -1)
-    number[free] = np.arange(len(free))
-    off = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
-    weight = 1.0 / (off**2).sum(axis=1)
-    a, b = own[mesh.edges].T
-    inner = ~given[a] & ~given[b]
-    diagonal = (np.bincount(a, weight, len(given)) + np.bincount(b, weight, len(given)))[free]
-    rows = np.concatenate([np.arange(len(free)), number[a[inner]]])
-    columns = np.concatenate([np.arange(len(free)), number[b[inner]]])
-    factor = SparsePattern(len(free), rows, columns).factor(np.concatenate([diagonal, -weight[inner]]))
-    right = np.zeros((len(given), 2))
-    for one, other in ((a, b), (b, a)):
-        side = ~given[one] & given[other]
-        for axis in (0, 1):
-            right[:, axis] += np.bincount(one[side], weight[side] * moves[other[side], axis], len(given))
-    out = moves.copy()
-    for axis in (0, 1):
-        out[free, axis] = factor.solve(np.ascontiguousarray(right[free, axis]))
-    return out[own]
+
+    def __init__(self, mesh: QuadMesh, given: Bools) -> None:
+        partner = mesh.places.partner
+        self.own = np.where(partner >= 0, partner, np.arange(len(partner)))
+        self.given = given | given[self.own]
+        self.free = np.flatnonzero(~self.given & (partner < 0))
+        number = np.full(len(given), -1)
+        number[self.free] = np.arange(len(self.free))
+        self.edges = self.own[mesh.edges].T
+        a, b = self.edges
+        self.inner = ~self.given[a] & ~self.given[b]
+        diagonal, inner = np.arange(len(self.free)), (number[ends[self.inner]] for ends in (a, b))
+        self.pattern = SparsePattern(len(self.free), *(np.concatenate([diagonal, each]) for each in inner))
+
+    def of(self, mesh: QuadMesh, moves: Floats) -> Floats:
+        """Return displacements (n, 2): `moves` (n, 2) where they are given, elsewhere means of neighbours."""
+        moves = np.where(self.given[:, None], moves, 0.0)
+        (a, b), count = self.edges, len(moves)
+        off = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
+        weight = 1.0 / (off**2).sum(axis=1)
+        diagonal = (np.bincount(a, weight, count) + np.bincount(b, weight, count))[self.free]
+        factor = self.pattern.factor(np.concatenate([diagonal, -weight[self.inner]]))
+        right = np.zeros((count, 2))
+        for one, other in ((a, b), (b, a)):
+            side = ~self.given[one] & self.given[other]
+            for axis in (0, 1):
+                right[:, axis] += np.bincount(one[side], weight[side] * moves[other[side], axis], count)
+        moves[self.free] = factor.solve(right[self.free])
+        return moves[self.own]

@@ -18,13 +18,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, norms, wrapped
+from meshonet.geometry.arrays import Bools, Floats, Indices, norms, wrapped
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.layers.layer_rows import layer_lines
-from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.energy.quad_problem import Problem
+from meshonet.solvers.energy.quads import minimise, problem_of
 from meshonet.solvers.rows.columns import layer_columns
-from meshonet.solvers.rows.harmonic import harmonic
+from meshonet.solvers.rows.harmonic import HarmonicMoves
 from meshonet.solvers.rows.middle_section import LOWER, TOLERANCE, UPPER, folded_section, middle_section
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.span_places import SpanPlaces
@@ -48,6 +50,8 @@ class SectionPlan:
     columns : (k, rows + 1) nodes of the layers, from the blade, clockwise around it.
     outward : (k,) nodes beyond the layers of each column.
     ends : nodes of inlet and outlet.
+    held : (n,) whether nodes are in layers or at the ends.
+    moves : of the others, where those are moved.
     places : of the first node of each column.
     wake : theta by which wakes would be aside at the outlet, straight from the trailing edge, at half the
         height, and its slope along the height.
@@ -57,6 +61,8 @@ class SectionPlan:
     columns: Indices
     outward: Indices
     ends: tuple[Indices, Indices]
+    held: Bools
+    moves: HarmonicMoves
     places: SpanPlaces
     wake: tuple[float, float]
 
@@ -103,7 +109,11 @@ def planned(
     m = whole.mesh.nodes[:, 0]
     near = 1e-9 * (m.max() - m.min())
     ends = np.flatnonzero(m <= m.min() + near), np.flatnonzero(m >= m.max() - near)
-    plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, places, wake)
+    held = np.zeros(len(m), dtype=bool)
+    for own in (columns, *ends):
+        held[own] = True
+    moves = HarmonicMoves(whole.mesh, held)
+    plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, held, moves, places, wake)
     even = places.evened(planes, growth, pairs)
     plan, section = replace(plan, places=even), KeySection(plane, whole, at)
     try:
@@ -113,13 +123,25 @@ def planned(
         return plan, _placed(plan, section)
 
 
-def next_section(plan: SectionPlan, before: KeySection, plane: SectionPlane) -> KeySection:
-    """Return a section from its neighbour's.
+class NextSections:
+    """Makes sections one after the other, each from its neighbour's."""
 
-    Raises NoValidGridError: its cells stay folded.
-    """
-    layout, places = _carried(plan, before, plane, plan.places.at(plane.height))
-    return KeySection(plane, _optimum(plan, plane, layout, FROM_NEIGHBOUR), places)
+    def __init__(self, plan: SectionPlan) -> None:
+        self.plan = plan
+        self._problem: Problem | None = None
+
+    def of(self, before: KeySection, plane: SectionPlane) -> KeySection:
+        """Return the section of a plane from that `before` it.
+
+        Raises NoValidGridError: its cells stay folded.
+        """
+        plan = self.plan
+        layout, places = _carried(plan, before, plane, plan.places.at(plane.height))
+        if self._problem is None:
+            self._problem = _problem(plan, plane, layout.mesh)
+        else:
+            self._problem.take(layout.mesh)
+        return KeySection(plane, _optimum(plan, plane, layout, self._problem, FROM_NEIGHBOUR), places)
 
 
 def _beyond(layout: Layout, columns: Indices) -> Indices:
@@ -156,7 +178,8 @@ def _placed(plan: SectionPlan, section: KeySection) -> KeySection:
             for k in range(1, steps + 1):
                 places = wanted if k == steps else np.mod(section.places + k / steps * move, 1.0)
                 layout, own = _carried(plan, made, plane, places)
-                made = KeySection(plane, _optimum(plan, plane, layout, FINE, ends_slide=True), own)
+                problem = _problem(plan, plane, layout.mesh, ends_slide=True)
+                made = KeySection(plane, _optimum(plan, plane, layout, problem, FINE), own)
             return made
         except NoValidGridError:
             if steps == 4:
@@ -185,29 +208,31 @@ def _carried(
     end[plan.columns] = layer_lines(lines, ring.front.at(front), inner, rows, layers, first)
     for own, at in zip(plan.ends, (0.0, plane.map.length), strict=True):
         end[own, 0] = at
-    held = np.zeros(len(start), dtype=bool)
-    held[plan.columns] = True
-    for own in plan.ends:
-        held[own] = True
     mesh = before.layout.mesh.with_nodes(start)
-    nodes = start + harmonic(mesh, end - start, held)
-    nodes[held] = end[held]
+    nodes = start + plan.moves.of(mesh, end - start)
+    nodes[plan.held] = end[plan.held]
     return replace(before.layout, mesh=mesh.with_nodes(nodes)), plane.places_of(walls)
 
 
+def _problem(plan: SectionPlan, plane: SectionPlane, mesh: QuadMesh, *, ends_slide: bool = False) -> Problem:
+    """Return the minimisation over the nodes of a section beyond its layers."""
+    held = plan.held.copy()
+    if ends_slide:
+        for own in plan.ends:
+            held[own] = False
+        held[plan.columns] = True
+    problem = problem_of(mesh, held)
+    if problem is None:
+        raise folded_section(plane, mesh)
+    return problem
+
+
 def _optimum(
-    plan: SectionPlan, plane: SectionPlane, layout: Layout, iterations: int, *, ends_slide: bool = False
+    plan: SectionPlan, plane: SectionPlane, layout: Layout, problem: Problem, iterations: int
 ) -> Layout:
     """Return the layout with nodes beyond the layers where the functional is least."""
-    held = np.zeros(len(layout.mesh.nodes), dtype=bool)
-    held[plan.columns] = True
-    if not ends_slide:
-        for own in plan.ends:
-            held[own] = True
-    optimum = optimise(
-        layout.mesh, iterations=iterations, held=held, tolerance=TOLERANCE, weights=(FLAT, SMOOTH),
-        growth=(STEEP, MARGIN * math.log(plan.growth)),
-    )  # fmt: skip
+    growth = STEEP, MARGIN * math.log(plan.growth)
+    optimum = minimise(problem, iterations, TOLERANCE, ((FLAT, SMOOTH),), growth)
     if not optimum.valid:
         raise folded_section(plane, optimum.mesh)
     return replace(layout, mesh=optimum.mesh)

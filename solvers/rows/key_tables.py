@@ -14,7 +14,7 @@ from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import in_threads
 from meshonet.solvers.blocking.cascade.passage import INLET, NEAR, OUTLET
 from meshonet.solvers.rows.behind import even_behind
-from meshonet.solvers.rows.key_sections import KeySection, SectionPlan, next_section, planned
+from meshonet.solvers.rows.key_sections import KeySection, NextSections, SectionPlan, planned
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.span_lines import key_heights
 
@@ -111,23 +111,23 @@ def _chain(
     plane_at: Callable[[float], SectionPlane],
 ) -> list[KeySection]:  # fmt: skip
     """Return sections that follow one another, each from the one before."""
-    sections = []
+    sections, following = [], NextSections(plan)
     for plane in planes:
-        section = _reached(plan, section, plane, plane_at, _HALVINGS)
+        section = _reached(following, section, plane, plane_at, _HALVINGS)
         sections.append(section)
     return sections
 
 
 def _reached(
-    plan: SectionPlan, section: KeySection, plane: SectionPlane,
+    following: NextSections, section: KeySection, plane: SectionPlane,
     plane_at: Callable[[float], SectionPlane], halvings: int,
 ) -> KeySection:  # fmt: skip
     """Return a section from another, where cells stay folded by way of that half-way between both."""
     try:
-        return next_section(plan, section, plane)
+        return following.of(section, plane)
     except NoValidGridError:
         if not halvings:
             raise
     between = plane_at(0.5 * (section.plane.height + plane.height))
-    half = _reached(plan, section, between, plane_at, halvings - 1)
-    return _reached(plan, half, plane, plane_at, halvings - 1)
+    half = _reached(following, section, between, plane_at, halvings - 1)
+    return _reached(following, half, plane, plane_at, halvings - 1)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from meshonet.geometry.elementary import modulus
 from meshonet.geometry.rows.blade import clustered
 from meshonet.geometry.rows.channel import MeridionalMap
 from meshonet.geometry.rows.row import Row
+from meshonet.geometry.threads import cached_property
 from meshonet.solvers.blocking.cascade.cascade import Cascade
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 

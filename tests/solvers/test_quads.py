@@ -13,7 +13,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.layers.even_mesh import consecutive_edges, growth_along
 from meshonet.solvers.energy.quad_problem import Problem, smallest_jacobian, unknowns_of
-from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.energy.quads import SIZED, minimise, optimise
 from meshonet.solvers.energy.walls import turned, walls_of
 
 
@@ -299,3 +299,26 @@ def test_two_cells_in_a_slit_end_give_their_angles_away() -> None:
     corners, given = problem._relief()
     assert sorted(corners[:, 0].tolist()) == [0, 0]
     np.testing.assert_allclose(given, 1.0 - np.maximum(np.sin(np.radians(175.0)), 1e-3) ** 4)
+
+
+def test_a_problem_takes_one_mesh_after_the_other() -> None:
+    """Where walls stay; the first and the last mesh are folded."""
+    mesh = butterfly(circle())
+    held = mesh.places.loop >= 0
+    meshes = [shaken(mesh, by, seed) for seed, by in enumerate((1.0, 0.1, 1.0))]
+    meshes = [
+        each.with_nodes(np.where(held[:, None], mesh.nodes, each.nodes), mesh.places.arc) for each in meshes
+    ]
+    assert [smallest_jacobian(each.nodes, each.quads) > 0 for each in meshes] == [False, True, False]
+    unknowns = unknowns_of(meshes[0], held)
+    walls = walls_of(meshes[0], unknowns.fixed, unknowns.tied)
+    assert walls is not None
+    problem = Problem(meshes[0], unknowns, walls, None, None)
+    for each in meshes:
+        problem.take(each)
+        found = minimise(problem, 300, 1e-8, (SIZED,), (1.0, 0.1))
+        alone = optimise(each, iterations=300, tolerance=1e-8, held=held, growth=(1.0, 0.1))
+        assert found.valid
+        assert found.value == pytest.approx(alone.value, rel=1e-6)
+        np.testing.assert_array_equal(found.mesh.nodes[held], mesh.nodes[held])
+        np.testing.assert_allclose(found.mesh.nodes, alone.mesh.nodes, atol=1e-3)

@@ -16,7 +16,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import folded_cells, measure
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.summary import Quality
-from meshonet.geometry.threads import in_threads, limited_to, thread_count, threads_for
+from meshonet.geometry.threads import cached_property, in_threads, limited_to, thread_count, threads_for
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
 
@@ -149,3 +149,17 @@ def test_work_in_threads_shares_them_with_the_work_inside(count: int, share: int
 
     with limited_to(count):
         assert in_threads(inside, [4, 5]) == [(4, share, [41, 42]), (5, share, [51, 52])]
+
+
+def test_threads_work_out_a_property_of_several_objects_at_once() -> None:
+    both = threading.Barrier(2, timeout=10.0)
+
+    class Slow:
+        @cached_property
+        def value(self) -> int:
+            return both.wait() // 2
+
+    objects = [Slow(), Slow()]
+    with limited_to(2):
+        assert in_threads(lambda each: each.value, objects) == [0, 0]
+    assert [each.value for each in objects] == [0, 0]

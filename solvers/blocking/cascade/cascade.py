@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from meshonet.geometry.elementary import times
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.reach import MOST_CELLS, check_reach
 from meshonet.geometry.shapes.assembly import far_loop
+from meshonet.geometry.threads import cached_property
 from meshonet.solvers.blocking.cascade.passage import NEAR, Passage
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.layers.rings import Ring, march_ring

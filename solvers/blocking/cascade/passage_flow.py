@@ -18,13 +18,13 @@ The vortex sheet γ is computed with panels. Martensen, Arch. Rat. Mech. Anal. 3
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, Indices
 from meshonet.geometry.elementary import arccos, arctan2, cosh, log, modulus, sinh, times
 from meshonet.geometry.linear import solve
+from meshonet.geometry.threads import cached_property
 
 _GAUSS = (-(3.0**-0.5), 3.0**-0.5)  # places in a side from -1 to 1, of weight 1
 _TINY = 1e-12  # in place of a distance of 0, where the integrand is 0 in the limit

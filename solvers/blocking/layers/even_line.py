@@ -13,13 +13,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.threads import cached_property
 from meshonet.solvers.blocking.layers.attach import loop_nodes
 from meshonet.solvers.blocking.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
 from meshonet.solvers.least_squares import NormalEquations, Residuals

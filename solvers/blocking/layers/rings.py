@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.threads import cached_property
 from meshonet.kernels._native import nearest_points
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, steps_of_means
 from meshonet.solvers.blocking.layers.even_line import FINER, SLACK, Measures

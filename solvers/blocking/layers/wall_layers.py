@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_points
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.threads import cached_property
 from meshonet.kernels._native import nearest_points
 from meshonet.solvers.blocking.decomposition.named_counts import nearer
 from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides

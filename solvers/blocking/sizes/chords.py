@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, Indices, distinct
 from meshonet.geometry.elementary import exp, log, times
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.threads import cached_property
 from meshonet.geometry.ties import nearest_whole
 from meshonet.kernels._native import joined_classes
 from meshonet.solvers.blocking.sizes.wall_turning import corners_between, turning_between
