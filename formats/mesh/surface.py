@@ -16,7 +16,7 @@ from meshonet.formats.mesh.unstructured import Indices
 from meshonet.formats.source import LARGEST, printable
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.domain.loop import CORNER_DEG
+from meshonet.geometry.domain.loop import turns_sharply
 from meshonet.geometry.domain.nesting import nested
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
@@ -134,7 +134,7 @@ def _ring(loop: EdgeLoop, points: Floats) -> PolygonRing:
     ring, names = points[loop.nodes], [printable(name) for name in loop.names]
     if len(set(names)) == 1:
         return PolygonRing(ring, None, names[:1] if names[0] else ())
-    turns = np.flatnonzero(np.abs(turning(ring, closed=True)) > np.radians(CORNER_DEG))
+    turns = np.flatnonzero(turns_sharply(turning(ring, closed=True)))
     corners = sorted({*turns.tolist(), *loop.changes})
     return PolygonRing(ring, corners, [names[k] or NAMELESS for k in corners])
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.geometry.arrays import Floats, extent_of, norms
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.kernels._native import nearest_ahead
@@ -17,6 +17,11 @@ _BEYOND = 1.0 + 1e-9
 """Factor on a limit, so that a value equal to it except for rounding does not exceed it."""
 _SAME = 1e-9
 """Distance over the extent of the walls up to which a wall point is the point itself, and no gap."""
+_AROUND_CORNER = 1.1
+"""Largest way along a loop with such corners, over the distance, to a wall that is beside and not in front.
+
+Around a corner of 135 degrees it is 1.08.
+"""
 _SAMPLES = 2000  # points on all walls together
 
 
@@ -24,15 +29,33 @@ def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
     """Return the distance (n,) from points of a loop to the nearest wall in front, infinite without one.
 
     The points are at arc lengths `arcs` (n,). A wall, which may be part of the same loop, is in front if the
-    cosine of its direction to the inward normal exceeds `IN_FRONT`.
+    cosine of its direction to the inward normal exceeds `IN_FRONT`. The other wall of a convex corner of two
+    cells does not count near to it: layers turn there.
     """
-    return gaps_in_front(wall_points(domain.loops), loop.at(arcs), loop.tangent(arcs))
+    walls, points, along = wall_points(domain.loops), loop.at(arcs), loop.tangent(arcs)
+    gaps = gaps_in_front(walls, points, along)
+    if not ((loop.corner_cells == 2) & (loop.corner_angles < 180.0)).any():
+        return gaps
+    counts, number = _sample_counts(domain.loops), domain.loops.index(loop)
+    first, last = sum(counts[:number]), sum(counts[: number + 1])
+    along_wall = loop.length * np.linspace(0.0, 1.0, counts[number], endpoint=False)
+    for k, arc in enumerate(arcs.tolist()):
+        away = np.abs(np.mod(along_wall - arc + 0.5 * loop.length, loop.length) - 0.5 * loop.length)
+        counted = np.ones(len(walls), dtype=bool)
+        counted[first:last] = away > _AROUND_CORNER * norms(walls[first:last] - points[k])
+        gaps[k : k + 1] = gaps_in_front(walls[counted], points[k : k + 1], along[k : k + 1])
+    return gaps
 
 
 def wall_points(loops: Sequence[Loop]) -> Floats:
     """Return points (m, 2) on all loops, about `_SAMPLES` in total and at least 32 on each."""
+    counts = _sample_counts(loops)
+    return np.concatenate([each.sample(count) for each, count in zip(loops, counts, strict=True)])
+
+
+def _sample_counts(loops: Sequence[Loop]) -> list[int]:
     total = sum(each.length for each in loops)
-    return np.concatenate([each.sample(max(32, round(_SAMPLES * each.length / total))) for each in loops])
+    return [max(32, round(_SAMPLES * each.length / total)) for each in loops]
 
 
 def gaps_in_front(walls: Floats, points: Floats, along: Floats) -> Floats:

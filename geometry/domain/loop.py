@@ -7,14 +7,20 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.threads import cached_property
+from meshonet.geometry.ties import EQUAL
 
 CORNER_DEG = 30.0
 """A point where the loop turns by more is a corner, unless the input says which are."""
+
+
+def turns_sharply(turn: Floats) -> Bools:
+    """Return where turns in radians, of either sign, are more than `CORNER_DEG`, by more than rounding."""
+    return np.asarray(np.abs(turn) > np.radians(CORNER_DEG) * (1.0 + EQUAL))
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,9 +60,7 @@ class Loop:
         """Return the loop along a polygon (n, 2), the domain on its left; None for `corners` detects them."""
         curve = Curve(points, closed=True, corners=(), straight=np.ones(len(points), dtype=bool))
         if corners is None:
-            corners = tuple(
-                np.flatnonzero(np.abs(turning(curve.points, closed=True)) > np.radians(CORNER_DEG))
-            )
+            corners = tuple(np.flatnonzero(turns_sharply(turning(curve.points, closed=True))))
         return cls(curve, tuple(int(k) for k in corners), names)
 
     @property
@@ -77,10 +81,14 @@ class Loop:
 
     @cached_property
     def corner_cells(self) -> NDArray[np.intp]:
-        """Number of cells (c,) that should meet at each corner, 1 to 4: about one per 90 degrees."""
+        """Number of cells (c,) that should meet at each corner, 1 to 4: about one per 90 degrees.
+
+        Of 135 and 225 degrees, to rounding, it is two.
+        """
         if self.cells:
             return np.array(self.cells, dtype=np.intp)
-        return np.clip(np.round(self.corner_angles / 90.0), 1, 4).astype(np.intp)
+        halves_to_even = np.round(np.round(self.corner_angles / 90.0, 9))
+        return np.clip(halves_to_even, 1, 4).astype(np.intp)
 
     def at(self, arc: Floats) -> Floats:
         """Return the points (m, 2) at arc lengths (m,), taken modulo the length."""

@@ -13,7 +13,7 @@ from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.domain.loop import CORNER_DEG, Loop
+from meshonet.geometry.domain.loop import Loop, turns_sharply
 from meshonet.geometry.domain.nesting import nested
 from meshonet.geometry.domain.ring import ring_loop
 from meshonet.geometry.elementary import cos, sin
@@ -120,8 +120,8 @@ def _section_loop(airfoil: Airfoil, name: str, sampling: Sampling) -> Loop:
     body = airfoil.normalised() if sampling.normalise else airfoil
     body = body.rounded() if sampling.te == "round" else body.wedged() if sampling.te == "wedge" else body
     curve = body.curve
-    turn = np.abs(np.degrees(turning(curve.points, closed=True)))[curve.corner_index]
-    corners = curve.corner_index[turn > CORNER_DEG]
+    turn = turning(curve.points, closed=True)[curve.corner_index]
+    corners = curve.corner_index[turns_sharply(turn)]
     return Loop(curve, tuple(int(k) for k in corners), (name,))
 
 

@@ -10,7 +10,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.domain.loop import CORNER_DEG, Loop
+from meshonet.geometry.domain.loop import Loop, turns_sharply
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import turning
@@ -133,8 +133,8 @@ def _loop(curve: Curve) -> Loop:
     if polygon_area(curve.points) < 0:
         points, last = curve.points[::-1], len(curve.points) - 1
         curve = Curve(points, closed=True, corners=np.sort(last - curve.corner_index))
-    turn = np.abs(np.degrees(turning(curve.points, closed=True)))[curve.corner_index]
-    return Loop(curve, tuple(int(k) for k in curve.corner_index[turn > CORNER_DEG]), ("wall",))
+    turn = turning(curve.points, closed=True)[curve.corner_index]
+    return Loop(curve, tuple(int(k) for k in curve.corner_index[turns_sharply(turn)]), ("wall",))
 
 
 def _walled(shape: DomainShape, request: GridRequest) -> GridRequest:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.ring import ring_loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
@@ -132,3 +133,13 @@ def test_a_domain_of_four_corners_is_one_block_though_one_of_them_is_blunt() -> 
     sides = shape.boundary(Sampling(ni=11, nj=7))
     corners = np.array([sides.south[0], sides.south[-1], sides.north[-1], sides.north[0]])
     assert corners == pytest.approx(points)
+
+
+@pytest.mark.parametrize("degrees", np.linspace(0.0, 90.0, 7))
+@pytest.mark.parametrize(("sides", "cells"), [(8, [2] * 8), (12, []), (3, [1] * 3)])
+def test_corners_do_not_depend_on_rounding(sides, cells, degrees):
+    angle = np.radians(degrees) + 2.0 * np.pi * np.arange(sides) / sides  # 12 of them turn by 30 degrees each
+    polygon = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    assert Loop.of_polygon(polygon).corner_cells.tolist() == cells
+    hole = Loop.of_polygon(polygon[::-1])
+    assert hole.corner_cells.tolist() == ([2] * 8 if sides == 8 else [] if sides == 12 else [3] * 3)

@@ -53,3 +53,21 @@ def test_distances_are_those_of_all_points_one_by_one():
         ahead = (height > (1.0 + 1e-9) * IN_FRONT * distance) & (distance > same)
         expected = np.where(ahead, distance, np.inf).min(axis=1)
         np.testing.assert_array_equal(gaps_in_front(walls, points, along), expected)
+
+
+@pytest.mark.parametrize("sides", [8, 9, 10])
+def test_layers_turn_at_wide_corners_without_a_gap(sides):
+    turn = 2.0 * np.pi * np.arange(sides) / sides
+    loop = Loop.of_polygon(np.stack([np.cos(turn), np.sin(turn)], axis=1))
+    gaps = wall_gaps(Domain((loop,)), loop, np.linspace(0.0, loop.length, 200, endpoint=False))
+    assert gaps.min() > 0.9
+
+
+@pytest.mark.parametrize(("bend", "cells"), [(1.0, 1), (2.6, 2)])
+def test_the_wall_across_a_lens_is_in_front_whatever_its_corners(bend, cells):
+    turn = np.linspace(-0.25, 0.25, 41) * np.pi
+    low = np.stack([np.sin(turn), bend * (0.5**0.5 - np.cos(turn))], axis=1)
+    loop = Loop.of_polygon(np.concatenate([low, -low[1:-1]]))
+    assert loop.corner_cells.tolist() == [cells, cells]
+    gap = wall_gaps(Domain((loop,)), loop, np.array([0.25 * loop.length]))[0]
+    assert 0.6 * np.ptp(loop.curve.points[:, 1]) < gap <= 1.001 * np.ptp(loop.curve.points[:, 1])

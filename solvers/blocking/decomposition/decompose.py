@@ -100,8 +100,8 @@ def decompose(
         with stage("first optimum", timings):
             return _optimised(mesh, FIRST_ITERATIONS, sizes)
 
-    def scored(blocks: BaseComplex) -> float:
-        return score(blocks, price, sizes.edges(blocks.mesh) if sizes else None)
+    def scored(blocks: BaseComplex, priced: bool) -> float:
+        return score(blocks, price if priced else 0.0, sizes.edges(blocks.mesh) if sizes else None)
 
     def unsized() -> QuadMesh:
         return decompose(domain, cells=cells, count=count, price=price, timings=timings).mesh

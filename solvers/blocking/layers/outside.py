@@ -11,6 +11,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.decomposition.decompose import decompose
 from meshonet.solvers.blocking.decomposition.reuse import carried_over
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
 from meshonet.solvers.blocking.sizes.feature_sizes import feature_sizes
 from meshonet.solvers.stages import Timings
 
@@ -31,7 +32,7 @@ def found_outside(
 
     Raises BlockingError: no blocks are found; InputError: walls or fronts that nearly touch.
     """
-    plain = replace(rest, loops=tuple(_smooth(loop) for loop in rest.loops))
+    plain = rest if symmetric and mirrors_of(rest) else replace(rest, loops=tuple(map(_smooth, rest.loops)))
     sizes = feature_sizes(plain)
     try:
         layout = decompose(plain, timings=timings, sizes=sizes, price=PRICE, symmetric=symmetric)

@@ -29,7 +29,13 @@ def around(count, distance, start=0.0):
     return holes(*zip(distance * np.cos(angles), distance * np.sin(angles), strict=True), count=60)
 
 
+def flower(petals, count=240):
+    turn = 2.0 * np.pi * np.arange(count) / count
+    return (1.0 + 0.2 * np.cos(petals * turn))[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+
+
 ALL = (0, 90, 45, 135)
+EIGHT = tuple(np.arange(8) * 22.5)
 SYMMETRIC = {
     # name: polygons, a point on all mirrors, and the directions of these in degrees
     "disc": ([circle(0, 0, 1, 160)], (0, 0), ALL),
@@ -85,6 +91,10 @@ SYMMETRIC = {
     "disc with three holes": ([circle(0, 0, 2, 120), *around(3, 1.0)], (0, 0), (0, 60, 120)),
     "disc with five holes": ([circle(0, 0, 2, 120), *around(5, 1.2)], (0, 0), (0, 36, 72, 108, 144)),
     "star": (SHAPES["star"], (0, 0), (0, 36, 72, 108, 144)),
+    "octagon": ([circle(0, 0, 1, 8)], (0, 0), EIGHT),
+    "octagon in a circle": ([circle(0, 0, 3, 160), circle(0, 0, 0.8, 8)], (0, 0), EIGHT),
+    "dodecagon": ([circle(0, 0, 1, 12)], (0, 0), (0, 30, 60, 90, 120, 150)),
+    "flower": ([flower(4)], (0, 0), ALL),
 }
 
 

@@ -98,6 +98,11 @@ def at_right_angles(mirrors: Sequence[Mirror]) -> bool:
     return abs(float((mirrors[0].along * mirrors[1].along).sum())) < SAME
 
 
+def by_angle(mirrors: Sequence[Mirror]) -> list[Mirror]:
+    """Return two mirrors at right angles and those halfway between by their angles, the first one first."""
+    return [mirrors[k] for k in (0, 2, 1, 3)] if len(mirrors) == 4 else list(mirrors)
+
+
 def steps_of_means(mirrors: Sequence[Mirror]) -> list[range]:
     """Return which mirrors to take means over, step after step, for what is symmetric to all of them.
 
@@ -162,11 +167,17 @@ def _centroids(domain: Domain) -> tuple[Floats, Floats]:
 def _directions(domain: Domain, middles: Floats, centre: Floats) -> list[Floats]:
     """Return the directions that a mirror may have: that of x, or y, first.
 
-    It takes the first corner of the outer loop, or its first point if there are no corners, to one as far
-    from the centroid, and the centroids of holes to each other.
+    It takes the first corner of a loop around the centroid, or its first point if there are no corners, to
+    one as far from the centroid, and the centroids of holes to each other. Of several such loops it is the
+    one with the fewest.
     """
-    outer, near = domain.loops[0], SAME * domain.extent
-    arms = outer.curve.points[list(outer.corners) or slice(None)] - centre
+    near = SAME * domain.extent
+    around = [
+        loop for loop, middle in zip(domain.loops, middles, strict=True)
+        if loop is domain.loops[0] or norms(middle - centre) <= near
+    ]  # fmt: skip
+    ends = min((loop.curve.points[list(loop.corners) or slice(None)] for loop in around), key=len)
+    arms = ends - centre
     arms = arms[np.abs(norms(arms) - norms(arms[0])) <= near]
     sums, steps = arms[0] + arms, arms[0] - arms
     quarter = np.stack([-steps[:, 1], steps[:, 0]], axis=1)

@@ -6,6 +6,7 @@ two rays are each other's images, and turned copies of it fit together.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -51,7 +52,7 @@ class Sector:
     count: int
 
 
-def sector_of(domain: Domain, mirrors: tuple[Mirror, ...], start: int) -> Sector:
+def sector_of(domain: Domain, mirrors: Sequence[Mirror], start: int) -> Sector:
     """Return the sector that begins at mirror number `start` of all mirrors, by their angles.
 
     Raises BlockingError: a ray cuts a sharp corner, or the centre is outside.

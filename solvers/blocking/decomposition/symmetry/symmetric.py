@@ -28,6 +28,7 @@ from meshonet.solvers.blocking.decomposition.symmetry.halves import both_halves,
 from meshonet.solvers.blocking.decomposition.symmetry.images import Images, agree, images_of, made_symmetric
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import (
     Mirror,
+    by_angle,
     every_mirror_of,
     mirror_about,
     mirrors_of,
@@ -37,8 +38,11 @@ from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import refine
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 
-WORTH = 1.0
-"""What symmetry may cost, in degrees of mean deviation: blocks stay as found where it costs more."""
+WORTH = 2.0
+"""What symmetry may cost, in degrees of mean deviation: blocks stay as found where it costs more.
+
+The price of more blocks does not count.
+"""
 AT_CENTRE = 6
 """Quads around the centre of three or more mirrors, at the most, or as many as mirrors."""
 EVEN = 4
@@ -46,84 +50,77 @@ EVEN = 4
 FindPart = Callable[[Domain, int, Sequence[Span]], QuadMesh]
 """From a part of a domain, which part it is (2 for a half), and stretches for rows of quads to its mesh."""
 Optimised = Callable[[QuadMesh], QuadMesh]
+Way = Callable[[], QuadMesh]
+"""To a mesh that may be symmetric."""
+Score = Callable[[BaseComplex, bool], float]
+"""Of blocks, with or without their price; lower is better."""
 
 
 def symmetric_blocks(
-    blocks: BaseComplex, find: FindPart, optimised: Optimised, score: Callable[[BaseComplex], float],
+    blocks: BaseComplex, find: FindPart, optimised: Optimised, score: Score,
     unsized: Callable[[], QuadMesh] | None = None, worth: float = WORTH,
 ) -> BaseComplex:  # fmt: skip
     """Return symmetric blocks of the domain of some blocks; these where there are none about as good.
 
     With three or more mirrors through a centre they are symmetric to all if that can be: as found, or in
     sectors. With two mirrors at right angles they are symmetric to both if that can be, else to the first
-    that can be, and to the two mirrors between if the same blocks can be. Those of a part have to be better,
-    and no more, than the blocks as found if these are symmetric already. Where lengths of edges are
-    prescribed, `unsized` makes the mesh of blocks for edges that are all alike, which are taken if no others
-    are symmetric.
+    that can be, and to the two mirrors between if the same blocks, or those of sectors, can be. Those of a
+    part have to be better, and no more, than the blocks as found if these are symmetric already. Where
+    lengths of edges are prescribed, `unsized` makes the mesh of blocks for edges that are all alike, which
+    are taken if no others are symmetric.
     """
-    mesh, every, mirrors = blocks.mesh, mirrors_of(blocks.mesh.domain), every_mirror_of(blocks.mesh.domain)
-    if len(mirrors) > len(every):
-        trial = _of_sectors(blocks, mirrors, find, optimised, score)
-        if trial is not None:
-            return trial
-    mirrors = every[:2]
+    mesh, some, every = blocks.mesh, mirrors_of(blocks.mesh.domain), every_mirror_of(blocks.mesh.domain)
+    most = score(blocks, False) + worth
+
+    def best(ways: Sequence[Way], mirrors: Sequence[Mirror], enough: int = 0) -> BaseComplex | None:
+        """Return the best trial; the first, if there is one among the first few that are `enough`."""
+        least = None
+        for number, way in enumerate(ways):
+            if least is not None and 0 < enough <= number:
+                break
+            trial = _trial(way, mirrors, optimised)
+            if trial is None or not less(score(trial, False), most):
+                continue
+            fewer = least is None or not enough or len(trial.blocks) <= len(least.blocks)
+            if fewer and (least is None or less(score(trial, True), score(least, True))):
+                least = trial
+        return least
+
+    def in_sectors(mirrors: Sequence[Mirror]) -> list[Way]:
+        return [partial(_of_sector, mesh.domain, mirrors, k, find, optimised, score) for k in (0, 1)]
+
+    alike = unsized is None
+    if len(every) > len(some):
+        symmetric = best([lambda: mesh, *in_sectors(every)], every)
+        if symmetric:
+            return symmetric
     irregular = wrong_count(mesh).any() or (mesh.irregular & ~mesh.wall_nodes).any()
-    for group in [mirrors, mirrors[:1], mirrors[1:]][: (0, 1, 3)[len(mirrors)]]:
-        ways: list[Callable[[], QuadMesh]]
-        ways = [
+    for group in [some[:2], some[:1], some[1:2]][: (0, 1, 3)[len(some[:2])]]:
+        ways: list[Way] = [
             lambda: mesh,
             partial(_of_part, mesh.domain, group, find),
-            partial(_recounted, blocks, group, optimised, unsized is None),
+            partial(_recounted, blocks, group, optimised, alike),
             *([unsized] if unsized else []),
         ]
-        best, least = None, score(blocks) + worth
-        for number, way in enumerate(ways):
-            if best is not None and (number >= 2 or not irregular):
-                break
-            trial = _trial(way, group, optimised)
-            fewer = trial is not None and (best is None or len(trial.blocks) <= len(best.blocks))
-            if trial is not None and fewer and less(score(trial), least):
-                best, least = trial, score(trial)
-        if best is None:
-            continue
-        if group == mirrors and len(images_of(best.mesh)) < len(every):
-            trial = _trial(partial(_recounted, best, every, optimised, unsized is None), every, optimised)
-            if trial is not None and less(score(trial), score(blocks) + worth):
-                best = trial
-        return best
+        symmetric = best(ways, group, 2 if irregular else 1)
+        if symmetric and group == some[:2] and len(images_of(symmetric.mesh, some)) < len(some):
+            again = best([partial(_recounted, symmetric, some, optimised, alike)], some)
+            return again or best(in_sectors(by_angle(some)), by_angle(some)) or symmetric
+        if symmetric:
+            return symmetric
     return blocks
 
 
-def _of_sectors(
-    blocks: BaseComplex, mirrors: tuple[Mirror, ...], find: FindPart, optimised: Optimised,
-    score: Callable[[BaseComplex], float],
-) -> BaseComplex | None:  # fmt: skip
-    """Return the best blocks that are symmetric to all of three or more mirrors, if they are worth it."""
-    best, least = None, score(blocks) + WORTH
-    ways: list[Callable[[], QuadMesh]] = [
-        lambda: blocks.mesh,
-        *(partial(_of_sector, blocks, mirrors, k, find, optimised, score) for k in (0, 1)),
-    ]
-    for way in ways:
-        trial = _trial(way, mirrors, optimised)
-        if trial is not None and less(score(trial), least):
-            best, least = trial, score(trial)
-    return best
-
-
 def _of_sector(
-    blocks: BaseComplex, mirrors: tuple[Mirror, ...], start: int, find: FindPart, optimised: Optimised,
-    score: Callable[[BaseComplex], float],
+    domain: Domain, mirrors: Sequence[Mirror], start: int, find: FindPart, optimised: Optimised, score: Score
 ) -> QuadMesh:  # fmt: skip
     """Return the mesh of a sector, from a mirror on, and its turned copies."""
-    sector = sector_of(blocks.mesh.domain, mirrors, start)
+    sector = sector_of(domain, mirrors, start)
     found = base_complex(find(sector.domain, len(mirrors), spans_between(sector.domain.loops[0])))
     return all_sectors(symmetric_blocks(found, find, optimised, score, worth=np.inf).mesh, sector)
 
 
-def _trial(
-    way: Callable[[], QuadMesh], mirrors: Sequence[Mirror], optimised: Optimised
-) -> BaseComplex | None:
+def _trial(way: Way, mirrors: Sequence[Mirror], optimised: Optimised) -> BaseComplex | None:
     """Return the blocks of a mesh, optimised with its nodes symmetric; None where that cannot be."""
     try:
         mesh, images = _symmetric(optimised(_symmetric(way(), mirrors)[0]), mirrors)
