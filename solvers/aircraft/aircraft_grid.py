@@ -23,7 +23,7 @@ from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.body_plane import WING_PATCHES, level_patches
 from meshonet.solvers.aircraft.exact_cells import at_height, between_walls
-from meshonet.solvers.aircraft.plan import GROWTH, AircraftPlan, plan_of
+from meshonet.solvers.aircraft.plan import AircraftPlan, plan_of
 from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.aircraft.tip_cells import last_cells
 from meshonet.solvers.aircraft.wall_normals import off_body, off_tip, off_wing
@@ -57,13 +57,22 @@ _FINE = 129
 def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, tuple[str, ...]]:
     """Return the grid of an aircraft or its half, and notes.
 
+    Raises InputError: as `planned_grid`.
+    """
+    grid, _, notes = planned_grid(aircraft, request)
+    return grid, notes
+
+
+def planned_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, float, tuple[str, ...]]:
+    """Return the grid of an aircraft or its half, the growth it was planned with, and notes.
+
     Raises InputError: a wing that does not begin inside the body or does not leave it; wings that are too
     close to each other.
     """
     sizes = aircraft_dimensions(aircraft, request.height(), request.far_field)
-    first, growth = sizes.first_cell, request.growth or GROWTH
     space = BodyMap(aircraft.body, sizes.far_field)
     plan, notes = plan_of(aircraft, request, space)
+    first, growth = sizes.first_cell, plan.growth
     levels = [_level(space, plan, k, first) for k in range(SAMPLES)]
     caps = [space.places(patch) for tip in plan.tips for patch in tip]
     lattices = _columns([*levels[0], *caps])
@@ -90,7 +99,7 @@ def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, t
     for ring, *cap in zip(rings, inside[::2], inside[1::2], strict=True):
         high = off_tip(high, np.concatenate([each.ravel() for each in cap]), ring)
     half = _joined(aircraft, plan, lattices, low, high)
-    return half if aircraft.half else with_image(half), (*notes, *_flat_tips(aircraft))
+    return half if aircraft.half else with_image(half), growth, (*notes, *_flat_tips(aircraft))
 
 
 def _flat_tips(aircraft: Aircraft) -> Iterator[str]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,13 +21,16 @@ from meshonet.solvers.aircraft.tip_fill import tip_patches
 from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.rows.span_lines import key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, spaced_cells
+from meshonet.solvers.stacking.wing_surface import DEFAULT_AROUND, DEFAULT_SPAN
 
-GROWTH = 1.2
-"""Growth of cells away from walls where none is given."""
+GROWTHS = 1.2, 1.225, 1.25
+"""Growth of cells away from walls where none is given: the first, or the first with few enough cells."""
 _PLANNED = (0, 4, 8, 12, 16)
 """Key levels from which counts are taken."""
-_TRIED = 49, 97
-"""Nodes around a wing by which others are found; the first is the fewest."""
+_TRIED = 57, 97
+"""Nodes around a wing by which others are found. With fewer, cells around it would grow too much."""
+_ALONG = (DEFAULT_SPAN - 1) / (DEFAULT_AROUND - 1)
+"""Largest cells along the span over those around, where only the number of all cells is given."""
 _ACUTE = math.radians(45.0)
 """Angle of wing and body below which it is the reason why cells beside the root are folded."""
 _ENOUGH = 1.15
@@ -45,6 +49,7 @@ class AircraftPlan:
     levels : counts that levels share.
     tips : of each wing, nodes (m, k, 3) of the ring and of the core that fill its last section.
     span, beyond : cells from the body to the tips, and from there to the far field.
+    growth : of cells away from walls, at most.
     halves : 2 if the grid has both halves of the aircraft, else 1.
     """
 
@@ -55,17 +60,18 @@ class AircraftPlan:
     tips: tuple[tuple[Floats, Floats], ...]
     span: int
     beyond: int
+    growth: float
     halves: int
 
     @classmethod
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> AircraftPlan:
-        """Return the plan for `around` nodes around each wing.
+        """Return the plan for `around` nodes around each wing, and the first of `GROWTHS` if none is given.
 
         Raises InputError: a wing that does not begin inside the body or does not leave it; wings that are too
         close to each other, or a root too close to keel or crown.
         """
         chord = aircraft.wing.chord
-        first, growth = request.height() * chord, request.growth or GROWTH
+        first, growth = request.height() * chord, request.growth or GROWTHS[0]
         wings = [
             WingLines.of(wing, name, aircraft.body, around, request.base)
             for wing, (name, _) in zip(aircraft.wings, aircraft.patches, strict=True)
@@ -83,7 +89,7 @@ class AircraftPlan:
         beyond = cells_for_growth(first, request.far_field * chord, growth)
         tips = tuple(tip_patches(wing.points(np.ones((1, len(wing.roots))))[0], first) for wing in wings)
         halves = 1 if aircraft.half else 2
-        return cls(tuple(wings), tuple(sections), tuple(holes), levels, tips, span, beyond, halves)
+        return cls(tuple(wings), tuple(sections), tuple(holes), levels, tips, span, beyond, growth, halves)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -114,14 +120,34 @@ def plan_of(
     if request.cells is None:
         plan = AircraftPlan.of(aircraft, request, space, request.surface.around)
         return plan, plan.notes
-    few, many = (AircraftPlan.of(aircraft, request, space, nodes) for nodes in _TRIED)
-    slope = (many.cells - few.cells) / (_TRIED[1] - _TRIED[0])
-    half = max(0, round(0.5 * (request.cells - few.cells) / slope)) if slope > 0.0 else 0
-    plan = AircraftPlan.of(aircraft, request, space, _TRIED[0] + 2 * half) if half else few
-    if plan.cells <= _ENOUGH * request.cells:
-        return plan, plan.notes
-    note = f"layers need about {plan.cells} cells, more than {request.cells}"
-    return plan, (*plan.notes, note)
+
+    def made(nodes: int, growth: float) -> AircraftPlan:
+        span = request.span or round((nodes - 1) * _ALONG) + 1
+        return AircraftPlan.of(aircraft, replace(request, span=span, growth=growth), space, nodes)
+
+    for growth in (request.growth,) if request.growth else GROWTHS:
+        plan = made(_TRIED[0], growth)
+        if plan.cells <= request.cells:
+            break
+    else:
+        return plan, (*plan.notes, *_too_many(plan, request.cells), *_steeper(plan, request))
+    slope = (made(_TRIED[1], growth).cells - plan.cells) / (_TRIED[1] - _TRIED[0])
+    half = round(0.5 * (request.cells - plan.cells) / slope)
+    if half > 0:
+        plan = made(_TRIED[0] + 2 * half, growth)
+    return plan, (*plan.notes, *_steeper(plan, request))
+
+
+def _too_many(plan: AircraftPlan, cells: int) -> Iterator[str]:
+    """Yield a note where the fewest cells are clearly more than those wanted."""
+    if plan.cells > _ENOUGH * cells:
+        yield f"layers need about {plan.cells} cells, more than {cells}"
+
+
+def _steeper(plan: AircraftPlan, request: AircraftRequest) -> Iterator[str]:
+    """Yield a note where cells grow by more than usual so that there are few enough."""
+    if request.growth is None and plan.growth != GROWTHS[0]:
+        yield f"cells grow by {plan.growth:g} in place of {GROWTHS[0]:g}, so that there are fewer"
 
 
 def _refuse_acute(space: BodyMap, name: str, root: Floats) -> None:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
-from meshonet.solvers.rows.span_spacing import smooth_arcs, spaced_cells, two_sided
+from meshonet.solvers.rows.span_spacing import smooth_arcs
 from meshonet.solvers.stacking.tip import ROWS, Cap
 
-_GROWTH = 1.25
+_GROWTH = 1.27
 """Growth of the rows of the ring: the section is thin, and its edge is no place of boundary layers."""
-_LONGEST = 0.2
-"""Longest outermost cells of the ring over the lengths of its lines: 1 - 1 / `_GROWTH`."""
+_LONGEST = 0.18, 0.05
+"""Outermost and innermost cells of many rows over the lengths of lines that are too short for both."""
+_MOST_ROWS = 200
 
 
 def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
@@ -23,13 +24,25 @@ def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
     ring, core = Cap(bulge=0.0).patches(loop)
     edge, inner = ring[:, 0], ring[:, -1]
     lengths, last = norms(inner - edge), norms(inner - ring[:, -2])
-    widest = int(lengths.argmax())
-    length, ends = float(lengths[widest]), (first, float(last[widest]))
-    rows = spaced_cells(length, ends, _GROWTH, length, ROWS)
-    wide, outermost = lengths > rows * first, np.minimum(first, _LONGEST * lengths)
-    arcs = smooth_arcs(lengths, (outermost, None), rows)
-    arcs[wide] = two_sided(lengths[wide], (first, last[wide]), _GROWTH, rows)
+    for rows in range(ROWS, _MOST_ROWS):
+        arcs = _arcs(lengths, first, last, rows)
+        steps = np.diff(arcs)
+        if (steps[:, 1] <= _GROWTH * steps[:, 0]).all():
+            break
     parts = (arcs / lengths[:, None])[..., None]
     nodes = edge[:, None] + parts * (inner - edge)[:, None]
     nodes[:, -1] = inner
     return nodes, core
+
+
+def _arcs(lengths: Floats, first: float, last: Floats, rows: int) -> Floats:
+    """Return arcs (n, rows + 1) on lines of `lengths` (n,), with cells of about `first` and `last` (n,).
+
+    On short lines the last ones are those of cells that grow by a constant ratio; on the shortest both are a
+    share of the length.
+    """
+    outer, inner = (max(share, 1.0 / rows) * lengths for share in _LONGEST)
+    outermost = np.minimum(first, outer)
+    constant = smooth_arcs(lengths, (outermost, None), rows)
+    innermost = np.minimum(last, np.maximum(constant[:, -1] - constant[:, -2], inner))
+    return smooth_arcs(lengths, (outermost, innermost), rows)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,12 +11,35 @@ from meshonet.geometry.aircraft.body import Body
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.sections.stack import Stack
 from meshonet.solvers.aircraft.root import root_heights
-from meshonet.solvers.stacking.section_nodes import GAP, around, unit_nodes
+from meshonet.solvers.rows.span_spacing import spaced_cells, two_sided
+from meshonet.solvers.stacking.section_nodes import GAP, Around, around, unit_nodes
 
+_TRIED = (1.2, 1.0), (1.25, 1.0), (1.25, 1.4), (1.3, 1.7), (1.4, 1.7), (1.5, 1.7), (2.0, 1.7)
+"""Growth of cells around sections that is tried, and times that cells at the nose are longer than usual."""
 _BASE = 2
 """Cells across a base."""
 _ROUNDS = 6
 """Times a part is scaled; lines are nearly straight over a first cell."""
+
+
+@dataclass(frozen=True)
+class EvenAround(Around):
+    """Distribution of nodes around sections, whose cells grow by as little as their number allows."""
+
+    def law(self, height: float, length: float) -> Callable[[Floats], Floats]:
+        """Return the law from base to nose for a side of the given length and base height, both in chords.
+
+        The less the number of cells, the longer are those at the nose, unless their length is given.
+        """
+        edge, nose = self.ends(height, length)
+        for growth, longer in _TRIED:
+            ends = edge, nose * (longer if self.nose is None else 1.0)
+            if spaced_cells(1.0, ends, growth, 1.0, 4) <= self.cells:
+                break
+        arcs = two_sided(np.ones(1), ends, growth, self.cells)[0]
+        arcs[-1] = 1.0
+        even = np.linspace(0.0, 1.0, self.cells + 1)
+        return lambda q: np.asarray(np.interp(q, even, arcs))
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +67,9 @@ class WingLines:
 
         Raises InputError: too few nodes, a wing that does not begin in the body or does not leave it.
         """
-        plan = around(nodes, gap=base, base=_BASE, edge=wing.te_spacing, nose=wing.le_spacing)
+        plan = EvenAround(
+            **vars(around(nodes, gap=base, base=_BASE, edge=wing.te_spacing, nose=wing.le_spacing))
+        )
         units, notes = zip(*(unit_nodes(section, plan) for section in wing.sections), strict=True)
         unit = np.stack(units)
         roots = root_heights(wing, name, unit[:, :-1], body)

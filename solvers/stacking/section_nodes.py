@@ -13,6 +13,7 @@ the distance from the nose.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,7 +33,7 @@ from meshonet.geometry.spacing.tanh_law import TanhLaw
 BASE_CELLS = 8  # across a base
 GAP = 0.005
 """Smallest height of a base in chords."""
-_NOSE_CELL = 0.35  # of the mean cell of a side
+NOSE_CELL = 0.35  # of the mean cell of a side
 _EDGE_CELL = 1.2  # of the mean cell of a base
 LEAST_AROUND, MOST_AROUND = 33, 10_001  # nodes
 
@@ -47,7 +48,7 @@ class Around:
     base : number of cells on the base, even.
     gap : smallest height of the base in chords.
     edge, nose : lengths of the cells next to the base and at the nose, in chords; None: `_EDGE_CELL` times
-        the cells on the base, and `_NOSE_CELL` times the mean cell.
+        the cells on the base, and `NOSE_CELL` times the mean cell.
     """
 
     cells: int
@@ -61,15 +62,19 @@ class Around:
         """Number of nodes around, including the repeated first one."""
         return 2 * self.cells + self.base + 1
 
-    def law(self, height: float, length: float) -> TanhLaw:
+    def law(self, height: float, length: float) -> Callable[[Floats], Floats]:
         """Return the law from base to nose for a side of the given length and base height, both in chords.
 
         Raises InputError: cell lengths that are impossible with this number of nodes.
         """
+        return TanhLaw.fitted(self.cells, *self.ends(height, length))
+
+    def ends(self, height: float, length: float) -> tuple[float, float]:
+        """Return the lengths of the cells next to the base and at the nose, over that of the side."""
         edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
         first = edge if self.edge is None else self.edge / length
-        last = _NOSE_CELL / self.cells if self.nose is None else self.nose / length
-        return TanhLaw.fitted(self.cells, first, last)
+        last = NOSE_CELL / self.cells if self.nose is None else self.nose / length
+        return first, last
 
 
 def around(
