@@ -8,8 +8,11 @@ from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.layers.attach import sampled
+from meshonet.solvers.blocking.layers.layer_rows import arc_shares
 
 _NEWTON = 12
+_STRAIGHT, _MARCHED = 0.5, 1.5
+"""Distances from a corner in thicknesses of the layers, up to which columns are straight, and marched."""
 
 
 def layer_columns(layout: Layout) -> Indices:
@@ -20,6 +23,19 @@ def layer_columns(layout: Layout) -> Indices:
         k = next(k for k, each in enumerate(left) if each[0, 0] == ordered[-1][-1, 0])
         ordered.append(left.pop(k))
     return np.concatenate([block[:-1] for block in ordered])
+
+
+def straight_near(lines: Floats, away: Floats) -> Floats:
+    """Return columns (k, m, 2) that are straight where distances `away` (k,) from corners are short.
+
+    Marched columns spread around a corner close to it. Steps between straight ones change evenly from those
+    at the wall to those of the front, at each height.
+    """
+    thickness = norms(np.diff(lines, axis=1)).sum(axis=1).max()
+    t = np.clip((_MARCHED - away / thickness) / (_MARCHED - _STRAIGHT), 0.0, 1.0)
+    part = t * t * (3.0 - 2.0 * t)
+    straight = lines[:, :1] + arc_shares(lines)[..., None] * (lines[:, -1:] - lines[:, :1])
+    return np.asarray(lines + part[:, None, None] * (straight - lines))
 
 
 def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:

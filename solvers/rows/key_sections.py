@@ -25,7 +25,7 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.layers.layer_rows import layer_lines
 from meshonet.solvers.energy.quad_problem import Problem
 from meshonet.solvers.energy.quads import minimise, problem_of
-from meshonet.solvers.rows.columns import layer_columns
+from meshonet.solvers.rows.columns import layer_columns, straight_near
 from meshonet.solvers.rows.harmonic import HarmonicMoves
 from meshonet.solvers.rows.middle_section import LOWER, TOLERANCE, UPPER, folded_section, middle_section
 from meshonet.solvers.rows.section_plane import SectionPlane
@@ -201,6 +201,7 @@ def _carried(
     start = np.stack([plane.stations(shares), nodes[:, 1] + aside], axis=1)
     end, front = start.copy(), plane.front_arcs(places)
     lines, walls = ring.columns(front)
+    lines = straight_near(lines, plane.from_corners(walls))
     inner = norms(start[plan.outward] - start[plan.columns[:, -1]])
     rows = plan.columns.shape[1] - 1
     layers = plane.cascade.layers

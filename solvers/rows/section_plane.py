@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of
+from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of, wrapped
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import modulus
@@ -118,6 +118,11 @@ class SectionPlane:
     def corners(self) -> Floats:
         """Places u (c,) of the corners of the blade."""
         return self.places[list(self.cascade.blade.corners)]
+
+    def from_corners(self, arcs: Floats) -> Floats:
+        """Return how far arc lengths (n,) of the blade are from its nearest corner, infinite without any."""
+        off = wrapped((arcs - self.wall_arcs(self.corners)[:, None]) / self._walls[-1])
+        return np.asarray(self._walls[-1] * np.abs(off).min(axis=0, initial=np.inf))
 
     @cached_property
     def _walls(self) -> Floats:

@@ -47,7 +47,7 @@ class SpanPlaces:
             return cls((free, free), gaps)
         near = planes if all(gaps) else planes[: half + 1] if gaps[0] else planes[half:]
         mirrored = opposite_places(places, pairs, ChannelLines.of(near))
-        nodes = corner_nodes(mirrored, corners)
+        nodes = _opposite_nodes(mirrored, corners)
         mirrored[nodes] = corners
         free = _drawn(places, nodes, corners)
         return cls((mirrored if gaps[0] else free, mirrored if gaps[1] else free), gaps)
@@ -79,6 +79,22 @@ def at_corners(places: Floats, corners: Floats) -> Floats:
 def corner_nodes(places: Floats, corners: Floats) -> Indices:
     """Return which of places (k,) are nearest to `corners` (c,)."""
     return np.abs(wrapped(places - corners[:, None])).argmin(axis=1)
+
+
+def _opposite_nodes(mirrored: Floats, corners: Floats) -> Indices:
+    """Return which of places (k,), the same on both sides, are nearest to `corners` (c,).
+
+    Corners of both sides that are within a step of being opposite each other have opposite nodes.
+    """
+    nodes = corner_nodes(mirrored, corners)
+    lead = int(np.abs(wrapped(mirrored)).argmin())
+    upper, lower = np.flatnonzero(corners < 0.5), np.flatnonzero(corners > 0.5)
+    for k in lower if len(upper) else ():
+        other = upper[int(np.abs(corners[upper] + corners[k] - 1.0).argmin())]
+        opposite = (2 * lead - nodes[other]) % len(mirrored)
+        if (nodes[k] - opposite + 1) % len(mirrored) <= 2:
+            nodes[k] = opposite
+    return nodes
 
 
 def _drawn(places: Floats, nodes: Indices, corners: Floats) -> Floats:

@@ -126,3 +126,34 @@ def test_cells_behind_narrow_edges_in_a_gap_grow_little_across_the_outline_of_th
         growth.append(np.maximum(inside / outside, outside / inside).ravel())
     assert grid.quality().folded == 0
     assert np.concatenate(growth).max() < 2.5
+
+
+def test_corners_of_a_flat_edge_are_nodes_at_all_heights() -> None:
+    row = radial_rows.turbine(77)  # with a gap: places change along the span
+    grid = make_row(row, RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
+    heights = np.linspace(0.0, row.channel.tip, 400)
+    surfaces = [grid.at(each) for each in grid.patches if each.name == "blade"]
+    nodes = np.concatenate([each.reshape(-1, 3) for each in surfaces])
+    for corner in row.surface.corners:
+        s, theta = row.surface.at(np.full((400, 1), corner), heights[:, None])[:, 0].T
+        start, way = _pieces(row.channel.in_space(np.stack([s, theta, heights], axis=1)))
+        part = np.clip(((nodes[:, None] - start) * way).sum(axis=-1) / (way**2).sum(axis=-1), 0.0, 1.0)
+        away = np.linalg.norm(start + part[..., None] * way - nodes[:, None], axis=-1).min(axis=1)
+        assert (away < 1e-5 * row.chord).sum() >= surfaces[0].shape[1]  # one at each level
+
+
+def _pieces(curve: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return curve[:-1], np.diff(curve, axis=0)
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_layers_around_corners_grow_along_the_blade_as_at_wall_or_front(name: str) -> None:
+    grid = made(name)
+    ends, all_rows = [], []
+    for patch in grid.patches:
+        if patch.name == "blade":
+            steps = np.linalg.norm(np.diff(grid.blocks[patch.block].nodes, axis=0), axis=-1)
+            growth = np.abs(np.log(steps[1:] / steps[:-1]))
+            ends.append(growth[:, [0, -1]].max())
+            all_rows.append(growth.max())
+    assert max(all_rows) < 1.02 * max(ends)
