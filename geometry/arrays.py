@@ -61,6 +61,15 @@ def ends_meet(points: Floats) -> bool:
     return len(points) > 1 and bool(np.abs(points[-1] - points[0]).max() <= _ROUNDING * extent_of(points))
 
 
+def rolled(values: AnyArray, by: int) -> Any:
+    """Return values (n, ...) moved along their first axis, around its ends; faster than NumPy's for few.
+
+    >>> rolled(np.arange(5), 2).tolist()
+    [3, 4, 0, 1, 2]
+    """
+    return np.concatenate([values[-by:], values[:-by]])
+
+
 def cross2(u: Floats, v: Floats) -> Floats:
     """Return the products u x v (...) of plane vectors (..., 2)."""
     return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])

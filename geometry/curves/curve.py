@@ -1,6 +1,9 @@
 """Smooth curves through given points, parametrised by arc length."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
+from copy import copy
 
 import numpy as np
 
@@ -90,6 +93,14 @@ class Curve:
         self.length = float(self._table[-1])
         self.knots = read_only(self._table[::_STEPS][: len(self.points)].copy())
         self.corners = read_only(self.knots[self.corner_index])
+
+    def moved(self, shift: Floats) -> Curve:
+        """Return the curve moved by `shift` (2,)."""
+        curve = copy(self)
+        curve.points = read_only(self.points + shift)
+        ends = np.concatenate([curve.points, curve.points[:1]]) if self.closed else curve.points
+        curve._cubic = np.concatenate([ends[None, :-1], self._cubic[1:]])
+        return curve
 
     @property
     def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:

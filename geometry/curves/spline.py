@@ -11,7 +11,7 @@ one at its end; those of neighbouring intervals differ only at corners.
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, distinct
+from meshonet.geometry.arrays import Floats, Indices, distinct, rolled
 from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import angle_between, turning
@@ -33,13 +33,13 @@ def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Fl
     """
     if closed and corners.size == 0:
         slope = periodic_slopes(*_chords(points, closed=True))
-        start, stop = slope, np.roll(slope, -1, axis=0)
+        start, stop = slope, rolled(slope, -1)
     elif closed:
         shift = int(corners[0])
-        ring = np.roll(points, -shift, axis=0)
+        ring = rolled(points, -shift)
         chords = _chords(ring, closed=True)
         start, stop = open_slopes(*chords, np.append(corners - shift, len(points)))
-        start, stop = np.roll(start, shift, axis=0), np.roll(stop, shift, axis=0)
+        start, stop = rolled(start, shift), rolled(stop, shift)
     else:
         stops = distinct(np.concatenate([[0], corners, [len(points) - 1]]))
         start, stop = open_slopes(*_chords(points, closed=False), stops)
@@ -117,13 +117,13 @@ def periodic_slopes(chord: Floats, h: Floats) -> Floats:
     By the Sherman-Morrison formula.
     """
     delta = chord / h[:, None]
-    before = np.roll(h, 1)
+    before = rolled(h, 1)
     lower, diagonal, upper = h.copy(), 2 * (before + h), before.copy()
     low, up, pivot = upper[-1], lower[0], -diagonal[0]
     diagonal[0] -= pivot
     diagonal[-1] -= low * up / pivot
     right = np.zeros((len(h), chord.shape[1] + 1))
-    right[:, :-1] = 3 * (h[:, None] * np.roll(delta, 1, axis=0) + before[:, None] * delta)
+    right[:, :-1] = 3 * (h[:, None] * rolled(delta, 1) + before[:, None] * delta)
     right[0, -1], right[-1, -1] = pivot, low
     solve_tridiagonal(lower, diagonal, upper, right)
     v = up / pivot
@@ -141,7 +141,7 @@ def limited(
     other end.
     """
     n = len(points)
-    chord = np.roll(points, -1, axis=0) - points  # the last of an open curve is not used
+    chord = rolled(points, -1) - points  # the last of an open curve is not used
     turn = turning(points, closed=closed)
     free = np.ones(n, dtype=bool)
     free[corners] = False
@@ -149,7 +149,7 @@ def limited(
         free[[0, -1]] = False
     turn[~free] = 0.0
     low, high, slack = _ranges(turn, np.hypot(chord[:, 0], chord[:, 1]))
-    behind, ahead = np.roll(turn, 1), np.roll(turn, -1)
+    behind, ahead = rolled(turn, 1), rolled(turn, -1)
     to_stop = (
         np.where(free, low, np.minimum(behind, 0) - slack),
         np.where(free, high, np.maximum(behind, 0) + slack),
@@ -172,14 +172,14 @@ def _ranges(turn: Floats, length: Floats) -> tuple[Floats, Floats, Floats]:
     opposite directions), the shorter the step is relative to the other interval, the less the tangent may
     leave the chord of that interval.
     """
-    step_after = turn * np.roll(turn, -1) < 0
-    step_before = np.roll(step_after, 1)
-    before = np.roll(length, 1)
+    step_after = turn * rolled(turn, -1) < 0
+    step_before = rolled(step_after, 1)
+    before = rolled(length, 1)
     short = np.where(step_after, length, before)
     weight = np.where(step_after != step_before, np.minimum(1.0, 2 * short / (length + before)), 1.0)
     reach = turn * weight
     size = np.abs(reach)
-    slack = SLACK * np.maximum(size, np.maximum(np.roll(size, 1), np.roll(size, -1))) + LEAST_SLACK
+    slack = SLACK * np.maximum(size, np.maximum(rolled(size, 1), rolled(size, -1))) + LEAST_SLACK
     near_after = step_before & ~step_after  # near the chord after the point: from turn - reach to turn
     low = np.where(near_after, turn - np.maximum(reach, 0), np.minimum(reach, 0)) - slack
     high = np.where(near_after, turn - np.minimum(reach, 0), np.maximum(reach, 0)) + slack

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, Indices, along_and_across, cross2, norms
+from meshonet.geometry.arrays import Bools, Floats, Indices, along_and_across, cross2, norms, rolled
 from meshonet.geometry.elementary import arctan2
 
 KINK = np.radians(8.0)
@@ -66,9 +66,9 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
         | (angle > ALWAYS)
     )
     if closed:  # two adjacent points, as at a base, with little turning beyond them
-        ahead, after = np.roll(angle, -1), np.roll(angle, -2)
-        pair = (np.minimum(angle, ahead) > SHARP) & (np.roll(angle, 1) < 0.2 * angle) & (after < 0.2 * ahead)
-        sharp |= pair | np.roll(pair, 1)
+        ahead, after = rolled(angle, -1), rolled(angle, -2)
+        pair = (np.minimum(angle, ahead) > SHARP) & (rolled(angle, 1) < 0.2 * angle) & (after < 0.2 * ahead)
+        sharp |= pair | rolled(pair, 1)
     if polygon:
         return np.flatnonzero(sharp)
     bases = _oblique_bases(points, angle) if closed else np.zeros(len(points), dtype=bool)
@@ -87,12 +87,12 @@ def _oblique_bases(points: Floats, angle: Floats) -> Bools:
     One end turns by more than `HAIRPIN`, the next by more than `KINK`, both five times as much as the points
     beyond them. So may points next to a round end, but there the thickness grows ever more slowly behind it.
     """
-    ahead, before, after = np.roll(angle, -1), np.roll(angle, 1), np.roll(angle, -2)
+    ahead, before, after = rolled(angle, -1), rolled(angle, 1), rolled(angle, -2)
     pair = (np.maximum(angle, ahead) > HAIRPIN) & (np.minimum(angle, ahead) > KINK)
     pair &= (before < 0.2 * angle) & (after < 0.2 * ahead)
     for k in np.flatnonzero(pair):
         pair[k] = _widens_on(points, int(k))
-    return pair | np.roll(pair, 1)
+    return pair | rolled(pair, 1)
 
 
 def _widens_on(points: Floats, k: int) -> bool:
@@ -121,7 +121,7 @@ def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:
     n = len(points)
     if n < 5 or (not closed and not 2 <= k < n - 2):
         return np.inf
-    a2, a1, b1, b2 = (points[(k + step) % n] for step in (-2, -1, 1, 2))
+    a2, a1, b1, b2 = points[np.mod([k - 2, k - 1, k + 1, k + 2], n)]
     near, far = math.hypot(*(a1 - b1)), math.hypot(*(a2 - b2))
     d1, d2 = (math.hypot(*(0.5 * (a + b) - points[k])) for a, b in ((a1, b1), (a2, b2)))
     if not (near > 0 and far > 0 and 0 < d1 < d2):

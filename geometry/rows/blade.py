@@ -163,8 +163,11 @@ class BladeSurface:
 
     def at(self, u: Floats, h: Floats) -> Floats:
         """Return s, theta (p, m, 2) at places u (m,), or (p, m), and heights h (p, m)."""
-        lines, out = self.lines(u.ravel()), np.empty((*h.shape, 2))
-        levels = len(h) if u.ndim == 1 else 1
+        return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
+
+    def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
+        """Return s, theta (..., 2) where `lines` (m) are at heights h (...), `levels` times m of them."""
+        out = np.empty((*h.shape, 2))
         spline_crossings(
             lines.values,
             lines.bends,
@@ -176,7 +179,7 @@ class BladeSurface:
 
     def section(self, h: float, u: Floats) -> Floats:
         """Return s, theta (m, 2) of the section at a height, at places u (m,)."""
-        return self.at(u, np.full((1, len(u)), h))[0]
+        return self.crossings(self.lines(u), np.full(len(u), h))
 
     @property
     def edges(self) -> str:

@@ -8,12 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, wrapped
-from meshonet.geometry.threads import in_threads
 from meshonet.solvers.blocking.layers.even_line import PlaceLinks
-from meshonet.solvers.rows.section_plane import SectionPlane
+from meshonet.solvers.rows.section_plane import ON_SIDE, SectionPlane
 
-_SAMPLES = 201  # places on each side
-_EDGE = 3  # of these at both edges have nothing opposite them
 _FROM = -0.25  # least place: u = 0, the leading edge, is between others
 
 
@@ -36,9 +33,9 @@ class ChannelLines:
     @classmethod
     def of(cls, planes: Sequence[SectionPlane]) -> ChannelLines:
         """Return the lines of some sections."""
-        upper = np.linspace(0.0, 0.5, _SAMPLES)
-        squares, sums = np.zeros(_SAMPLES), np.zeros(_SAMPLES)
-        for lower, slant in in_threads(lambda plane: _opposite(plane, upper), planes):
+        upper = ON_SIDE
+        squares, sums = np.zeros(len(upper)), np.zeros(len(upper))
+        for lower, slant in (plane.across for plane in planes):
             squares += slant**2
             sums += slant**2 * lower
         known = np.flatnonzero(squares > 0.0)
@@ -69,17 +66,3 @@ class ChannelLines:
         """Return by how much u on the lower side (p,) is aside of what is opposite that on the upper one."""
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))
-
-
-def _opposite(plane: SectionPlane, upper: Floats) -> tuple[Floats, Floats]:
-    """Return what is opposite places `upper` (n,) of a section, 1 - u, and the slant there."""
-    front, pitch = plane.cascade.ring.front, np.array([0.0, plane.cascade.pitch[1]])
-    one, other = (front.at(plane.front_arcs(u)) for u in (upper, 1.0 - upper))
-    away = ((other + pitch - one[:, None]) ** 2).sum(axis=-1)
-    k = away.argmin(axis=1)
-    inside = (k >= _EDGE) & (k < len(upper) - _EDGE)
-    k, row = np.clip(k, 1, len(upper) - 2), np.arange(len(upper))
-    before, here, after = away[row, k - 1], away[row, k], away[row, k + 1]
-    shift = 0.5 * (before - after) / (before - 2.0 * here + after)
-    lower = upper[k] + np.clip(shift, -0.5, 0.5) * upper[1]
-    return lower, np.where(inside, plane.cascade.blade.length / np.sqrt(here), 0.0)

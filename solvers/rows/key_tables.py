@@ -62,7 +62,7 @@ def _planes(row: Row, first: float, growth: float) -> list[SectionPlane]:
     def plane_at(height: float) -> SectionPlane:
         plane = SectionPlane.of(row, height, first, growth)
         with _of_section(height):
-            _ = plane.room  # marches the layers
+            _ = plane.room, plane.across  # marches the layers
         return plane
 
     planes = in_threads(plane_at, key_heights(KEYS).tolist())

@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of, wrapped
+from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of, read_only, wrapped
+from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import modulus
-from meshonet.geometry.rows.blade import clustered
+from meshonet.geometry.rows.blade import BladeSurface, clustered
 from meshonet.geometry.rows.channel import MeridionalMap
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import cached_property
@@ -27,6 +29,9 @@ _AROUND = 400
 _SHARES = np.array([-1.0, 0.0, 1.0, 2.0])
 STEEPEST = 45.0
 """Degrees from the axis by which wakes are followed at the most: cells behind the blade are askew by them."""
+ON_SIDE = read_only(np.linspace(0.0, 0.5, 201))
+"""Places on the upper side of which it is known what is opposite them across the channel."""
+_EDGE = 3  # of these at both edges have nothing opposite them
 _AT_EDGE = 0.1  # of the way along the blade, before and behind an edge
 _NEAR_EDGE = 0.06  # places before and behind the trailing edge by which the mean line is known there
 
@@ -51,8 +56,8 @@ class SectionPlane:
     @classmethod
     def of(cls, row: Row, height: float, first: float, growth: float) -> SectionPlane:
         """Return the section of a row, with layers whose first cells are `first` high in space."""
-        u = _with_corners(clustered(_AROUND), row.surface.corners)
-        s, theta = row.surface.section(height, u).T
+        u, lines = _lines(row.surface)
+        s, theta = row.surface.crossings(lines, np.full(len(u), height)).T
         to = row.channel.meridional(height)
         points = np.stack([to.forward(s), theta], axis=1)
         corners = np.flatnonzero(np.isin(u, row.surface.corners))
@@ -145,6 +150,20 @@ class SectionPlane:
         along = np.interp(start + np.mod(self.wall_arcs(u) - start, length), walls, front)
         return np.asarray(np.mod(along, ring.front.length))
 
+    @cached_property
+    def across(self) -> tuple[Floats, Floats]:
+        """What is opposite places `ON_SIDE` (n,), 1 - u, and the slant there (see `ChannelLines`)."""
+        front, pitch = self.cascade.ring.front, np.array([0.0, self.cascade.pitch[1]])
+        one, other = (front.at(self.front_arcs(u)) for u in (ON_SIDE, 1.0 - ON_SIDE))
+        away = ((other + pitch - one[:, None]) ** 2).sum(axis=-1)
+        k = away.argmin(axis=1)
+        inside = (k >= _EDGE) & (k < len(ON_SIDE) - _EDGE)
+        k, row = np.clip(k, 1, len(ON_SIDE) - 2), np.arange(len(ON_SIDE))
+        before, here, after = away[row, k - 1], away[row, k], away[row, k + 1]
+        shift = 0.5 * (before - after) / (before - 2.0 * here + after)
+        lower = ON_SIDE[k] + np.clip(shift, -0.5, 0.5) * ON_SIDE[1]
+        return lower, np.where(inside, self.cascade.blade.length / np.sqrt(here), 0.0)
+
     def place(self, point: Floats) -> str:
         """Return where a point (2,) is, for messages: part of the span, and where along the blade."""
         share = float(self.shares(point[None])[0])
@@ -174,6 +193,13 @@ class SectionPlane:
     def _stations(self) -> Floats:
         """M' of inlet, leading edge, trailing edge and outlet."""
         return np.array([0.0, self.edges[0, 0], self.edges[1, 0], self.map.length])
+
+
+@lru_cache(maxsize=8)
+def _lines(surface: BladeSurface) -> tuple[Floats, CubicTable]:
+    """Return the places of the points of sections, with the corners of the blade, and the lines there."""
+    u = read_only(_with_corners(clustered(_AROUND), surface.corners))
+    return u, surface.lines(u)
 
 
 def _with_corners(u: Floats, corners: Floats) -> Floats:

@@ -192,3 +192,15 @@ def test_arrays_that_are_kept_cannot_be_written() -> None:
     for kept in (curve.points, curve.knots, curve.corners, curve.corner_index, boundary.corners["south"]):
         with pytest.raises(ValueError, match="read-only"):
             kept[...] = 0
+
+
+def test_a_moved_curve_is_that_through_moved_points() -> None:
+    t = 2.0 * np.pi * np.arange(40) / 40
+    points, shift = np.stack([np.cos(t), 0.3 * np.sin(t)], axis=1), np.array([0.5, -2.0])
+    curve = Curve(points, closed=True, corners=(0, 20))
+    moved, fresh = curve.moved(shift), Curve(points + shift, closed=True, corners=(0, 20))
+    s = np.linspace(0.0, curve.length, 333)
+    np.testing.assert_array_equal(moved.points, points + shift)
+    np.testing.assert_array_equal(moved.at(moved.knots), moved.points)
+    np.testing.assert_allclose(moved.at(s), fresh.at(s), atol=1e-13)
+    np.testing.assert_allclose(curve.at(s) + shift, moved.at(s), atol=1e-13)

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, complex_of, pairs_of
-from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
@@ -201,5 +200,4 @@ def scaled(metric: SizeMetric, scale: float) -> SizeMetric:
 
 
 def _moved(blade: Loop, shift: Floats) -> Loop:
-    curve = Curve(blade.curve.points + shift, closed=True, corners=blade.curve.corner_index)
-    return Loop(curve, blade.corners, blade.names)
+    return Loop(blade.curve.moved(shift), blade.corners, blade.names)

@@ -24,7 +24,7 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats, Indices
 from meshonet.geometry.elementary import arccos, arctan2, cosh, log, modulus, sinh, times
 from meshonet.geometry.linear import solve
-from meshonet.geometry.threads import cached_property
+from meshonet.geometry.threads import cached_property, in_threads, thread_count
 
 _GAUSS = (-(3.0**-0.5), 3.0**-0.5)  # places in a side from -1 to 1, of weight 1
 _TINY = 1e-12  # in place of a distance of 0, where the integrand is 0 in the limit
@@ -97,8 +97,12 @@ class PassageFlow:
         before, after = np.roll(strip, 1), np.roll(strip, -1)
         weight = sinh(0.5 * (after - before)) / cosh(0.5 * after) / cosh(0.5 * before)
         weight = times(weight, cosh(0.5 * strip))
-        kernel = weight / sinh(0.5 * (strip - places[:, None]))
-        return np.asarray(times(kernel, away).sum(axis=1) / kernel.sum(axis=1))
+
+        def integrals(some: Complexes) -> Complexes:
+            kernel = weight / sinh(0.5 * (strip - some[:, None]))
+            return np.asarray(times(kernel, away).sum(axis=1) / kernel.sum(axis=1))
+
+        return np.concatenate(in_threads(integrals, np.array_split(places, thread_count())))
 
 
 def _range(start: int, stop: int, count: int) -> Indices:
