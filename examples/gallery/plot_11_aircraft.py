@@ -15,7 +15,7 @@ wing = Stack((Section(naca("2415"), 2.2, 0.0, x=3.6, y=-0.2), Section(naca("2412
 tail = Stack((Section(naca("0010"), 1.1, 0.0, x=8.9), Section(naca("0010"), 0.6, 2.2, x=9.9)), name="tail")
 jet = meshonet.Aircraft(body, wing, others=(tail,))
 grid = meshonet.stack(jet, around=49, span=9, first_cell=5e-3, growth=1.35, far_field=8)
-meshonet.plot(grid, "jet.png", seen_from=(-60, 25))
+meshonet.plot(grid, "jet.png", up="y", seen_from=(-40, 25))
 
 # %%
 # The wings are walls with names of their own, for boundary conditions and forces:

@@ -27,6 +27,7 @@ class View:
     slice : slice of a volume: ``i=10``, ``k=-1`` or ``x=.5``; None draws the walls, or the whole boundary of
         a volume without walls.
     seen_from : azimuth and elevation in degrees, for pictures in space; None is `SEEN_FROM`.
+    up : the axis that points upwards there, ``x``, ``y`` or ``z``; azimuth and elevation refer to it.
     span : parts of the span of a blade row, 0 to 1 from hub to shroud, at which its sections are drawn.
     meridional : draw the meridional section of a blade row.
 
@@ -37,6 +38,7 @@ class View:
     every: int | None = None
     slice: Slice | str | None = None
     seen_from: tuple[float, float] | None = None
+    up: str | None = None
     span: tuple[float, ...] = ()
     meridional: bool = False
 
@@ -50,6 +52,8 @@ class View:
         if self.seen_from is not None and not all(map(math.isfinite, self.seen_from)):
             remedy = "use azimuth and elevation in degrees, e.g. -125,25"
             raise InputError(f"{self.seen_from} is no direction", remedy, parameter="seen_from")
+        if self.up not in (None, *"xyz"):
+            raise InputError(f"{self.up!r} is no axis", "use x, y or z", parameter="up")
         if self.every is not None and self.every < 1:
             problem = f"every {self.every}-th line cannot be drawn"
             raise InputError(problem, "use 1 or more", parameter="every")
@@ -74,18 +78,26 @@ class View:
 
     @property
     def axes(self) -> Floats:
-        """Unit vectors (3, 3) that point to the right, upwards and towards the viewer."""
+        """Unit vectors (3, 3) that point to the right, upwards and towards the viewer.
+
+        The azimuth is 0 at the first of the two level axes in the order x, y, z, x.
+        """
         azimuth, elevation = np.radians(self.seen_from or SEEN_FROM)
         level = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
         towards = np.cos(elevation) * level + [0.0, 0.0, np.sin(elevation)]
         right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
-        return np.array([right, np.cross(towards, right), towards])
+        return np.roll([right, np.cross(towards, right), towards], self.axis_up + 1, axis=1)
+
+    @property
+    def axis_up(self) -> int:
+        """Number of the axis that points upwards."""
+        return "xyz".index(self.up or "z")
 
 
 def check_flat(view: View) -> None:
-    """Raise InputError for settings that only grids in space have: a slice, a direction of view."""
-    settings = ("slice", view.slice), ("seen_from", view.seen_from), ("span", view.span or None)
-    for name, value in (*settings, ("meridional", view.meridional or None)):
+    """Raise InputError for settings that only grids in space have: a slice, a direction of view, an axis."""
+    given = {"span": view.span or None, "meridional": view.meridional or None, "slice": view.slice}
+    for name, value in (given | {"seen_from": view.seen_from, "up": view.up}).items():
         if value is not None:
             raise InputError("the grid is in the plane", f"leave {{{name}}} out", parameter=name)
 

@@ -19,6 +19,7 @@ def plot(
     every: int | None = None,
     slice: str | None = None,  # noqa: A002
     seen_from: tuple[float, float] | None = None,
+    up: str | None = None,
     span: float | Sequence[float] = (),
     meridional: bool = False,
     to_format: str | None = None,
@@ -42,6 +43,8 @@ def plot(
         the whole boundary of a volume without walls.
     seen_from : tuple of 2 float, optional
         Azimuth and elevation in degrees of the view in space.
+    up : str, optional
+        Axis that points upwards there, ``x``, ``y`` or ``z`` (default).
     span : float or sequence of float, optional
         Parts of the span of a blade row, 0 to 1 from hub to shroud, at which its sections are drawn.
     meridional : bool, optional
@@ -60,7 +63,7 @@ def plot(
     >>> plot(meshonet.tfi("naca:2412", res=(41, 17)), "grid.png", metric=None)
     """
     spans = tuple(span) if isinstance(span, Sequence) else (span,)
-    picture = Picture(zoom, every, slice, seen_from, spans, meridional, metric)
+    picture = Picture(zoom, every, slice, seen_from, up, spans, meridional, metric)
     kind = picture_format(str(output), to_format).name
     with whole_file(str(output)) as part:
         picture.draw(kind, part, [single_grid(grid)])

@@ -76,6 +76,11 @@ def plot(
         help="Direction from which volumes and surfaces are seen: azimuth and elevation in degrees. "
         "[default: -125,25]",
     )] = None,
+    up: Annotated[str | None, _option(
+        "--up", metavar="AXIS",
+        help="Axis that points upwards in pictures of volumes and surfaces: x, y or z. Azimuths count from "
+        "the axis that follows it in the order x, y, z, x. [default: z]",
+    )] = None,
     every: Annotated[int | None, _option(
         "--every", metavar="K",
         help="Draw every K-th grid line. [default: as many lines as can be distinguished]",
@@ -88,6 +93,6 @@ def plot(
     box, direction = o.numbers(zoom, (4, 6), *_BOX), o.numbers(seen_from, (2,), *_DIRECTION)
     spans = o.numbers(span, tuple(range(1, 10)), *_SPANS) or ()
     colours = None if metric == "none" else metric
-    picture = Picture(box, every, slice_, direction, spans, meridional, colours)
+    picture = Picture(box, every, slice_, direction, up, spans, meridional, colours)
     return plot_grids(run.batch(run.inputs(grid, grids=True), files), picture)
 # fmt: on

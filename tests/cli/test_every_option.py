@@ -237,6 +237,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--every": ("grid.h5 -o made.png -q", "OPTION 5", "bytes"),
         "--slice": ("cube.vts -o made.png -q", "OPTION z=1.5", "bytes"),
         "--seen-from": ("cube.vts -o made.png -q", "OPTION 30,60", "bytes"),
+        "--up": ("cube.vts -o made.png -q", "OPTION y", "bytes"),
         "--span": ("passage.h5 -o made.png -q", "OPTION .3,.6", "bytes"),
         "--meridional": ("passage.h5 -o made.png -q", "OPTION", "bytes"),
     },

@@ -106,6 +106,15 @@ def test_what_is_in_front_is_drawn_last() -> None:
     assert rims == [1, 2, 3, 4, 6, 7, 8, 9]
 
 
+@pytest.mark.parametrize("up", ["x", "y", "z", None])
+def test_the_axis_that_is_up_points_upwards(up: str | None) -> None:
+    right, upwards, towards = View(seen_from=(0, 0), up=up).axes
+    axis = "xyz".index(up or "z")
+    np.testing.assert_allclose(upwards, np.eye(3)[axis], atol=1e-15)
+    np.testing.assert_allclose(towards, np.eye(3)[(axis + 1) % 3], atol=1e-15)
+    np.testing.assert_allclose(np.cross(right, upwards), towards, atol=1e-15)
+
+
 def test_a_flat_layer_is_drawn_as_grids_in_the_plane_are() -> None:
     grid = Grid.from_nodes(lattice((0, 4, 5), (0, 3, 4), (0, 2, 3)))
     axes = draw_in_space(grid, None, View(slice=Slice(2, 1))).axes[0]
@@ -127,6 +136,7 @@ def test_a_flat_layer_is_drawn_as_grids_in_the_plane_are() -> None:
         ),
         ({"zoom": (9, 10, 0, 1, 0, 1)}, "shows none of the grid; it spans x 0 to 4, y 0 to 3, z 0 to 2"),
         ({"seen_from": (np.nan, 0)}, "is no direction; use azimuth and elevation in degrees"),
+        ({"up": "k"}, "'k' is no axis; use x, y or z"),
         ({"metric": "area_ratio"}, "metric 'area_ratio' is none of volumes"),
     ],
 )

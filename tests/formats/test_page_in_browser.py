@@ -147,6 +147,14 @@ def test_blocks_are_switched_off_and_on(browser: Browser, tmp_path: Path) -> Non
     assert white(browser.picture()) == pytest.approx(full, abs=1e-3)
 
 
+def test_the_camera_sees_what_pictures_show(browser: Browser, tmp_path: Path) -> None:
+    view = View(seen_from=(-40, 25), up="y")
+    opened(browser, box(), tmp_path, view)
+    np.testing.assert_allclose(browser.run("return meshonet.camera.axes"), view.axes, atol=1e-12)
+    browser.run("document.querySelector('[data-view=y]').click()")
+    np.testing.assert_allclose(browser.run("return meshonet.camera.axes")[2], [0, 1, 0], atol=1e-12)
+
+
 def test_a_volume_is_turned_cut_and_sliced(browser: Browser, tmp_path: Path) -> None:
     opened(browser, box(), tmp_path, View(slice=parse_slice("z=.5")))
     assert browser.run("return meshonet.state.cut.count") > 0

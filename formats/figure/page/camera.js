@@ -4,9 +4,10 @@ const RADIANS = Math.PI / 180;
 
 /** Places in pixels from the middle of the canvas: x to the right, y upwards, z towards the viewer. */
 class Camera {
-  /** `flat` is a grid in the plane; `box` are its lowest and highest coordinates. */
-  constructor(flat, box, seenFrom) {
+  /** `flat` is a grid in the plane; `box` are its lowest and highest coordinates, `up` the axis upwards. */
+  constructor(flat, box, seenFrom, up) {
     this.flat = flat;
+    this.up = up;
     this.box = box.map((corner) => (corner.length === 3 ? corner : [...corner, 0]));
     this.home = seenFrom;
     [this.azimuth, this.elevation] = seenFrom;
@@ -21,7 +22,7 @@ class Camera {
     const a = this.azimuth * RADIANS, e = this.elevation * RADIANS;
     const towards = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
     const right = [-Math.sin(a), Math.cos(a), 0];
-    return [right, cross(towards, right), towards];
+    return [right, cross(towards, right), towards].map((way) => way.map((_, k) => way[(k + 2 - this.up) % 3]));
   }
 
   /** Return where a point is on the screen. */

@@ -15,7 +15,7 @@ async function begin() {
   const sheets = facts.sheets.map((sheet) => new Layer(lattices[sheet.lattice], sheet));
   const layers = sheets.filter(({ sheet }) => sheet.kind !== "slice");
   const stored = sheets.filter(({ sheet }) => sheet.kind === "slice"); // all that a large volume has inside
-  const camera = new Camera(flat, facts.box, facts.start.seen_from);
+  const camera = new Camera(flat, facts.box, facts.start.seen_from, facts.start.up);
   const pointAt = (node) => points.map((axis) => axis[node]);
   const stroke = (pairs, width, ink, more = {}) => ({ segments: painter.segmentsOf(pairs), width, ink, ...more });
   const state = {
@@ -106,8 +106,9 @@ async function begin() {
     const way = [0, 1, 2].map((x) => corners.reduce((sum, point, n) => sum + (n & 1 ? point[x] : -point[x]), 0));
     const length = Math.hypot(...way);
     if (!length) return;
-    camera.azimuth = Math.atan2(way[1], way[0]) / RADIANS + 20;
-    camera.elevation = Math.max(-75, Math.min(75, Math.asin(way[2] / length) / RADIANS + 15));
+    const [ahead, aside, high] = [1, 2, 0].map((k) => way[(camera.up + k) % 3]);
+    camera.azimuth = Math.atan2(aside, ahead) / RADIANS + 20;
+    camera.elevation = Math.max(-75, Math.min(75, Math.asin(high / length) / RADIANS + 15));
   };
   const visit = (cell) => {
     const corners = cell.corners.map((point) => (point.length === 3 ? point : [...point, 0]));
@@ -134,6 +135,7 @@ async function begin() {
     Object.assign(camera, { azimuth, elevation });
     draw();
   };
+  const lookAlong = (axis) => look(...[[0, 0], [-90, 0], [-90, 90]][(axis - camera.up + 2) % 3]);
 
   // --- slices: the layer `at` of an index i, j or k, of one block or of all, or a cut by a plane of x, y or z
   const STEPS = 1000;
@@ -244,7 +246,7 @@ async function begin() {
   const views = {
     closer: () => (camera.stay(), camera.zoom(1.5), draw()), further: () => (camera.stay(), camera.zoom(1 / 1.5), draw()),
     all: () => showAll(), near: () => wallBox && showAll(wallBox),
-    x: () => look(0, 0), y: () => look(-90, 0), z: () => look(-90, 90),
+    x: () => lookAlong(0), y: () => lookAlong(1), z: () => lookAlong(2),
   };
   document.querySelectorAll("[data-view]").forEach((button) =>
     button.addEventListener("click", () => views[button.dataset.view]()));

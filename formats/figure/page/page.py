@@ -90,6 +90,7 @@ def _start(grid: Grid, metric: str | None, view: View) -> dict[str, Any]:
         "every": view.every,
         "slice": None if view.part is None else _slice(grid, view.part),
         "seen_from": list(view.seen_from or SEEN_FROM),
+        "up": view.axis_up,
     }
 
 
