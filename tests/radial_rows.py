@@ -182,6 +182,15 @@ def impeller(seed: int, *, gap: bool | None = None) -> Row:
     return _row(rng, "impeller", hub, shroud, blade, ends, int(rng.integers(11, 21)), gap, 0.05 * width)
 
 
+def eckardt() -> Row:
+    """Like Eckardt's impeller O: 20 blades that end radially in a flat edge, and a gap at the shroud."""
+    hub, shroud = ellipse((0.0, 0.225), (0.65, 1.0)), ellipse((0.0, 0.7), (0.52, 1.0))
+    blade = Blade(((-32.0, -63.0), (0.0, 0.0)), (0.02, 0.01), blunt=True)
+    made = profiles(hub, shroud, blade, (0.0, 0.25, 0.5, 0.75, 1.0))
+    low, high = (0.2 * extended(line, 0.4, 0.25) for line in (hub, shroud))
+    return Row(tuple(0.2 * each for each in made), low, high, 20, 0.00038, 0.0, "eckardt")
+
+
 def turbine(seed: int, *, gap: bool | None = None) -> Row:
     """A radial turbine: radial inlet, axial outlet, radial blades at the inlet."""
     rng = np.random.default_rng(seed)

@@ -98,7 +98,7 @@ def _opposite_nodes(mirrored: Floats, corners: Floats) -> Indices:
 
 
 def _drawn(places: Floats, nodes: Indices, corners: Floats) -> Floats:
-    """Return places (k,) with some `nodes` (c,) at `corners` (c,), and those between drawn along.
+    """Return places (k,) with some `nodes` (c,) at `corners` (c,), and those between drawn along in order.
 
     An edge without corners stays where it is.
     """
@@ -108,7 +108,7 @@ def _drawn(places: Floats, nodes: Indices, corners: Floats) -> Floats:
     for edge in (0.0, 0.5):
         if np.abs(wrapped(corners - edge)).min() > 0.25:
             nodes, move = np.append(nodes, corner_nodes(places, np.array([edge]))), np.append(move, 0.0)
-    drawn = places + np.interp(np.arange(len(places)), nodes, move, period=len(places))
+    drawn = places + np.interp(places, places[nodes], move, period=1.0)
     drawn = np.mod(drawn, 1.0)
     drawn[nodes[: len(corners)]] = corners
     return np.asarray(drawn)

@@ -21,6 +21,7 @@ ROWS = {
     "diffuser": radial_rows.diffuser(7),
     "diffuser with a corner at its nose": radial_rows.diffuser(11),
     "turbine with an oblique base": radial_rows.turbine(13),
+    "impeller with a thin flat edge and a gap": radial_rows.eckardt(),
 }
 NARROW = radial_rows.impeller(144)  # five times as wide at the inlet as at the outlet
 PUMP = radial_rows.pump(26, gap=True)  # with a narrow edge cut at a slant
