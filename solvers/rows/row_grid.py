@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 
@@ -46,7 +46,6 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     zones = zones_of(row, first, growth, request.cells)
     keys = key_tables(row, first, growth, section_cells(zones, request.cells, growth))
     stacked = StackedRow(row, keys, zones, first, growth)
-    gaps: list[GapBlocks | None] = [None] * len(zones)
     open_ = [k for k, zone in enumerate(zones) if zone.gap]
 
     def ends_of(k: int) -> GapEnds:
@@ -54,20 +53,22 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
 
     (made, rest), *ends = run_in_threads([stacked.nodes, *(partial(ends_of, k) for k in open_)])
 
-    def fill(k: int, own: GapEnds) -> None:
+    def section(k: int) -> ZoneSection:
+        if not zones[k].gap:
+            return ZoneSection(to_grid(stacked.layout), stacked.layout, None)
         low, high = stacked.bounds[k]
         outline = made.beside[low : high + 1, :, 0]
-        gaps[k] = gap_blocks(row, own, stacked.columns[:, 0], outline, zones[k], growth)
+        own = ends[open_.index(k)]
+        inside = gap_blocks(row, own, stacked.columns[:, 0], outline, zones[k], growth)
+        layout = _with_inside(stacked.layout, inside)
+        return ZoneSection(to_grid(layout), layout, inside)
 
-    run_in_threads([*map(partial, [fill] * len(open_), open_, ends), *rest])
+    sections = run_in_threads([*(partial(section, k) for k in range(len(zones))), *rest])[: len(zones)]
     del rest  # and what it holds of layers
     space, turn = made.space, turned_by(row.pitch)
     second, partner = stacked.twins
     space[:, second] = turn(space[:, partner])
-    if not np.isfinite(space).all():
-        problem = "lines off the blade have no length, because its profiles lie far beside each other"
-        raise NoValidGridError(f"{problem}; give profiles of one blade, or more of them")
-    grid = _joined(row, stacked, zones, gaps, space, turn)
+    grid = _joined(row, stacked, zones, sections, space, turn)
     return grid, (*_notes(zones, first), *_more_cells(grid, request.cells))
 
 
@@ -77,8 +78,17 @@ def turned_by(angle: float) -> Motion:
     return Motion(turn=((1.0, 0.0, 0.0), (0.0, c, s), (0.0, -s, c)))
 
 
+@dataclass(frozen=True, eq=False)
+class ZoneSection:
+    """The blocks of any level of a zone, as a plane grid and as a layout, and those inside the outline."""
+
+    plane: Grid
+    layout: Layout
+    inside: GapBlocks | None
+
+
 def _joined(
-    row: Row, stacked: StackedRow, zones: Sequence[Zone], gaps: Sequence[GapBlocks | None], space: Floats,
+    row: Row, stacked: StackedRow, zones: Sequence[Zone], sections: Sequence[ZoneSection], space: Floats,
     turn: Motion,
 ) -> Grid:  # fmt: skip
     """Return all blocks as one grid."""
@@ -87,17 +97,16 @@ def _joined(
     connections: list[Connection] = []
     starts: list[int] = []
     whole = len(stacked.layout.blocks)
-    for zone, inside, (low, high) in zip(zones, gaps, stacked.bounds, strict=True):
-        layout, nodes, start = stacked.layout, space[low : high + 1], len(blocks)
-        if inside is not None:
-            layout = _with_inside(layout, inside)
-            nodes = np.concatenate([nodes, inside.space[:, len(inside.outline) :]], axis=1)
-        plane = to_grid(layout)
+    for zone, section, (low, high) in zip(zones, sections, stacked.bounds, strict=True):
+        start = len(blocks)
         starts.append(start)
-        blocks += in_threads(partial(_block, nodes), layout.blocks)
-        patches += [replace(patch, block=patch.block + start) for patch in plane.patches]
-        patches += _end_patches(zone, layout, start, whole)
-        for each in plane.connections:
+        parts = [(space[low : high + 1], ids) for ids in stacked.layout.blocks]
+        if section.inside:
+            parts += [(section.inside.space, ids[::-1]) for ids in section.inside.fill.layout.blocks]
+        blocks += in_threads(lambda part: _block(*part), parts)
+        patches += [replace(patch, block=patch.block + start) for patch in section.plane.patches]
+        patches += _end_patches(zone, section.layout, start, whole)
+        for each in section.plane.connections:
             own = replace(each, block=each.block + start, donor=each.donor + start, transform=None)
             moved = turn if each.transform else None
             connections.append(replace(thick(own, high - low + 1), transform=moved))
@@ -113,6 +122,9 @@ def _block(nodes: Floats, ids: Indices) -> Block:
     """Return the block of nodes (levels, n, 3) with the numbers `ids` (ni, nj) in each level."""
     block = np.empty((3, *ids.shape, len(nodes)))
     stacked_block(nodes, ids.ravel(), block.reshape(3, ids.size, -1))
+    if not np.isfinite(block).all():
+        problem = "lines off the blade have no length, because its profiles lie far beside each other"
+        raise NoValidGridError(f"{problem}; give profiles of one blade, or more of them")
     return Block(np.moveaxis(block, 0, -1), finite=True)
 
 

@@ -18,13 +18,14 @@ The vortex sheet γ is computed with panels. Martensen, Arch. Rat. Mech. Anal. 3
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, Indices
 from meshonet.geometry.elementary import arccos, arctan2, cosh, log, modulus, sinh, times
 from meshonet.geometry.linear import solve
-from meshonet.geometry.threads import cached_property, in_threads, thread_count
+from meshonet.geometry.threads import cached_property, in_threads, run_in_threads, thread_count
 
 _GAUSS = (-(3.0**-0.5), 3.0**-0.5)  # places in a side from -1 to 1, of weight 1
 _TINY = 1e-12  # in place of a distance of 0, where the integrand is 0 in the limit
@@ -115,12 +116,16 @@ def _sheet(points: Complexes) -> Floats:
     step = np.roll(points, -1) - points
     length = modulus(step)
     middle = points + 0.5 * step
-    kernel = np.zeros((n + 1, n + 1))
-    kernel[:n, :n] = _log_integrals(points, step, middle)
-    for place in _GAUSS:
+
+    def rest(place: float) -> Floats:
         away = middle[:, None] - (middle + 0.5 * place * step)
         away[away == 0.0] = _TINY
-        kernel[:n, :n] += 0.5 * length * log(modulus(sinh(away) / away))
+        return np.asarray(0.5 * length * log(modulus(sinh(away) / away)))
+
+    near = partial(_log_integrals, points, step, middle)
+    kernel = np.zeros((n + 1, n + 1))
+    for part in run_in_threads([near, *(partial(rest, place) for place in _GAUSS)]):
+        kernel[:n, :n] += part
     kernel[:n, n] = -1.0
     kernel[n, :n] = length
     return solve(kernel, np.append(-middle.imag, 0.0))[:n]
