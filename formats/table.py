@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from meshonet.formats.format import Format, kinds_in_space, later
+from meshonet.formats.format import Format, Space, kinds_in_space, later
 from meshonet.formats.plot3d import CHOICES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -49,18 +49,22 @@ def _write(write: Any, name: str, path: Path, grids: Iterable[Grid], *rest: Any,
     write(path, map(partial(_held, TABLE[name]), grids), *rest, **more)
 
 
+def check_space(record: Format, kind: Space, output: str | None = None) -> None:
+    """Raise InputError, about an `output` if given, if a format cannot store a kind of blocks in space."""
+    if kind not in record.space:
+        able = ", ".join(other.name for other in _FORMATS if kind in other.space and other.write_grids)
+        held = ", ".join(("grids in the plane", *record.space))
+        problem = f"{record.name} files hold {held} and this grid has {kind} in space"
+        raise InputError(problem, f"write one of {able}", source=output)
+
+
 def _held(record: Format, grid: Grid) -> Grid:
     """Return the grid. Raises InputError: the format cannot store it."""
-    name = record.name
-    for kind in kinds_in_space(grid) if grid.form != "plane" else ():
-        if kind not in record.space:
-            able = ", ".join(other.name for other in _FORMATS if kind in other.space and other.write_grids)
-            held = ", ".join(("grids in the plane", *record.space))
-            problem = f"{name} files hold {held} and this grid has {kind} in space"
-            raise InputError(problem, f"write one of {able}")
+    for kind in kinds_in_space(grid):
+        check_space(record, kind)
     if len(grid.blocks) > 1 and not record.blocks:
         able = ", ".join(other.name for other in _FORMATS if other.blocks)
-        problem = f"{name} files hold one block and the grid has {len(grid.blocks)}"
+        problem = f"{record.name} files hold one block and the grid has {len(grid.blocks)}"
         raise InputError(problem, f"write one of {able}")
     return grid
 

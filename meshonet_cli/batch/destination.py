@@ -10,9 +10,11 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from meshonet.formats.format import size_of
+from meshonet.formats.format import Space, size_of
 from meshonet.formats.output import whole_file
 from meshonet.formats.registry import Kind, format_for_output
+from meshonet.formats.source import printable
+from meshonet.formats.table import check_space
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -48,18 +50,20 @@ class Destination:
 
     `put` is a function that writes to a path, instead of the format's own function for this `kind`. A dataset
     is written in parts of `part_size` inputs; without it the size follows from the approximate number of
-    `nodes` per result. Raises InputError: an unknown field or extension; a format that cannot be written, or
-    has no parts.
+    `nodes` per result. Results have blocks in `space` or none. Raises InputError: an unknown field or
+    extension; a format that cannot be written, or has no parts.
     """
 
     def __init__(
         self, text: str, fmt: str | None, kind: Kind = "grids",
         put: Callable[[Path, Any], None] | None = None, *,
-        part_size: int | None = None, nodes: int | None = None,
+        part_size: int | None = None, nodes: int | None = None, space: Space | None = None,
     ) -> None:  # fmt: skip
         self.text, self.kind, self._part_size, self._nodes = text, kind, part_size, nodes
         self.each = bool(_fields(text))
         self.format = format_for_output(text, fmt, kind)
+        if space:
+            check_space(self.format, space, printable(text))
         self._put = put or getattr(self.format, f"write_{kind}")
         self._taken: dict[str, str] = {}
         self.can_have_parts = self.format.name == "hdf5" and not self.each and text != "-"

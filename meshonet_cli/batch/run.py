@@ -9,6 +9,7 @@ from itertools import chain, starmap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from meshonet.formats.format import Space
 from meshonet.formats.registry import Kind
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.stages import stage
@@ -42,6 +43,7 @@ class BatchTask:
     kind : kind of the results.
     put : function that writes to a path, instead of the format's own function.
     nodes : approximate number of nodes of a result; None if unknown.
+    space : what the blocks of all results are in space, so that a format without them is refused at once.
     together : number of members that a process gets at a time.
     assembled : sampling of the far field if all inputs form one domain.
     joined : how several inputs can become one, a remedy if the output stores one result.
@@ -52,6 +54,7 @@ class BatchTask:
     kind: Kind = "grids"
     put: Callable[[Path, Any], None] | None = None
     nodes: int | None = None
+    space: Space | None = None
     together: int = 1
     assembled: Sampling | None = None
     joined: str = ""
@@ -81,8 +84,9 @@ class Batch:
         """
         files, session = self.files, self.session
         destination = Destination(
-            files.output, files.to_format, task.kind, task.put, part_size=files.part_size, nodes=task.nodes
-        )
+            files.output, files.to_format, task.kind, task.put,
+            part_size=files.part_size, nodes=task.nodes, space=task.space,
+        )  # fmt: skip
         several = task.assembled is None and self.inputs.more_than(1)
         if several:
             destination.check_room(task.joined)

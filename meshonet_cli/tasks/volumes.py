@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any
 
 from meshonet.api.grid import domain_parameters
+from meshonet.formats.format import Space
 from meshonet.formats.path import path_of
 from meshonet.formats.section import read_sections
 from meshonet.formats.stack import stack_of
@@ -48,7 +49,9 @@ def write_stacks(
         raise InputError("{fail_on} and {profile} judge cells, and a surface has none", "leave them out")
     volumes = each(_stacked, parameters=chosen, criteria=criteria)
     make = each(_surface, parameters=chosen) if surface else volumes
-    return batch.run(BatchTask(partial(_stack, tip=tip, surface=surface), make, nodes=VOLUME_NODES))
+    space: Space = "surfaces" if surface else "volumes"
+    read = partial(_stack, tip=tip, surface=surface)
+    return batch.run(BatchTask(read, make, nodes=VOLUME_NODES, space=space))
 
 
 def _stack(source: str, tip: Tip | None, surface: bool) -> Iterator[Sections]:
@@ -78,7 +81,8 @@ def write_sweeps(
     request = grid_request(res=None if res is None else _counts(res), **parameters)
     way = path_of(path) if isinstance(path, str) else path
     make = each(_swept, path=way, request=request, settings=settings, criteria=criteria, around=around)
-    return batch.run(BatchTask(partial(read_sections, fmt=batch.files.from_format), make, nodes=VOLUME_NODES))
+    read = partial(read_sections, fmt=batch.files.from_format)
+    return batch.run(BatchTask(read, make, nodes=VOLUME_NODES, space="volumes"))
 
 
 def _swept(

@@ -325,3 +325,15 @@ def test_lines_left_out_of_a_section_file_are_noted_with_its_name(
     assert note in report["notes"]
     (grid,) = read_grids("made.cgns")
     assert note in grid.provenance["changes"]
+
+
+@pytest.mark.parametrize("output", ["wing.stl", "wing.png"])
+def test_a_format_without_volumes_is_refused_before_the_work(
+    meshonet: Meshonet, tmp_path: Path, output: str
+) -> None:
+    (tmp_path / "wing.toml").write_text('kind = "wing"\n')  # which would be refused later
+    done = meshonet("stack", tmp_path / "wing.toml", "-o", tmp_path / output)
+    assert done.code == 2
+    assert "files hold grids in the plane" in done.err
+    assert output in done.err
+    assert not (tmp_path / output).exists()
