@@ -92,12 +92,14 @@ NO_LINKS = PlaceLinks(np.empty((0, 2), dtype=np.intp), np.empty((0, 2)), np.empt
 
 
 def evened_places(
-    places: Floats, fixed: Bools, measures: Measures, limit: float, closed: bool, links: PlaceLinks = NO_LINKS
-) -> Floats:
+    places: Floats, fixed: Bools, measures: Measures, limit: float, closed: bool,
+    links: PlaceLinks = NO_LINKS, most: float = MOST,
+) -> Floats:  # fmt: skip
     """Return places (n,) near the given ascending ones whose neighbouring steps differ by a limited ratio.
 
     Places that are `fixed` (n,) do not change. `limit` is the logarithm of the ratio; if it cannot be kept,
-    it is exceeded as little as possible. On a closed curve the last step leads to the first place.
+    it is exceeded as little as possible. On a closed curve the last step leads to the first place. Where
+    places would move by more than `most` steps, the limit is less strict.
     """
     line = _Line.of(places, fixed, measures, closed, links)
     new = places
@@ -105,7 +107,7 @@ def evened_places(
         if fixed.all() or not line.exceeded(places, limit):
             return places
         new = line.evened(places, limit)
-        if (np.abs(new - places)[line.free] ** 2 * line.stiffness).max() < MOVE * MOST**2:
+        if (np.abs(new - places)[line.free] ** 2 * line.stiffness).max() < MOVE * most**2:
             break
         limit *= RELAXED
     return new
@@ -120,11 +122,13 @@ def evened_steps(steps: Floats, limit: float) -> Floats:
     return np.diff(places)
 
 
-def evened_loops(layout: Layout, measures: Mapping[int, Measures], limit: float) -> Layout:
+def evened_loops(
+    layout: Layout, measures: Mapping[int, Measures], limit: float, most: float = MOST
+) -> Layout:
     """Return the layout with nodes moved along some loops, and less and less in the adjacent blocks.
 
     Neighbouring steps of the measures of each loop then differ by at most the exponential of `limit`; corners
-    are fixed.
+    are fixed. `most` is that of `evened_places`.
     """
     mesh = layout.mesh
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()
@@ -133,7 +137,7 @@ def evened_loops(layout: Layout, measures: Mapping[int, Measures], limit: float)
         fixed = mesh.places.cells[order] > 0
         if not fixed.any():
             fixed[0] = True  # else all may go round
-        new = np.mod(evened_places(arcs[order], fixed, measure, limit, closed=True), measure.arcs[-1])
+        new = evened_places(arcs[order], fixed, measure, limit, closed=True, most=most) % measure.arcs[-1]
         arcs[order] = new
         shift = np.zeros_like(nodes)
         shift[order] = mesh.domain.loops[number].at(new) - mesh.nodes[order]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -11,19 +10,10 @@ from meshonet.geometry.arrays import Bools
 from meshonet.geometry.errors import NoValidGridError, SolverError
 from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.layout import Layout
-from meshonet.solvers.blocking.decomposition.collapse.score import deviations
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.energy.quads import optimise
-
-MARGIN = 1.21
-"""By how much cells may differ in the end, in logarithms, over the growth of layers."""
-MOST_GROWTH = 1.25
-"""Ratio of neighbouring cells that is allowed in any case."""
-
-DEARER, DEARER_DEG = 1.25, 0.25
-"""By how much even growth may raise the mean deviation of angles from 90 degrees: a factor, and degrees."""
 
 FEW_ITERATIONS = 10  # after untangling: only nodes around folds move
 NEAR_FOLDS = 5
@@ -56,14 +46,11 @@ def evened(layout: Layout, settings: LayerSettings, held: Bools | None = None) -
     held = np.zeros(len(layout.mesh.nodes), dtype=bool) if held is None else held.copy()
     for number in layout.layers:
         held[layout.blocks[number][:, : settings.constant + 1]] = True
-    limit = max(MARGIN * math.log(settings.growth), math.log(MOST_GROWTH))
     try:
-        mesh = evened_mesh(layout.mesh, held, limit)
+        mesh = evened_mesh(layout.mesh, held, settings.steepest)
     except SolverError:  # nodes that coincide
         return layout
-    mesh = made_symmetric(mesh)
-    before, after = (float(deviations(each).mean()) for each in (layout.mesh, mesh))
-    return replace(layout, mesh=mesh) if after <= DEARER * before + DEARER_DEG else layout
+    return replace(layout, mesh=made_symmetric(mesh))
 
 
 def unfolded(layout: Layout, held: Bools) -> Layout:

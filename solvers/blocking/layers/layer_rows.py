@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 
@@ -20,6 +21,10 @@ from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 
 JOIN = 1.1
 """Ratio of the first cell outside a ring to the last one inside."""
+MARGIN = 1.21
+"""By how much cells may differ in the end, in logarithms, over the growth of layers."""
+MOST_GROWTH = 1.25
+"""Ratio of neighbouring cells that is allowed in any case."""
 _WINDOW = 4  # columns to either side over which lengths along fronts are averaged
 
 
@@ -59,6 +64,11 @@ class LayerSettings:
                 parameter="first_cell",
             )
         return replace(self, first=next(iter(first)), heights={})
+
+    @property
+    def steepest(self) -> float:
+        """Logarithm of the ratio by which neighbouring cells anywhere may differ in the end."""
+        return max(MARGIN * math.log(self.growth), math.log(MOST_GROWTH))
 
     def rows(self, thickness: float) -> int:
         """Return the number of layers that fill a thickness."""

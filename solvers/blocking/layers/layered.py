@@ -54,6 +54,8 @@ EVEN = math.log(1.24)
 """Logarithm of the ratio by which neighbouring cells along fronts may differ."""
 LIMITS = 1.0, 2.0, 4.0
 """Multiples of it that are tried in turn: nodes that move far along a front fold the cells beside it."""
+FEW_STEPS = 2.0
+"""Steps by which nodes may move along fronts of the fine grid, which no optimisation follows."""
 BASE_GROWTH = math.log(4.0)
 """Logarithm of the ratio of neighbouring edges along a wall and its wake beyond which it gets a ring."""
 
@@ -115,7 +117,7 @@ def _optimum(
         coarse = _optimised(coarse, walls, rows, counts, ITERATIONS)
     known = before.layers if before else (1.0,) * len(rows.loops)
     layers = [
-        layers_of(coarse, rows, number, counts.times, walls.of_rows[number])
+        layers_of(coarse, rows, number, walls.of_rows[number])
         / walls.sizes[loop].rows(counts.scale, walls.of_rows[number])
         for number, loop in enumerate(rows.loops)
     ]
@@ -138,7 +140,7 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
     with stage("refine", timings):
         chords = Chords.of(coarse, node_images(coarse.mesh, walls.mirrors))
         row, cells = rows.of_chords(chords), times * chords.counts
-        layers = [layers_of(coarse, rows, number, times, own) for number, own in enumerate(walls.of_rows)]
+        layers = [layers_of(coarse, rows, number, own) for number, own in enumerate(walls.of_rows)]
         cut = max((n for n, loop in zip(layers, rows.loops, strict=True) if loop == 0), default=0)
         for number, loop in enumerate(rows.loops):  # walls that periodic sides cut have the same at both
             cells[row == number] = cut if loop == 0 and walls.domain.periodic else layers[number]
@@ -149,7 +151,7 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
             raise InputError(problem, "name the walls at both", parameter="walls")
         fine = _tied(walls.symmetric(refine(coarse, cells, chords)))
         fine = walls.symmetric(unfolded(fine, np.isin(fine.mesh.places.loop, list(walls.measures))))
-        moved = walls.symmetric(evened_loops(fine, walls.measures, EVEN))
+        moved = walls.symmetric(evened_loops(fine, walls.measures, EVEN, most=FEW_STEPS))
         fine = moved if smallest_jacobian(moved.mesh.nodes, moved.mesh.quads) > 0.0 else fine
         return _tied(walls.symmetric(with_layers(fine, rows, walls.of_rows)))
 

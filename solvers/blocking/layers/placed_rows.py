@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -20,41 +21,36 @@ from meshonet.solvers.blocking.layers.rings import line_lengths
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
 from meshonet.solvers.blocking.sizes.on_loops import on_loops
 
-MOST_COLUMNS = 75
-"""Percentage of the columns of a row in which a constant ratio must reach the size of the cells beyond."""
+GROWING_COLUMNS = 55
+"""Percentage of the columns of a row that layers fill without growing too fast: thicker ones become thinner
+as growth is evened.
+"""
 SHORT_COLUMNS = 20
 """Percentage of columns that may be too short for so many first cells; cells shrink away from the wall
 there.
 """
-STEEPEST = 0.6
-"""Largest fraction of a column that its last cell takes."""
 OPENS = 0.15
 """Distance behind a sharp edge, relative to its loop, over which the first cells of a wake grow."""
 _STEPS = 50  # of bisection, to round-off
 
 
-def layers_of(layout: Layout, rows: WallRows, row: int, finer: int, settings: LayerSettings) -> int:
-    """Return the number of layers that lead at a constant ratio from the first cell to those beyond a row.
-
-    The final layout has `finer` times as many cells along and beyond the row.
-    """
+def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings) -> int:
+    """Return the number of layers that fill most columns of a row without growing too fast."""
     blocks = np.nonzero(rows.across == row)[0]
-    tables = [
-        table
-        for block, table in zip(blocks.tolist(), rows.columns(layout, row), strict=True)
-        if rows.across[block].min() < 0
-    ]
-    beyond = _beyond(layout, tables) / finer
+    columns = np.concatenate(
+        [
+            table
+            for block, table in zip(blocks.tolist(), rows.columns(layout, row), strict=True)
+            if rows.across[block].min() < 0
+        ]
+    )
     first, extra = settings.first, settings.constant - 1
-    columns = np.concatenate(tables)
     room = line_lengths(layout.mesh.nodes[columns]) / first
-    columns = columns[layout.mesh.places.loop[columns[:, 0]] == rows.loops[row]]  # a wake has as many
-    thick = line_lengths(layout.mesh.nodes[columns]) - extra * first
-    last = beyond[columns[:, -1]] / JOIN
-    last = np.clip(last, 1.01 * first, np.maximum(STEEPEST * thick, 1.02 * first))
-    ratio = (thick - first) / np.maximum(thick - last, 1e-3 * first)
-    wanted = extra + log(last / first) / log(np.maximum(ratio, 1.0 + 1e-6))
-    count = int(np.ceil(percentiles_of(wanted, (MOST_COLUMNS,))[0]))
+    on = layout.mesh.places.loop[columns[:, 0]] == rows.loops[row]  # a wake has as many
+    ends = (layout.mesh.domain.loops[rows.loops[row]].corner_cells == 1).any()
+    rise = settings.steepest if ends else math.log(settings.growth)
+    wanted = extra + log(1.0 + math.expm1(rise) * np.maximum(room[on] - extra, 1.0)) / rise
+    count = int(np.ceil(percentiles_of(wanted, (GROWING_COLUMNS,))[0]))
     count = min(count, int(percentiles_of(room, (SHORT_COLUMNS,))[0]))
     return -(-max(count, 2 + extra) // settings.multiple) * settings.multiple
 

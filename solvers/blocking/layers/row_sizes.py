@@ -122,7 +122,8 @@ class RowSizes:
         normals = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1) / np.hypot(*tangent.T)[:, None]
         away = np.hypot(*(wake - wake[0]).T)
         across = self.thickness_behind(away, scale, settings) * (1.0 - 1.0 / settings.growth) * JOIN
-        along = scale * self.length.min() + GRADING * min(scale, 1.0) * away
+        edge = np.interp(self.loop.corner_arcs[0], self.arcs, self.length)
+        along = scale * edge + GRADING * min(scale, 1.0) * away
         return SizeMetric(wake, normals, across, np.maximum(along, across), np.inf)
 
 

@@ -114,6 +114,22 @@ def test_wakes_go_along_a_line_of_the_grid_as_fine_as_the_wall_at_the_edge():
     assert lengths[4] < 3.0 * lengths[2]
 
 
+@pytest.mark.parametrize("name", ["tunnel, 0 degrees", "far field, 4 degrees"])
+def test_cells_along_wakes_begin_with_those_along_the_wall(name):
+    domain = Domain(SHARP[name])
+    layout = layered(domain, [1], FIRST, cells=12000)
+    edge = domain.loops[1].at(domain.loops[1].corner_arcs)[0]
+    largest = 1.0
+    for block in layout.blocks:
+        z = layout.mesh.nodes[block] @ np.array([1.0, 1.0j])
+        for lines in (z, z.T):
+            steps = np.abs(np.diff(lines, axis=1))
+            ratio = np.abs(np.log(steps[:, 1:] / steps[:, :-1]))
+            near = np.abs(lines[:, 1:-1] - complex(*edge)) < 0.3
+            largest = max(largest, float(np.exp(ratio[near].max(initial=0.0))))
+    assert largest < 1.35
+
+
 @pytest.mark.parametrize("body", [section(last=0.1015), biconvex()], ids=["blunt", "biconvex"])
 def test_bodies_with_other_than_one_sharp_edge_keep_rings(body):
     assert not has_sharp_edge(body)

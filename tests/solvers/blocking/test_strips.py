@@ -136,6 +136,17 @@ def test_about_as_many_cells_as_asked_few_irregular_vertices_and_good_angles(cas
     assert off.mean() < 3.0
 
 
+@pytest.mark.parametrize("case", ["contraction", "nozzle", "branch"], indirect=True)
+def test_neighbouring_cells_in_ducts_differ_by_little_more_than_a_quarter(case):
+    _, _, layout = case
+    for block in layout.blocks:
+        z = layout.mesh.nodes[block] @ np.array([1.0, 1.0j])
+        for lines in (z, z.T):
+            steps = np.abs(np.diff(lines, axis=1))
+            ratio = steps[:, 1:] / steps[:, :-1]
+            assert np.maximum(ratio, 1.0 / ratio).max(initial=1.0) < 1.31
+
+
 def test_where_layers_end_the_nodes_of_inlet_and_outlet_have_their_heights():
     _, layout = grid_of("cylinder in a tunnel")
     mesh = layout.mesh
