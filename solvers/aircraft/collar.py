@@ -36,6 +36,9 @@ _SHARE = 0.5
 """Part of the way from the section to nose, tail, keel or crown that a collar takes at most."""
 _SHORTEST = 0.35
 """Least cells on the short sides of the rectangle, over the mean cell of a long side."""
+_SHIFT = 0.3
+"""Most that the middle of a short side is moved towards nose or edge, over half its length: cells at one
+corner have .4 of their length in the middle then."""
 _NORMAL = 0.05
 """Part of a line's length over which it is turned to the root's normal."""
 _BENT = 0.12
@@ -130,7 +133,17 @@ def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats
     out[-1 - edge], out[half + nose] = (box.back, box.low), (box.front, box.low)
     out[half - nose : half + nose + 1, 0] = box.front
     out[edge : half - nose + 1, 1], out[half + nose : len(out) - edge, 1] = box.high, box.low
+    for side, towards in ((out[:, 0] == box.back, root[0]), (out[:, 0] == box.front, root[half])):
+        out[side, 1] = _shifted(out[side, 1], box, float(towards[1]))
     return out
+
+
+def _shifted(places: Floats, box: Rectangle, towards: float) -> Floats:
+    """Return places (n,) on a short side of a rectangle, its middle moved `towards` another place."""
+    middle, half = 0.5 * (box.low + box.high), 0.5 * (box.high - box.low)
+    t = (places - middle) / half
+    share = min(max((towards - middle) / half, -_SHIFT), _SHIFT)
+    return np.where(np.abs(t) < 1.0, middle + half * (t + share * (1.0 - t * t)), places)
 
 
 def collar(

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import cells_for_growth
 from meshonet.solvers.aircraft.body_map import BodyMap
@@ -27,12 +27,16 @@ GROWTHS = 1.2, 1.225, 1.25
 """Growth of cells away from walls where none is given: the first, or the first with few enough cells."""
 _PLANNED = (0, 4, 8, 12, 16)
 """Key levels from which counts are taken."""
-_TRIED = 57, 97
+_TRIED = 59, 97
 """Nodes around a wing by which others are found. With fewer, cells around it would grow too much."""
 _ALONG = (DEFAULT_SPAN - 1) / (DEFAULT_AROUND - 1)
 """Largest cells along the span over those around, where only the number of all cells is given."""
 _ACUTE = math.radians(45.0)
 """Angle of wing and body below which it is the reason why cells beside the root are folded."""
+_OBLIQUE = math.radians(40.0)
+"""Least angle between the surfaces of wing and body, across the root: below it cells are folded there."""
+_AHEAD = 1e-3
+"""Part of the span over which the direction of a wing at its root is taken."""
 _ENOUGH = 1.15
 """Cells over those wanted above which a note says so."""
 
@@ -78,6 +82,9 @@ class AircraftPlan:
         ]
         wings.sort(key=lambda wing: float(wing.points(np.zeros((1, len(wing.roots))))[..., 0].mean()))
         sections = [_on_keys(space, wing) for wing in wings]
+        if not request.allow_invalid:
+            for wing, each in zip(wings, sections, strict=True):
+                _refuse_oblique(space, wing, each[0])
         holes = holes_of(space, wings, sections)
         known = [[each[k] for k in _PLANNED] for each in holes]
         levels = planned(known, aircraft.body.length, first, growth)
@@ -148,6 +155,33 @@ def _steeper(plan: AircraftPlan, request: AircraftRequest) -> Iterator[str]:
     """Yield a note where cells grow by more than usual so that there are few enough."""
     if request.growth is None and plan.growth != GROWTHS[0]:
         yield f"cells grow by {plan.growth:g} in place of {GROWTHS[0]:g}, so that there are fewer"
+
+
+def _refuse_oblique(space: BodyMap, wing: WingLines, root: Floats) -> None:
+    """Raise InputError for a wing whose lines from its `root` (n, 3) lean too much on it, as by sweep."""
+    at, step = space.points(root), _AHEAD * space.body.length
+    along_s, along_theta = (
+        _unit(space.points(root + np.eye(3)[axis] * way) - at) for axis, way in ((0, step), (1, _AHEAD))
+    )
+    tangent = _unit(np.diff(at, axis=0, append=at[1:2]))
+    turns = np.stack([(tangent * each).sum(axis=1) for each in (along_s, along_theta)], axis=1)
+    outwards = _unit(turns[:, 1:] * along_s - turns[:, :1] * along_theta)
+    span = _unit(wing.points(np.full((1, len(root)), _AHEAD))[0] - at)
+    cosines = (outwards * span).sum(axis=1)
+    worst = int(cosines.argmax())
+    angle = math.acos(min(float(cosines[worst]), 1.0))
+    if angle < _OBLIQUE:
+        x, y, z = at[worst]
+        problem = (
+            f"the {wing.name} meets the {space.body.name} at {math.degrees(angle):.0f} degrees, "
+            f"at x={x:.6g}, y={y:.6g}, z={z:.6g}, where cells would be folded"
+        )
+        least = math.degrees(_OBLIQUE)
+        raise InputError(problem, f"sweep it less, or move it: {least:g} degrees are needed", place="wings")
+
+
+def _unit(vectors: Floats) -> Floats:
+    return np.asarray(vectors / norms(vectors)[..., None])
 
 
 def _refuse_acute(space: BodyMap, name: str, root: Floats) -> None:

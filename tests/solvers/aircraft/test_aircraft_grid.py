@@ -105,6 +105,22 @@ def test_a_wing_that_meets_the_body_at_a_sharp_angle_is_refused_with_place_and_a
     assert sum(count_folded_solids(block.nodes, BEZIER) for block in folded.blocks) > 0
 
 
+def test_a_wing_whose_edge_is_swept_too_much_is_refused_with_place_and_angle() -> None:
+    """The trailing edge is swept by arctan(1.4), 54 degrees, and meets the cylinder at the remaining 36."""
+    with pytest.raises(
+        InputError, match=r"wing meets the fuselage at 36 degrees, at x=.*, y=0\.1.*; sweep it"
+    ):
+        aircraft_grid(aircraft(0.1, 8.0), replace(SMALL, far_field=40.0))
+
+
+def test_a_low_edge_far_from_the_middle_of_its_collar_is_made_with_many_nodes_too() -> None:
+    """Lines behind the edge would cross each other if they went to the middle of the collar's side."""
+    root = Section(naca("2409"), 3.4, 0.0, x=3.2, y=-0.15, twist=6.0)
+    wing = Stack((root, Section(naca("2409"), 1.2, 5.0, x=5.4, y=0.0)), tip="flat")
+    made, _ = aircraft_grid(Aircraft(body(), wing), replace(SMALL, around=129, growth=1.3))
+    assert sum(count_folded_solids(block.nodes, BEZIER) for block in made.blocks) == 0
+
+
 def test_places_around_a_body_are_those_of_the_points_there() -> None:
     space = BodyMap(body(), 40.0)
     draw = np.random.default_rng(0)
