@@ -21,9 +21,13 @@ from meshonet.solvers.blocking.layers.rings import line_lengths
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
 from meshonet.solvers.blocking.sizes.on_loops import on_loops
 
-GROWING_COLUMNS = 55
+GROWING_COLUMNS = 50
 """Percentage of the columns of a row that layers fill without growing too fast: thicker ones become thinner
 as growth is evened.
+"""
+SPREADING = 1.1
+"""Growth of layers that end at walls of a body over that of other cells, in logarithms: at its corners the
+angles of the cells beyond are better.
 """
 SHORT_COLUMNS = 20
 """Percentage of columns that may be too short for so many first cells; cells shrink away from the wall
@@ -35,7 +39,11 @@ _STEPS = 50  # of bisection, to round-off
 
 
 def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings) -> int:
-    """Return the number of layers that fill most columns of a row without growing too fast."""
+    """Return the number of layers of a row that fill most columns without growing too fast.
+
+    Layers that end at walls must fit the cells beyond as they are, because nodes of walls stay: there are
+    fewer of them, which grow as fast as any cells may, or faster around a body, from which lines spread.
+    """
     blocks = np.nonzero(rows.across == row)[0]
     columns = np.concatenate(
         [
@@ -47,8 +55,9 @@ def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings)
     first, extra = settings.first, settings.constant - 1
     room = line_lengths(layout.mesh.nodes[columns]) / first
     on = layout.mesh.places.loop[columns[:, 0]] == rows.loops[row]  # a wake has as many
-    ends = (layout.mesh.domain.loops[rows.loops[row]].corner_cells == 1).any()
-    rise = settings.steepest if ends else math.log(settings.growth)
+    rise = math.log(settings.growth)
+    if (layout.mesh.domain.loops[rows.loops[row]].corner_cells == 1).any():
+        rise = settings.steepest * (SPREADING if rows.loops[row] else 1.0)
     wanted = extra + log(1.0 + math.expm1(rise) * np.maximum(room[on] - extra, 1.0)) / rise
     count = int(np.ceil(percentiles_of(wanted, (GROWING_COLUMNS,))[0]))
     count = min(count, int(percentiles_of(room, (SHORT_COLUMNS,))[0]))
