@@ -12,7 +12,7 @@ from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.cascade.cascade import scaled
-from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of
+from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, attached_cells, counts_of
 from meshonet.solvers.blocking.cascade.passage_template import template
 from meshonet.solvers.blocking.layers.layer_law import layer_arcs
 from meshonet.solvers.blocking.layers.layer_rows import JOIN
@@ -29,6 +29,8 @@ REMEDY = "use more {cells}, a larger {first_cell}, or profiles nearer to each ot
 COARSE = 300
 """Iterations of the first optimum."""
 TOLERANCE = 1e-3
+_TRIES, _NEAR = 4, 0.03
+"""How often counts are chosen, until their cells differ from those wanted by this part."""
 
 
 def middle_section(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float]) -> Layout:
@@ -49,10 +51,17 @@ def _made(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, floa
     cascade = plane.cascade
     coarse = _sized(template(cascade.passage, at_corners=early), FIRST, None)
     chords = Chords.of(coarse)
-    counts, times, metric = counts_of(cascade, chords, cells, None)
-    ends = [chords.chord[chords.sides[block, 0]] for block in (TRAILING, LEADING)]
-    counts[ends] = counts[ends].max()
     rows = max(each.cascade.rows_of_layers for each in planes)
+    ends = [chords.chord[chords.sides[block, 0]] for block in (TRAILING, LEADING)]
+    wanted = float(cells)
+    for _ in range(_TRIES):  # more rows than those of this section, and counts that are rounded
+        counts, times, metric = counts_of(cascade, chords, round(wanted), None)
+        counts[ends] = counts[ends].max()
+        every = counts * times
+        total = chords.cells(every) + attached_cells(cascade, chords, every, metric, rows, longest)
+        if abs(total - cells) < _NEAR * cells:
+            break
+        wanted *= cells / total
     scale = float((metric.along / cascade.metric.along).mean())
     metric = _joined(plane, scale, rows)
     fine = multiplied(_sized(refine(coarse, counts, chords), COARSE, metric), times)

@@ -32,9 +32,10 @@ from meshonet.solvers.rows.gap_blocks import GapBlocks, GapEnds, gap_blocks, gap
 from meshonet.solvers.rows.key_tables import key_tables
 from meshonet.solvers.rows.request import RowRequest
 from meshonet.solvers.rows.stacked import StackedRow
-from meshonet.solvers.rows.zones import Zone, section_cells, zones_of
+from meshonet.solvers.rows.zones import Zone, fewest_cells, section_cells, zones_of
 
-_MANY_MORE = 1.1
+_OTHER = 0.15
+"""Part of the cells asked for by which others are worth a note."""
 
 
 def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
@@ -69,7 +70,10 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     second, partner = stacked.twins
     space[:, second] = turn(space[:, partner])
     grid = _joined(row, stacked, zones, sections, space, turn)
-    return grid, (*_notes(zones, first), *_more_cells(grid, request.cells))
+    return grid, (
+        *_notes(zones, first),
+        *_other_cells(grid, request.cells, fewest_cells(zones, growth), growth),
+    )
 
 
 def turned_by(angle: float) -> Motion:
@@ -164,12 +168,15 @@ def _with_inside(layout: Layout, inside: GapBlocks) -> Layout:
     return Layout(QuadMesh(mesh.domain, nodes, lattice_quads(blocks), places), blocks)
 
 
-def _more_cells(grid: Grid, wanted: int) -> tuple[str, ...]:
-    """Return a note if there are many more cells than the number that was given."""
+def _other_cells(grid: Grid, wanted: int, fewest: int, growth: float) -> tuple[str, ...]:
+    """Return a note if there are many more or fewer cells than the number that was given."""
     cells = sum(math.prod(n - 1 for n in block.counts) for block in grid.blocks)
-    if cells <= _MANY_MORE * wanted:
+    if abs(cells - wanted) <= _OTHER * wanted:
         return ()
-    return (f"{cells} cells in a passage instead of {wanted}: layers and even growth add to the number",)
+    why = "numbers along the sides of blocks are whole"
+    if fewest > wanted:
+        why = f"layers and cells that grow by {growth:g} at most need about {round(fewest, -4)}"
+    return (f"{cells} cells in a passage instead of {wanted}: {why}",)
 
 
 def _notes(zones: Sequence[Zone], first: float) -> tuple[str, ...]:

@@ -11,11 +11,13 @@ from meshonet.solvers.rows.span_spacing import spaced_cells
 
 PARTS, PARTS_CELLS = 42.0, 800_000
 """Cells along the span away from walls, if all of it were divided like that, of a row of so many cells."""
-_NEEDED, _FEWEST, _ENOUGH = 640.0, 1500, 7000
+_NEEDED, _FEWEST, _ENOUGH = 740.0, 1700, 8000
 """Fewest cells of a section, times the logarithm of the growth, within these bounds.
 
 With fewer, cells at the edges of blades are too small for those between to grow as slowly.
 """
+_INSIDE = 0.33
+"""Cells inside the outline of the blade in a gap, in those of a section around it."""
 _LONGER = 1.15  # than across the gap lines may be, which lean
 GAP_ROWS = 17
 """Fewest cells across a gap."""
@@ -42,8 +44,21 @@ class Zone:
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
     """Return how many cells a section has where the row has about `cells` in all, or what growth needs."""
-    needed = min(max(round(_NEEDED / math.log(growth)), _FEWEST), _ENOUGH)
-    return max(needed, cells // sum(zone.cells for zone in zones))
+    return max(_needed(growth), int(cells / _sections(zones)))
+
+
+def fewest_cells(zones: Sequence[Zone], growth: float) -> int:
+    """Return about how many cells a row has at least, so that they grow by `growth`."""
+    return round(_needed(growth) * _sections(zones))
+
+
+def _needed(growth: float) -> int:
+    return min(max(round(_NEEDED / math.log(growth)), _FEWEST), _ENOUGH)
+
+
+def _sections(zones: Sequence[Zone]) -> float:
+    """Return how many times the cells of a section there are, with those inside gaps."""
+    return sum(zone.cells * (1.0 + _INSIDE * zone.gap) for zone in zones)
 
 
 def zones_of(row: Row, first: float, growth: float, cells: int) -> list[Zone]:

@@ -10,6 +10,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -174,7 +175,7 @@ def counts_of(
             middle = 0.5 * (low + high)
             metric = scaled(sizes, math.exp(middle))
             counts = wanted.counts(metric)
-            total = chords.cells(counts) + _attached_cells(cascade, chords, counts, metric)
+            total = chords.cells(counts) + attached_cells(cascade, chords, counts, metric)
             low, high = (middle, high) if total > (cells or 0) else (low, middle)
     times = 1
     while chords.cells(counts) / times**2 > MOST_OPTIMISED:
@@ -183,11 +184,19 @@ def counts_of(
     return np.maximum(least, np.round(counts / times).astype(np.intp)), times, metric
 
 
-def _attached_cells(cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric) -> int:
-    """Return the cells of the layers and of the rows to inlet and outlet."""
+def attached_cells(
+    cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric, layers: int | None = None,
+    longest: Mapping[int, float] | None = None,
+) -> int:  # fmt: skip
+    """Return the cells of the layers and of the rows to inlet and outlet.
+
+    `layers` is their number instead of that of the cascade; rows have as many cells as the `longest` lengths
+    ask for, by loop.
+    """
     along = chords.along_loops(counts).tolist()
-    total = along[BLADE] * cascade.rows_of_layers
+    total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)
     for number, length, _ in straight_rows(cascade):
+        length = max(length, (longest or {}).get(number, 0.0))
         if length > 0.0:
             steps = row_steps(abs(cascade.left) / along[number], length, metric.largest)
             total += along[number] * (len(steps) - 1)

@@ -1,14 +1,17 @@
 """Grids of rows: valid, first cells exact in space, periodic, the blade where its profiles are."""
 
 import math
+import re
 from functools import cache
 
 import blade_row
 import numpy as np
 import pytest
+import radial_rows
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.rows.row import Row
 from meshonet.solvers.pipeline.rows import make_row
 from meshonet.solvers.rows.key_tables import key_tables
 from meshonet.solvers.rows.request import RowRequest, row_request
@@ -110,9 +113,24 @@ def test_the_gap_has_rows_enough_and_narrow_ones_lower_first_cells_and_say_so() 
     assert result.grid.blocks[tip.block].counts[2] >= 18
 
 
-def test_more_cells_than_asked_for_are_said() -> None:
+def test_more_cells_than_asked_for_are_said_with_the_number_that_growth_needs() -> None:
     result = make_row(blade_row.blade_row(), RowRequest(first_cell=FIRST, cells=20_000, threads=1))
-    assert any("instead of 20000" in note for note in result.notes)
+    (note,) = (each for each in result.notes if "instead of 20000" in each)
+    needed = int(re.search(r"need about (\d+)$", note)[1])  # type: ignore[index]
+    assert cells_of(result.grid) == pytest.approx(needed, rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("row", "cells"), [(radial_rows.eckardt(), 500_000), (radial_rows.diffuser(7), 250_000)]
+)
+def test_there_are_about_as_many_cells_as_asked_for(row: Row, cells: int) -> None:
+    result = make_row(row, RowRequest(first_cell=1e-3, cells=cells, threads=1))
+    assert cells_of(result.grid) == pytest.approx(cells, rel=0.15)
+    assert not any("instead of" in note and "cells in a passage" in note for note in result.notes)
+
+
+def cells_of(grid: Grid) -> int:
+    return sum(math.prod(n - 1 for n in block.counts) for block in grid.blocks)
 
 
 @pytest.mark.parametrize("gap", GAPS)
