@@ -49,7 +49,7 @@ def _write(write: Any, name: str, path: Path, grids: Iterable[Grid], *rest: Any,
     write(path, map(partial(_held, TABLE[name]), grids), *rest, **more)
 
 
-def check_space(record: Format, kind: Space, output: str | None = None) -> None:
+def check_space(record: Format, kind: Space, output: str = "") -> None:
     """Raise InputError, about an `output` if given, if a format cannot store a kind of blocks in space."""
     if kind not in record.space:
         able = ", ".join(other.name for other in _FORMATS if kind in other.space and other.write_grids)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -92,6 +93,43 @@ def test_files_are_read_whole_and_one_by_one(tmp_path: Path) -> None:
         made.write(tmp_path / "g.nothing")
     made.write(tmp_path / "odd.name", to_format="vtk")
     assert (tmp_path / "odd.name").read_bytes().startswith(b"# vtk")
+
+
+def test_several_grids_are_written_into_one_file(tmp_path: Path) -> None:
+    made = [meshonet.tfi(f"naca:{each}", res=(41, 17)) for each in ("0012", "2412", "4412")]
+    for given in (made, tuple(made), iter(made)):
+        meshonet.write(given, tmp_path / "all.h5")
+        again = list(meshonet.read_all(tmp_path / "all.h5"))
+        assert [grid.name for grid in again] == ["NACA 0012", "NACA 2412", "NACA 4412"]
+        for grid, first in zip(again, made, strict=True):
+            np.testing.assert_array_equal(grid.nodes, first.nodes)  # type: ignore[union-attr]
+    meshonet.write(meshonet.sample_family("wrench", 2, res=21), tmp_path / "edges.h5")
+    assert len(list(meshonet.read_all(tmp_path / "edges.h5"))) == 2
+    meshonet.write([made[0]], tmp_path / "one.vts")
+    assert isinstance(meshonet.read(tmp_path / "one.vts"), meshonet.Grid)
+
+
+@pytest.mark.parametrize(
+    ("several", "name", "message"),
+    [
+        (
+            lambda grid: [grid, grid],
+            "g.vts",
+            "vts files hold one, and there are several; write one file each",
+        ),
+        (lambda grid: [grid, square()], "g.h5", "boundaries among grids; write them into files of their own"),
+        (lambda grid: [grid, meshonet.tfi(square(5))], "g.h5", "sample 1 is 5x5 quad and the first is 9x9"),
+        (lambda _: [], "g.h5", "there is nothing to write"),
+        (lambda _: meshonet.read("naca:0012"), "g.h5", "Airfoil is neither a grid nor a boundary nor a lay"),
+        (lambda grid: grid.nodes, "g.h5", "ndarray is neither"),
+    ],
+)
+def test_what_does_not_go_into_one_file_is_refused(
+    tmp_path: Path, several: Callable[[Grid], Any], name: str, message: str
+) -> None:
+    with pytest.raises(meshonet.InputError, match=message):
+        meshonet.write(several(meshonet.tfi(square())), tmp_path / name)
+    assert not list(tmp_path.iterdir())
 
 
 def test_pyvista_is_told_of_when_it_is_missing_and_has_the_nodes(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -70,5 +70,28 @@ def test_convert_writes_what_can_be_read_again(grid_vts: Path, tmp_path: Path) -
         convert(grid_vts, tmp_path / "d.geo", extrude=0.5)
 
 
+def test_many_files_are_converted_as_by_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from meshonet_cli.app import run
+
+    monkeypatch.chdir(tmp_path)
+    Path("folder").mkdir()
+    for name, shift in (("a", 0.0), ("b", 1.0), ("c", 2.0)):
+        sheared(name, shift).write(f"folder/{name}.vts")
+    assert run(["convert", "folder", "-o", "command.h5", "-q"]) == 0
+    command = list(read_grids("command.h5"))
+    for source in ("folder", Path("folder"), [f"folder/{name}.vts" for name in "abc"]):
+        convert(source, "python.h5")
+        grids = list(read_grids("python.h5"))
+        assert [grid.name for grid in grids] == [grid.name for grid in command]
+        for grid, other in zip(grids, command, strict=True):
+            np.testing.assert_array_equal(grid.nodes, other.nodes)
+    for source in ("folder", "command.h5"):
+        with pytest.raises(InputError, match=r"all\.vts: vts files hold one, and there are several"):
+            convert(source, "all.vts")
+    with pytest.raises(InputError, match="source: there is nothing to convert"):
+        convert([], "all.h5")
+    assert not list(Path().glob("all.*"))
+
+
 def test_models_say_what_they_are() -> None:
     assert {model["topology"] for model in models()} == {"o", "quad"}

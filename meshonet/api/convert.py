@@ -1,17 +1,19 @@
 """`meshonet.convert`."""
 
 from collections.abc import Callable, Iterable, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
+from meshonet.api.files import inputs, put_whole
 from meshonet.formats.convert import Conversion
-from meshonet.formats.output import whole_file
 from meshonet.formats.registry import Kind, format_for_output
 from meshonet.geometry.blocks.revolve import AxisLine
+from meshonet.geometry.errors import InputError
 
 
 def convert(
-    source: str | Path,
+    source: str | Path | Sequence[str | Path],
     output: str | Path,
     *,
     extrude: float | None = None,
@@ -25,14 +27,17 @@ def convert(
     from_format: str | None = None,
     to_format: str | None = None,
 ) -> None:
-    """Convert a file from one format to another.
+    """Convert a file, or the files of a folder, an archive or a list, from one format to another.
 
-    If the file has grids, these are written; otherwise its boundaries are.
+    If the first file has grids, grids are written; otherwise boundaries are.
 
     Parameters
     ----------
-    source, output : str or Path
-        Input and output file. Several grids need an output format that stores several.
+    source : str, Path or list of these
+        Input files, folders and archives, as for `inputs`.
+    output : str or Path
+        Output file. Several grids need a format that stores several: for one file each call this function in
+        a loop over `inputs`.
     extrude : float, optional
         Height of an extrusion along z; None makes no extrusion.
     planes : int, optional
@@ -74,13 +79,19 @@ def convert(
     conversion = Conversion(
         extrude, planes, swap, normalise, coarsen, revolve, None if axis is None else AxisLine(*axis), copies
     )
-    boundaries = conversion.of_boundaries(str(source), str(output), from_format, to_format)
+    names = inputs(source)
+    first = next(names, None)
+    if first is None:
+        raise InputError("there is nothing to convert", "name a file or a folder", parameter="source")
+    boundaries = conversion.of_boundaries(first, str(output), from_format, to_format)
     kind: Kind = "boundaries" if boundaries else "grids"
     fmt = format_for_output(str(output), to_format, kind)
     write: Callable[[Path, Iterable[Any]], None] = conversion.extruder(str(output), to_format) or getattr(
         fmt, f"write_{kind}"
     )
-    members = conversion.read(str(source), from_format, boundaries=boundaries)
-    folder = fmt.fills_folder
-    with whole_file(fmt.file_at(str(output)), make_folder=folder, beside=folder or fmt.beside) as part:
-        write(part, (conversion(member) for member in members))
+    members = (
+        conversion(member)
+        for name in chain([first], names)
+        for member in conversion.read(name, from_format, boundaries=boundaries)
+    )
+    put_whole(fmt, output, write, members)

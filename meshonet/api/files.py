@@ -1,10 +1,11 @@
 """`meshonet.inputs`, `meshonet.read`, `meshonet.read_all` and `meshonet.write`."""
 
-from collections.abc import Iterator, Sequence
-from itertools import chain
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import chain, islice
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
+from meshonet.formats.format import Format
 from meshonet.formats.inputs import Inputs, readable_suffixes
 from meshonet.formats.output import whole_file
 from meshonet.formats.registry import (
@@ -23,6 +24,8 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.shape import Shape
 
 T = TypeVar("T")
+Writable: TypeAlias = Grid | Boundary | Layout
+_KINDS: dict[type[Writable], Kind] = {Grid: "grids", Boundary: "boundaries", Layout: "layouts"}
 
 
 def inputs(
@@ -152,13 +155,15 @@ def read_all(path: str | Path, *, from_format: str | None = None) -> Iterator[Gr
         return read_shapes(text, from_format)
 
 
-def write(what: Grid | Boundary | Layout, path: str | Path, *, to_format: str | None = None) -> None:
-    """Write a grid, a boundary or a layout atomically.
+def write(what: Writable | Iterable[Writable], path: str | Path, *, to_format: str | None = None) -> None:
+    """Write a grid, a boundary or a layout, or several of a kind into one file, atomically.
 
     Parameters
     ----------
-    what : Grid, Boundary or Layout
-        Object to write.
+    what : Grid, Boundary or Layout, or iterable of these
+        Object to write, or several of the same kind: the samples of a dataset, whose node counts and topology
+        must be the same, or the grids of a file in another format that holds several. They are taken one by
+        one.
     path : str or Path
         File to write; its extension determines the format. An OpenFOAM mesh is written into the folder of
         ``case.foam``, or into a folder given as the path.
@@ -168,7 +173,7 @@ def write(what: Grid | Boundary | Layout, path: str | Path, *, to_format: str | 
     Raises
     ------
     InputError
-        An unknown format, or one that cannot store the object; a path that cannot be written.
+        An unknown format, or one that cannot store the object, or only one; a path that cannot be written.
 
     Examples
     --------
@@ -176,12 +181,48 @@ def write(what: Grid | Boundary | Layout, path: str | Path, *, to_format: str | 
     >>> write(meshonet.sample_boundary("naca:2412", res=(41, 17)), "edges.h5")
     >>> read("edges.h5").topology
     'o'
+    >>> write((meshonet.tfi(f"naca:24{t}", res=(41, 17)) for t in (12, 15)), "both.h5")
+    >>> [grid.name for grid in read_all("both.h5")]
+    ['NACA 2412', 'NACA 2415']
     """
-    kind: Kind = (
-        "grids" if isinstance(what, Grid) else "layouts" if isinstance(what, Layout) else "boundaries"
-    )
+    several = iter(what) if isinstance(what, Iterable) else iter([what])
+    first = next(several, None)
+    if first is None:
+        raise InputError("there is nothing to write", "give a grid, a boundary or a layout", source=str(path))
+    kind = _kind_of(first)
     fmt = format_for_output(str(path), to_format, kind)
-    put: Any = getattr(fmt, f"write_{kind}")
+    put_whole(fmt, path, getattr(fmt, f"write_{kind}"), _alike(kind, chain([first], several)))
+
+
+def put_whole(
+    fmt: Format, path: str | Path, put: Callable[[Path, Iterator[Any]], None], members: Iterator[Any]
+) -> None:
+    """Write members with `put` into a file of this format; on an error nothing is written.
+
+    Raises InputError: several members for a format that holds one; a path that cannot be written.
+    """
+    if not fmt.many:
+        two = list(islice(members, 2))
+        if len(two) > 1:
+            remedy = "write one file each" + (", or one .h5" if fmt.write_grids else "")
+            raise InputError(f"{fmt.name} files hold one, and there are several", remedy, source=str(path))
+        members = iter(two)
     folder = fmt.fills_folder
     with whole_file(fmt.file_at(str(path)), make_folder=folder, beside=folder or fmt.beside) as part:
-        put(part, [what])
+        put(part, members)
+
+
+def _kind_of(what: Any) -> Kind:
+    for cls, kind in _KINDS.items():
+        if isinstance(what, cls):
+            return kind
+    problem = f"{type(what).__name__} is neither a grid nor a boundary nor a layout"
+    raise InputError(problem, "make one of it first, e.g. by infer or sample_boundary", parameter="what")
+
+
+def _alike(kind: Kind, members: Iterator[Writable]) -> Iterator[Writable]:
+    for member in members:
+        if _kind_of(member) != kind:
+            problem = f"{_kind_of(member)} among {kind}"
+            raise InputError(problem, "write them into files of their own", parameter="what")
+        yield member
