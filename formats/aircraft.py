@@ -68,10 +68,12 @@ def _body(row: Table, folder: Path) -> Body:
 
 
 def _from_file(row: Table, folder: Path) -> Floats:
-    source = open_source(str(folder / row.text("meridian")))
-    blocks = point_blocks(source, ("x, r",))
-    if len(blocks) > 1:
-        raise InputError(f"holds {len(blocks)} blocks of points", "give one curve", source=source.name)
+    file = str(folder / row.text("meridian"))
+    with row.in_file_of("meridian"):
+        source = open_source(file)
+        blocks = point_blocks(source, ("x, r",))
+        if len(blocks) > 1:
+            raise InputError(f"holds {len(blocks)} blocks of points", "give one curve", source=source.name)
     return blocks[0]
 
 
@@ -83,7 +85,9 @@ def _wing(row: Table, folder: Path, body: Body) -> Stack:
         with row.located():
             return stack_table(row, folder, "wing", ("on",))
     row.only("on", "name", "file")
-    source = open_source(str(folder / row.text("file")))
+    file = str(folder / row.text("file"))
+    with row.in_file_of("file"):
+        source = open_source(file)
     with in_source(source.name):
         wing = stack_table(toml_table(source), source.path.parent if source.path else folder, "wing")
     return replace(wing, name=row.text("name", wing.name))

@@ -7,7 +7,6 @@ from pathlib import Path
 from meshonet.formats.registry import is_designation, read_shapes
 from meshonet.formats.source import printable
 from meshonet.formats.toml_table import Table
-from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.outline import Outline
 
@@ -25,11 +24,8 @@ def section_shape(row: Table, folder: Path) -> Airfoil | Outline:
     text = row.text(keys[0])
     if not is_designation(text) and (folder / text).exists() and not (folder / text).is_file():
         raise row.error(keys[0], f"{printable(text)} is no regular file", remedy)
-    try:
+    with row.in_file_of(keys[0]):
         shapes = list(read_shapes(text if is_designation(text) else str(folder / text)))
-    except InputError as error:
-        where = ": ".join(filter(None, (error.source, error.place, error.problem)))
-        raise row.error(keys[0], where, error.remedy) from None
     if len(shapes) != 1 or not isinstance(shapes[0], Airfoil | Outline):
         raise row.error(keys[0], f"{printable(text)} is not one airfoil or closed curve", remedy)
     shape = shapes[0]

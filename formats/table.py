@@ -60,7 +60,7 @@ def check_space(record: Format, kind: Space, output: str = "") -> None:
 
 def _held(record: Format, grid: Grid) -> Grid:
     """Return the grid. Raises InputError: the format cannot store it."""
-    for kind in kinds_in_space(grid):
+    for kind in kinds_in_space(grid) if grid.form != "plane" else ():
         check_space(record, kind)
     if len(grid.blocks) > 1 and not record.blocks:
         able = ", ".join(other.name for other in _FORMATS if other.blocks)

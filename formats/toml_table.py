@@ -39,6 +39,15 @@ class Table:
             error.place = error.place or self.place
             raise
 
+    @contextmanager
+    def in_file_of(self, key: str) -> Iterator[None]:
+        """Within the ``with`` block, name this key in errors of the file that it names."""
+        try:
+            yield
+        except InputError as error:
+            where = ": ".join(filter(None, (error.source, error.place, error.problem)))
+            raise self.error(key, where, error.remedy) from None
+
     def only(self, *keys: str) -> None:
         """Raise InputError for a key that is not one of `keys`."""
         for key in self.data:

@@ -130,7 +130,9 @@ def _profiles(data: Table, folder: Path, frame: Motion) -> tuple[list[Floats], l
     """Return the profiles (n, 3) of the files, x, y, z with the axis along x, and where each is given."""
     polar = data.word("coordinates", ("xyz", "xrt"), "xyz") == "xrt"
     order = "x, r, theta" if polar else "x, y, z"
-    blocks = [block for file in _files(data, folder) for block in placed_blocks(file, (order,))]
+    files = _files(data, folder)
+    with data.in_file_of("profiles"):
+        blocks = [block for file in files for block in placed_blocks(file, (order,))]
     profiles = [points for points, _ in blocks]
     if polar:
         most = max(float(np.ptp(points[:, 2])) for points in profiles)
@@ -159,10 +161,11 @@ def _wall(data: Table, key: str, folder: Path, frame: Motion) -> Floats:
     if not isinstance(name, str) or not name:
         problem = "is missing" if name is None else "is no file and no list of points"
         raise data.error(key, problem, "name a file, or give [[x, r], [x, r]]")
-    source = open_source(str(folder / name))
-    blocks = point_blocks(source, ("x, y, z", "x, r"))
-    if len(blocks) > 1 and any(len(block) > 1 for block in blocks[1:]):
-        raise InputError(f"holds {len(blocks)} blocks of points", "give one curve", source=source.name)
+    with data.in_file_of(key):
+        source = open_source(str(folder / name))
+        blocks = point_blocks(source, ("x, y, z", "x, r"))
+        if len(blocks) > 1 and any(len(block) > 1 for block in blocks[1:]):
+            raise InputError(f"holds {len(blocks)} blocks of points", "give one curve", source=source.name)
     points = blocks[0]
     if points.shape[1] == 2:
         return points

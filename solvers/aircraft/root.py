@@ -22,14 +22,15 @@ def root_heights(stack: Stack, name: str, unit: Floats, body: Body) -> Floats:
 
     Raises InputError: a line that begins outside of the body, or never leaves it.
     """
+    out = body.outside(stack.lofted(unit, stack.z[:1])[0])
+    if out.max() >= 0.0:
+        raise _error(stack, name, unit[:, int(out.argmax())], float(stack.z[0]), body, "begins outside of")
     heights = np.empty(unit.shape[1])
     for k in range(len(heights)):
         low, high = float(stack.z[0]), float(stack.z[-1])
         for _ in range(_PASSES):
             z = np.linspace(low, high, _PLACES)
             out = body.outside(stack.lofted(unit[:, k : k + 1], z)[:, 0])
-            if out[0] >= 0.0:
-                raise _error(stack, name, unit[:, k], low, body, "begins outside of")
             first = np.flatnonzero(out >= 0.0)
             if not len(first):
                 raise _error(stack, name, unit[:, k], high, body, "does not leave")

@@ -278,7 +278,7 @@ def test_a_wing_that_does_not_fit_its_body_gets_a_line(
     [
         ("x = -1", "ahead of its nose: it is from x=0 to 10"),
         ("x = 9", "behind its tail: it is from x=0 to 10"),
-        ("x = 3\ny = 2", "2 from its axis, where its radius is 0.6"),
+        ("x = 3\ny = 2", r"2\.1\d+ from its axis, where its radius is 0\.6"),  # its highest line
     ],
 )
 def test_a_wing_outside_of_the_body_is_said_to_be_where_it_is(
@@ -287,7 +287,7 @@ def test_a_wing_outside_of_the_body_is_said_to_be_where_it_is(
     (tmp_path / "jet.toml").write_text(AIRCRAFT.replace("x = 3.5", place))
     done = meshonet("stack", "jet.toml", "-o", "jet.cgns")
     assert (done.code, done.err.count("\n")) == (2, 1)
-    assert f"{where}; give a first section inside the body" in done.err
+    assert re.search(f"{where}; give a first section inside the body", done.err)
 
 
 def test_the_warnings_of_a_profile_are_in_the_report(meshonet: Meshonet, wing: Path) -> None:
