@@ -161,3 +161,12 @@ def size_of(sample: Boundary | Grid) -> str:
     if isinstance(sample, Grid) and sample.topology == "blocks":
         return "blocks of " + ", ".join("x".join(map(str, block.nodes.shape)) for block in sample.blocks)
     return f"{sample.ni}x{sample.nj} {sample.topology}"
+
+
+def size_remedy(sample: Boundary | Grid) -> str:
+    """Return what gives samples of a dataset the size and topology of the first, as text."""
+    if not isinstance(sample, Grid) or sample.topology != "blocks":
+        return "set {res} and {topology}"
+    if sample.form == "plane":  # shapes that differ much may still have other counts inside
+        return "try one {layout} with the {count} of every side"
+    return "use the same numbers of nodes"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from meshonet.formats.format import size_of
+from meshonet.formats.format import size_of, size_remedy
 from meshonet.formats.hdf5.file import created
 from meshonet.formats.mesh.metadata import connections_text, plain
 from meshonet.geometry.arrays import SIDES, Floats
@@ -91,7 +91,7 @@ class Writer:
             first = self._first[0] if size != self._first[0] else "connected otherwise"
             raise InputError(
                 f"sample {self._count} is {size} and the first is {first}",
-                "one dataset has one size and topology: set {res} and {topology}, or write one file each",
+                f"one dataset has one size and topology: {size_remedy(sample)}, or write one file each",
             )
 
     def _hold(self, name: str, value: Floats | str) -> None:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from meshonet.formats.format import Space, size_of
+from meshonet.formats.format import Space, size_of, size_remedy
 from meshonet.formats.output import whole_file
 from meshonet.formats.registry import Kind, format_for_output
 from meshonet.formats.source import printable
@@ -217,5 +217,5 @@ def same_size(what: Grid | Boundary | Layout, size: str) -> str:
     own = size_of(what)
     if size and own != size:
         problem = f"{own} does not fit a dataset of {size}"
-        raise InputError(problem, "set {res} and {topology}, or write one file each")
+        raise InputError(problem, f"{size_remedy(what)}, or write one file each: -o '{{{{stem}}}}.h5'")
     return own

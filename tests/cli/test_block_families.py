@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from block_files import cells, first_cells, grid_of
 from command_line import Meshonet
 from domains import circle
 
+from meshonet.formats.registry import read_grids
 from meshonet.geometry.quality.measure import count_folded
 
 PLATE = "POLYGON ((0 0, 2 0, 4 0.3, 4 2, 0 2, 0 0), (1 0.7, 1 1.2, 1.5 1.2, 1.5 0.7, 1 0.7))"
@@ -56,3 +58,24 @@ def test_more_levels_than_a_grid_can_have_are_refused(meshonet: Meshonet, inputs
     done = meshonet("solve-pde", "plate.wkt", "--cells", 100_000, "--refine", 5, "-o", "g.h5")
     assert (done.code, len(done.err.splitlines())) == (2, 1)
     assert "100000 cells halved 5 times are 1.02e+08; use fewer: 20000000 are the most" in done.err
+
+
+def test_variants_fit_one_dataset_with_a_layout_and_counts(meshonet: Meshonet) -> None:
+    outer = [[-2, -1], [4, -1], [4, 1], [-2, 1], [-2, -1]]
+    sides = [["floor", "outlet", "roof", "inlet"], "body"]
+    for number, thickness in enumerate((0.2, 0.35, 0.45)):
+        body = (circle(0, 0, 1) * (0.5, thickness)).tolist()
+        domain = {"type": "Polygon", "coordinates": [outer, [*body, body[0]]]}
+        feature = {"type": "Feature", "properties": {"names": sides}, "geometry": domain}
+        Path(f"{number}.geojson").write_text(json.dumps(feature))
+    variants = ["0.geojson", "1.geojson", "2.geojson"]
+    done = meshonet("solve-pde", *variants, "--cells", 1500, "-o", "all.h5")
+    assert done.code == 2
+    remedy = "try one --layout with the --count of every side, or write one file each: -o '{stem}.h5'"
+    assert done.err.count(remedy) == 2
+    assert meshonet("layout", variants[0], "-o", "layout.json").code == 0
+    counts = ("--count", "body=48,inlet=24,outlet=24,floor=60,roof=60")
+    done = meshonet("solve-pde", *variants, "--layout", "layout.json", *counts, "-o", "all.h5")
+    assert done.code == 0, done.err
+    assert len(list(read_grids("all.h5"))) == 3
+    assert meshonet("solve-pde", *variants, "--cells", 1500, "-o", "{stem}.h5").code == 0
