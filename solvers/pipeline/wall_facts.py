@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.vertices import vertices
-from meshonet.geometry.quality.growth import Extreme, growth, growth_off_walls, most_of
+from meshonet.geometry.quality.growth import Extreme, Growth, growth, growth_off_walls, most_of
 from meshonet.geometry.quality.lines import Lines, lines, solid_lines
 from meshonet.geometry.quality.verdicts import named
 from meshonet.geometry.quality.walls import wall_rows
@@ -27,21 +27,27 @@ def wall_facts(grid: Grid) -> tuple[str, ...]:
 def growth_note(grid: Grid, limit: float) -> tuple[str, ...]:
     """Return a note with the largest ratio of neighbouring cells and its node, if it is above a limit.
 
-    It is that along lines from walls and across interfaces.
+    It is that along all grid lines, as `quality` reports it. If it is not along a line from a wall, for which
+    the limit is meant, the note has the largest ratio along those, too.
     """
-    largest = largest_growth(grid)
+    ratios, leaving = _growth(grid)
+    largest = most_of(ratios.families().values())
     if largest is None or largest.max <= limit * (1.0 + _SAME):
         return ()
-    where = f"neighbouring cells differ by up to {largest.max:.3f} at node {named(largest.at)}"
-    return (f"{where}, more than the growth of {limit:g}",)
+    where = f"at node {named(largest.at)} along {largest.along}, more than the growth of {limit:g}"
+    beside = ""
+    if leaving and leaving.max < largest.max:
+        beside = f"; along lines from walls by up to {leaving.max:.3f}"
+    return (f"neighbouring cells differ by up to {largest.max:.3f} {where}{beside}",)
 
 
-def largest_growth(grid: Grid) -> Extreme | None:
-    """Return the largest ratio of neighbouring cells along lines from walls and across interfaces."""
+def _growth(grid: Grid) -> tuple[Growth, Extreme | None]:
+    """Return the ratios of neighbouring cells along each direction, and along lines from walls."""
     if grid.topology != "blocks":
-        return growth_off_walls(growth(grid), grid.walls())
+        ratios = growth(grid)
+        return ratios, growth_off_walls(ratios, grid.walls())
     run = _lines(grid)
-    return most_of((run.leaving, run.growth_across))
+    return run.growth, run.leaving
 
 
 def _lines(grid: Grid) -> Lines:

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.vertices import vertices
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.lines import lines
 from meshonet.geometry.quality.measure import measure
-from meshonet.solvers.pipeline.wall_facts import largest_growth
 from meshonet.solvers.sweeping.disc import Disc, butterfly
 
 RADIUS = 0.5
@@ -25,9 +26,7 @@ def first_cells(grid: Grid) -> np.ndarray:
 
 
 def largest(grid: Grid) -> float:
-    largest = largest_growth(grid)
-    assert largest is not None
-    return largest.max
+    return max(each.max for each in lines(grid, vertices(grid)).growth.families().values())
 
 
 @pytest.mark.parametrize("cells", [None, 200, 800, 2000, 6000, 20_000])
