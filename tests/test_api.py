@@ -65,6 +65,17 @@ def test_shapes_are_files_designations_points_boundaries_and_grids(tmp_path: Pat
         meshonet.grid(np.zeros((4, 3)))
 
 
+@pytest.mark.parametrize("make", [meshonet.infer, meshonet.solve_pde, meshonet.sample_boundary])
+def test_a_list_of_shapes_is_assembled_or_refused(make: Callable[..., Any]) -> None:
+    edges = square()
+    for several in (["a.dat", "b.dat"], ("naca:0012", edges), [edges, edges], [Path("a.dat")]):
+        with pytest.raises(meshonet.InputError, match=r"shape: a list of \d shapes; .*assemble=True"):
+            make(several, res=20)
+    for bad in ([[0, 0], [1]], {"x": 1}, [np.zeros((4, 2)), np.zeros((5, 2))]):
+        with pytest.raises(meshonet.InputError, match=r"shape: this (list|dict) is no array; give \(n, 2\)"):
+            make(bad, res=20)
+
+
 def test_functions_do_what_their_commands_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from meshonet_cli.app import run
 

@@ -36,6 +36,23 @@ def test_quality_measures_a_grid_or_a_file(grid_vts: Path) -> None:
         assert report.as_dict()["compare"]["max"] == pytest.approx(1.5, rel=1e-12)
 
 
+def test_gates_are_given_as_on_the_command_line() -> None:
+    report = quality(sheared())  # angles of 90 +- 26.57 degrees
+    (line,) = report.broken(["max_angle>116", "max_angle>117", "min_angle<63"])
+    assert line.startswith("max_angle.max is 116.565 at i=")
+    assert line.endswith(", which fails the gate 'max_angle>116'")
+    assert report.broken("max_angle>116") == [line]
+    assert report.broken(["max_angle>117"]) == report.broken() == []
+    assert report.judgement("max_angle.mean>116").verdict == "fail"
+    with pytest.raises(InputError, match="metric 'max_angel' is not known; did you mean 'max_angle'"):
+        report.broken("max_angel>116")
+    with pytest.raises(InputError, match="this grid has no y_plus"):
+        report.broken("y_plus>1")
+    strict = quality(sheared(), profile="openfoam").broken(["max_angle>116"])
+    assert line in strict
+    assert "{" not in "".join(strict)
+
+
 def test_an_unknown_profile_is_refused() -> None:
     with pytest.raises(InputError, match="profile: profile 'mine' is not known; use one of openfoam"):
         quality(sheared(), profile="mine")

@@ -3,16 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import BadCell
+from meshonet.geometry.errors import BadCell, spelled
 from meshonet.geometry.quality.blocks import extreme_dict
 from meshonet.geometry.quality.centres import centre_of
 from meshonet.geometry.quality.compare import Difference, compare
 from meshonet.geometry.quality.figure import Figure
 from meshonet.geometry.quality.figures import Figures
-from meshonet.geometry.quality.gates import Gate, Judgement, beyond
+from meshonet.geometry.quality.gates import Gate, Judgement, beyond, parse_gate
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.quality.periodic import periods
@@ -27,6 +27,8 @@ COMPARED = (
 """Figures of a comparison; gates may name them."""
 Y_PLUS = "y_plus"
 """Greatest y+ of all walls, where a flow is given; gates may name it."""
+Gates: TypeAlias = str | Sequence[str | Gate]
+"""Gates, or their texts as in `parse_gate`."""
 
 
 @dataclass(frozen=True)
@@ -100,27 +102,47 @@ class QualityReport:
         )
         return f"<QualityReport: {', '.join(parts)}>"
 
-    def under(self, gates: Sequence[Gate]) -> "QualityReport":
+    def under(self, gates: Gates) -> "QualityReport":
         """Return the report with the limits of `gates` in place of its profiles' for the same figures."""
-        return replace(self, profile=self.profile.under(gates)) if self.profile else self
+        return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
-    def broken(self, gates: Sequence[Gate]) -> list[str]:
-        """Return a line for each gate, and each check of the profiles, that failed."""
+    def broken(self, gates: Gates = ()) -> list[str]:
+        """Return a line for each gate, and each check of the profiles, that failed.
+
+        Parameters
+        ----------
+        gates : str or list of str
+            Conditions that must not hold, such as ``max_angle>170`` or ``scaled_jacobian.p01<0.2``.
+
+        Returns
+        -------
+        list of str
+            The figure, its place and the limit; empty if all are met.
+
+        Raises
+        ------
+        InputError
+            A text that is no gate; a figure that this grid does not have.
+        """
+        return [spelled(line, lambda _: "the gate") for line in self._broken(_parsed(gates))]
+
+    def _broken(self, gates: Sequence[Gate]) -> list[str]:
         more = self._compared()
         lines = [line for gate in gates if (line := gate.broken(self.figures, more))]
         return lines + (self.profile.under(gates).failures() if self.profile else [])
 
-    def judgement(self, gates: Sequence[Gate]) -> Judgement:
+    def judgement(self, gates: Gates) -> Judgement:
         """Return the outcome of the gates and of the profiles."""
+        gates = _parsed(gates)
         beyond = [gate.in_short(figure) for gate, figure, broken in self.judged(gates) if broken]
         profile = self.profile.under(gates) if self.profile else None
         beyond += profile.beyond() if profile else []
         replaced = profile.replaced() if profile else []
-        return Judgement(tuple(self.broken(gates)), tuple(dict.fromkeys(beyond)), tuple(replaced), profile)
+        return Judgement(tuple(self._broken(gates)), tuple(dict.fromkeys(beyond)), tuple(replaced), profile)
 
-    def judged(self, gates: Sequence[Gate]) -> list[tuple[Gate, Figure, bool]]:
+    def judged(self, gates: Gates) -> list[tuple[Gate, Figure, bool]]:
         """Return for each gate the figure that it judges, and whether this is beyond the limit."""
-        more = self._compared()
+        more, gates = self._compared(), _parsed(gates)
         figures = [gate.figure(self.figures, more) for gate in gates]
         pairs = zip(gates, figures, strict=True)
         return [(gate, figure, beyond(figure.value, gate.compare, gate.limit)) for gate, figure in pairs]
@@ -168,6 +190,11 @@ class QualityReport:
             d = self.comparison.difference
             facts["compare"] = {"max": d.max, "mean": d.mean, "at": list(d.at), **self.comparison.figures()}
         return facts
+
+
+def _parsed(gates: Gates) -> list[Gate]:
+    every = [gates] if isinstance(gates, str) else gates
+    return [parse_gate(each, (*COMPARED, Y_PLUS)) if isinstance(each, str) else each for each in every]
 
 
 def quality_report(

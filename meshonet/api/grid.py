@@ -292,11 +292,23 @@ def shape_of(
         return boundary_of(shape)
     if hasattr(shape, "boundary"):
         return cast(Shape, shape)
+    if isinstance(shape, list | tuple) and any(map(_is_shape, shape)):
+        remedy = "make one domain of them by grid(..., {assemble}=True), or call this for each"
+        raise InputError(f"a list of {len(shape)} shapes", remedy, parameter="shape")
     if isinstance(shape, list | tuple) and all(np.ndim(each) == 3 for each in shape):
         return SpatialShape(Grid(tuple(Block(np.asarray(each)) for each in shape)))
-    points = np.asarray(cast(Floats, shape), dtype=np.float64)
+    try:
+        points = np.asarray(cast(Floats, shape), dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"this {type(shape).__name__} is no array", "give (n, 2)", parameter="shape"
+        ) from None
     if points.ndim == 4:
         return SpatialShape(Grid((Block(points),)))
     if points.ndim != 2 or points.shape[1] != 2:
         raise InputError(f"points of shape {points.shape}", "give (n, 2)", parameter="shape")
     return domain_or_body(closed_curve(points, ""))
+
+
+def _is_shape(each: Any) -> bool:
+    return isinstance(each, str | Path | Grid | Domain) or hasattr(each, "boundary")
