@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 from collections.abc import Callable
@@ -94,6 +95,51 @@ def test_functions_do_what_their_commands_do(tmp_path: Path, monkeypatch: pytest
         assert run([*line.split(), "-q", "-o", "made.h5"]) == 0
         made: Grid = meshonet.read("made.h5")  # type: ignore[assignment]
         np.testing.assert_array_equal(made.nodes, make().nodes, err_msg=line)
+
+
+SECTION = "[[sections]]\nairfoil = 'naca:0012'\nchord = {}\nz = {}\n"
+WING = ("--around", "49", "--span", "9", "--layers", "9", "--far-field", "5", "--first-cell", "1e-2")
+
+
+@pytest.mark.parametrize(
+    ("words", "make"),
+    [
+        (
+            ("infer", "naca:2412", "--res", "61x31", "--y-plus", "30", "--reynolds", "1e6"),
+            lambda: meshonet.infer("naca:2412", res=(61, 31), y_plus=30, reynolds=1e6),
+        ),
+        (
+            ("stack", "wing.toml", *WING),
+            lambda: meshonet.stack("wing.toml", around=49, span=9, layers=9, far_field=5, first_cell=1e-2),
+        ),
+        (
+            ("stack", "wing.toml", "--around", "49", "--span", "9", "--surface"),
+            lambda: meshonet.stack("wing.toml", around=49, span=9, surface=True),
+        ),
+        (
+            ("sweep", "circle:0.5", "path.csv", "--cells", "100"),
+            lambda: meshonet.sweep("circle:0.5", "path.csv", cells=100),
+        ),
+    ],
+    ids=["infer", "stack", "surface", "sweep"],
+)
+def test_grids_have_the_notes_of_their_command(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    words: tuple[str, ...],
+    make: Callable[[], Grid],
+) -> None:
+    from meshonet_cli.app import run
+
+    monkeypatch.chdir(tmp_path)
+    Path("wing.toml").write_text(SECTION.format(1.0, 0.0) + SECTION.format(0.5, 2.0))
+    Path("path.csv").write_text("0,0,0\n1,0,0\n2,0.2,0\n3,0.5,0\n")
+    assert run([*words, "--json", "-o", "made.cgns"]) == 0
+    printed = json.loads(capsys.readouterr().out)["notes"]
+    assert printed
+    spelled = [re.sub("--([a-z-]+)", lambda option: option[1].replace("-", "_"), note) for note in printed]
+    assert list(make().notes) == spelled
 
 
 def test_files_are_read_whole_and_one_by_one(tmp_path: Path) -> None:

@@ -75,6 +75,8 @@ class Grid(Connected):
         How the grid was made: method, settings, version.
     origin : Origin, optional
         Of a sample of a dataset: its parameters, and whether it is for training or testing.
+    notes : tuple of str, optional
+        What the function that made the grid says about it, as the commands print it; files do not hold them.
 
     Raises
     ------
@@ -88,6 +90,7 @@ class Grid(Connected):
     name: str = ""
     provenance: Mapping[str, Any] = field(default_factory=dict)
     origin: Origin = UNKNOWN
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.blocks:

@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from meshonet.api.files import read
+from meshonet.api.notes import noted
 from meshonet.api.quality import single_grid
 from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
@@ -65,7 +66,7 @@ def deform(
     0
     """
     request = DeformRequest(allow_invalid, threads=threads)
-    return make_deformed(single_grid(grid), read_walls(wall), request).grid
+    return noted(make_deformed(single_grid(grid), read_walls(wall), request))
 
 
 def read_walls(wall: AnyWall | Mapping[str, AnyWall]) -> NewWall | dict[str, NewWall]:

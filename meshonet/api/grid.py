@@ -7,6 +7,7 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 
 from meshonet.api.files import read
+from meshonet.api.notes import noted
 from meshonet.formats.layout.read import layout_of
 from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.formats.registry import read_shapes
@@ -44,8 +45,8 @@ def grid(
 ) -> Grid:
     """Return a valid grid inside a boundary, around a body, of a multi-block domain, or of a volume.
 
-    The grid has the methods `write`, `quality` and `to_pyvista`. `meshonet.make_grid` also returns notes and
-    times.
+    The grid has the methods `write`, `quality` and `to_pyvista`, and the attribute `notes`.
+    `meshonet.make_grid` also returns quality and times.
 
     Parameters
     ----------
@@ -90,7 +91,7 @@ def grid(
     request = grid_request(method, res=res, **domain_parameters(parameters))
     if request.of_surface and isinstance(shape, str | Path):
         shape = next(read_shapes(str(shape), surfaces=True))
-    return make_grid(shape_of(shape, assemble=assemble, far_field=far_field), request).grid
+    return noted(make_grid(shape_of(shape, assemble=assemble, far_field=far_field), request))
 
 
 def domain_parameters(parameters: dict[str, Any]) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from meshonet.api.notes import noted, with_notes
 from meshonet.formats.stack import stack_of
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.blocks.grid import Grid
@@ -36,7 +37,8 @@ def stack(
     Returns
     -------
     Grid
-        The volume grid, or the surface patches.
+        The volume grid, or the surface patches. Its `notes` say for instance that a trailing edge was opened,
+        or how many cells the layers need.
 
     Raises
     ------
@@ -56,8 +58,8 @@ def stack(
     what = sections if isinstance(sections, Stack | Row | Aircraft) else stack_of(str(sections))
     what = with_tip(what, tip, surface=surface)
     if surface and not isinstance(what, Row):
-        return stacked_surface(what, **parameters)[0]
-    return make_stacked(what, **parameters).grid
+        return with_notes(*stacked_surface(what, **parameters))
+    return noted(make_stacked(what, **parameters))
 
 
 def read_stack(path: str | Path) -> Stack | Row | Aircraft:

@@ -7,6 +7,7 @@ import numpy as np
 
 from meshonet.api.files import only
 from meshonet.api.grid import AnyShape, domain_parameters
+from meshonet.api.notes import noted
 from meshonet.formats.path import path_of
 from meshonet.formats.section import read_sections
 from meshonet.geometry.arrays import Floats
@@ -67,7 +68,7 @@ def sweep(
     Returns
     -------
     Grid
-        The volume grid.
+        The volume grid, with `notes`.
 
     Raises
     ------
@@ -85,7 +86,7 @@ def sweep(
     request = grid_request(res=res, **domain_parameters(parameters))
     curve = SplinePath(path) if isinstance(path, np.ndarray) else path
     curve = path_of(str(curve)) if isinstance(curve, str | File) else curve
-    return make_sweep(_section(outline), curve, request, Sweep(planes, up, twist, scale), around).grid
+    return noted(make_sweep(_section(outline), curve, request, Sweep(planes, up, twist, scale), around))
 
 
 def _section(outline: AnyShape) -> Any:
