@@ -54,11 +54,14 @@ def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
     return thickened(grid, nodes, ((BACK, "symmetry"), (FRONT, "symmetry")))
 
 
-def thickened(grid: Grid, nodes: Sequence[Floats], ends: tuple[End, End] | None) -> Grid:
+def thickened(
+    grid: Grid, nodes: Sequence[Floats], ends: tuple[End, End] | None, motion: Motion | None = None
+) -> Grid:
     """Return a planar grid as volumes, given the finite nodes (ni, nj, nk, 3) of each block.
 
     Patches and connections extend over all planes of nodes. `ends` are the name and the kind of the patches
-    at the first and at the last plane; None connects the last plane of each block with its first.
+    at the first and at the last plane; None connects the first plane of each block with its last, to which
+    `motion` moves it where they are not the same.
 
     Raises InputError: blocks that are not planar; nodes that differ where blocks are connected.
     """
@@ -70,7 +73,7 @@ def thickened(grid: Grid, nodes: Sequence[Floats], ends: tuple[End, End] | None)
         i, j = (n - 1 for n in block.counts)
         if ends is None:
             whole = ((0, i), (0, j))
-            connections.append(Connection(number, "bottom", whole, number, "top", whole, (1, 2)))
+            connections.append(Connection(number, "bottom", whole, number, "top", whole, (1, 2), motion))
             continue
         for side, (name, kind) in zip(("bottom", "top"), ends, strict=True):
             patches.append(Patch(name, side, 0, i, (0, j), number, kind))  # type: ignore[arg-type]

@@ -20,7 +20,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, as_planar, extent_of
 from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.block import face_of
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.extrude import End, thickened
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import cos, sin
@@ -193,8 +193,7 @@ def revolved(grid: Grid, turn: Revolution, ends: tuple[End, End] | None = None) 
         motion = frame.motion(math.radians(turn.degrees))
         for each in nodes:
             each[:, :, -1] = motion(each[:, :, 0])
-    solid = thickened(_with_axis(grid, frame), nodes, None if turn.closed else ends or FLOWS)
-    return solid if motion is None else _periodic(solid, motion)
+    return thickened(_with_axis(grid, frame), nodes, None if turn.closed else ends, motion)
 
 
 def _turned(plane: Floats, frame: AxisFrame, turn: Revolution) -> Floats:
@@ -214,16 +213,6 @@ def _with_axis(grid: Grid, frame: AxisFrame) -> Grid:
         on_axis = np.abs(r).max() <= frame.slack
         patches.append(replace(patch, name=AXIS, kind="other") if on_axis else patch)
     return replace(grid, patches=tuple(patches))
-
-
-def _periodic(grid: Grid, motion: Motion) -> Grid:
-    """Return the grid with each bottom made periodic with its top."""
-    joined: list[Connection] = []
-    for number, block in enumerate(grid.blocks):
-        whole = ((0, block.counts[0] - 1), (0, block.counts[1] - 1))
-        joined.append(Connection(number, "bottom", whole, number, "top", whole, (1, 2), motion))
-    patches = tuple(patch for patch in grid.patches if patch.side not in ("bottom", "top"))
-    return replace(grid, patches=patches, connections=(*grid.connections, *joined))
 
 
 def bent(nodes: Sequence[Floats], turn: Revolution) -> list[Floats]:

@@ -1,12 +1,14 @@
 """Planar grids turned about an axis: wedges, sectors and whole turns, by the volumes of Pappus."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from block_grids import o_ring
 
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.revolve import AXIS, FLOWS, AxisLine, Revolution, bent, revolved
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import measure
@@ -72,6 +74,17 @@ def test_a_sector_has_periodic_sides_that_match_bitwise():
     assert (joined.side, joined.donor_side) == ("bottom", "top")
     assert not [p for p in made.patches if p.side in ("bottom", "top")]
     assert made.blocks[0].counts[2] == 16
+
+
+@pytest.mark.parametrize("degrees", [5.0, 72.0, 360.0])
+def test_patches_of_the_plane_keep_their_names(degrees):
+    names = {"west": "inlet", "east": "outlet", "north": "wall", "south": "inner"}
+    named = tuple(Patch(name, side, 0, 4) for side, name in names.items())
+    made = revolved(replace(box(0.5), patches=named), Revolution(degrees))
+    ends = {"wedge1", "wedge2"} if degrees == 5.0 else set()
+    assert {patch.name: patch.side for patch in made.patches if patch.name not in ends} == {
+        name: side for side, name in names.items()
+    }
 
 
 def test_ends_of_a_sector_that_is_flown_through_are_patches():
