@@ -70,8 +70,8 @@ def sweep(
     axis: o.Axis = None,
     cells: Annotated[int | None, o.option_of(o.DOMAIN)(
         "--cells", metavar="N",
-        help="Approximate number of cells in the section. [default: derived from --around for a circle, "
-        "else 2500]",
+        help="Approximate number of cells in the section; in a circle at least so many that its area is kept "
+        "to 0.1 %. [default: derived from --around for a circle, else 2500]",
     )] = None,
     cell_size: Annotated[float | None, o.option_of(o.DOMAIN)(
         "--cell-size", metavar="H", help="Edge length of cells in the section away from walls, in its unit.",

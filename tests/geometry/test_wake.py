@@ -165,7 +165,7 @@ def test_parts_nobody_named_are_told_by_the_nodes() -> None:
             "a C grid needs a sharp trailing edge; give first_cell or y_plus, close it with te wedge, or use "
             "topology o",
         ),
-        ({"te": "round"}, "a C grid needs a sharp trailing edge"),
+        ({"te": "round"}, "a C grid has no rounded trailing edge; leave te out, close it with te wedge"),
         (
             {"ni": 20, "wake_nodes": 9},
             "twice 9 of them on the wake, leave too few for the wall; use at least 21",

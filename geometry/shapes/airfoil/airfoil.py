@@ -270,7 +270,10 @@ class Airfoil:
         """Return the C boundary around this body, in the units of the `original` airfoil."""
         from meshonet.geometry.shapes.wake import C_EDGE, WakeLine, c_boundary, cells_of_wake, wake_axis
 
-        if self.blunt or self._round:
+        if self._round:
+            remedy = "leave {te} out, close it with {te} wedge, or use {topology} o"
+            raise InputError("a C grid has no rounded trailing edge", remedy)
+        if self.blunt:
             remedy = "give {first_cell} or {y_plus}, close it with {te} wedge, or use {topology} o"
             raise InputError("a C grid needs a sharp trailing edge", remedy)
         chord, ni = original.chord, sampling.ni or DEFAULT_NI
