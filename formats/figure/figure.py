@@ -138,6 +138,7 @@ def _shown(colouring: Colouring | None, parts: list[CellsInView | None]) -> list
 def colour_bar(bar: Axes, colours: ScalarMappable, label: str, extend: str = "neither") -> None:
     """Draw the colour scale."""
     bar.figure.colorbar(colours, cax=bar, extend=extend).set_label(label, color=INK, size=9)
+    bar.ticklabel_format(axis="y", useOffset=False)
     bar.tick_params(labelsize=8, color=INK, labelcolor=INK)
 
 

@@ -65,6 +65,11 @@ class Colouring:
         return np.minimum if self.worst_is_low else np.maximum
 
 
+_EVEN = 5e-3
+"""Values that differ less from their middle, as a part of it, get a scale of this half width: the labels of a
+narrower one would differ in digits that nobody reads."""
+
+
 def limits_of(colouring: Colouring | None, shown: Sequence[NDArray[Any]]) -> tuple[float, float]:
     """Return the values at both ends of the colour scale for the values in view, `shown`."""
     if colouring is None:
@@ -74,7 +79,11 @@ def limits_of(colouring: Colouring | None, shown: Sequence[NDArray[Any]]) -> tup
     values = np.concatenate([np.empty(0), *map(np.ravel, shown)])
     finite = values[np.isfinite(values)]
     low, high = np.percentile(finite, (1, 99)) if finite.size else (0.0, 1.0)
-    return float(low), float(max(high, low + 1e-9 * abs(low) + 1e-30))
+    middle, half = 0.5 * float(low + high), 0.5 * float(high - low)
+    if half < _EVEN * abs(middle) or not half:
+        half = _EVEN * abs(middle) or 1.0
+        return middle - half, middle + half
+    return float(low), float(high)
 
 
 class CellsInView(NamedTuple):

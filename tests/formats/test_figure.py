@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -14,6 +15,8 @@ from meshonet.formats.figure.picture import Picture, write
 from meshonet.formats.figure.view import View
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+
+NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?")
 
 
 def pixels(path: Path) -> np.ndarray:
@@ -33,6 +36,22 @@ def wide_ring(ni: int = 161, nj: int = 81) -> Grid:
 
 def values(grid: Grid) -> np.ndarray:
     return np.add.outer(np.arange(grid.ni - 1.0), np.arange(grid.nj - 1.0))
+
+
+@pytest.mark.parametrize("level", [92.045454, -3.0, 0.0, 2e-7])
+def test_the_scale_of_values_that_are_nearly_the_same_can_be_read(level: float, tmp_path: Path) -> None:
+    grid = channel()
+    same = level + 1e-9 * level * values(grid)
+    write(tmp_path / "same.svg", grid, "svg", Colouring(same, "value"))
+    root = ElementTree.parse(tmp_path / "same.svg").getroot()  # noqa: S314
+    texts = [text.text or "" for text in root.iter("{http://www.w3.org/2000/svg}text")]
+    numbers = [text.replace("\N{MINUS SIGN}", "-") for text in texts]
+    bar = [float(text) for text in numbers[: numbers.index("value")] if NUMBER.fullmatch(text)]
+    offsets = [text for text in numbers if "e" in text and "+" in text]
+    assert not offsets
+    if level > 1.0:
+        assert any(abs(number - level) < 1.0 for number in bar)
+    assert len({text for text in numbers if NUMBER.fullmatch(text)}) >= 3
 
 
 @pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
