@@ -28,6 +28,7 @@ def write_deformed(
 ) -> int:  # fmt: skip
     """Deform the grids of the inputs to their new `walls`, write them, and return the exit code."""
     request = DeformRequest(allow_invalid, criteria.percentiles, batch.engine.threads(threads))
+    batch.session.judges = bool(criteria)
     make = each(_deformed, walls=walls, request=request, criteria=criteria)
     return batch.run(BatchTask(partial(read_grids, fmt=batch.files.from_format), make))
 

@@ -78,6 +78,7 @@ def write_grids(
     """
     request = replace(request, threads=batch.engine.threads(request.threads))
     session, sampling = batch.session, request.sampling
+    session.judges = bool(criteria)
     nodes = (sampling.ni or DEFAULT_NI) * (sampling.nj or DEFAULT_NJ)
     alone = method_of(request).together is None
     task = BatchTask(

@@ -35,7 +35,7 @@ def measure_grids(
     number and its length are those for y+.
     """
     gates = criteria.gates
-    session.summary = summary
+    session.summary, session.judges = summary, bool(criteria)
     outputs = [_picture_file(plot)] if plot else []
     outputs += [_metrics_file(per_cell)] if per_cell else []
     for destination in outputs:

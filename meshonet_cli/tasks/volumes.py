@@ -47,6 +47,7 @@ def write_stacks(
     chosen = _shared(parameters, batch) | {"percentiles": criteria.percentiles}
     if surface and criteria:
         raise InputError("{fail_on} and {profile} judge cells, and a surface has none", "leave them out")
+    batch.session.judges = bool(criteria)
     volumes = each(_stacked, parameters=chosen, criteria=criteria)
     make = each(_surface, parameters=chosen) if surface else volumes
     space: Space = "surfaces" if surface else "volumes"
@@ -80,6 +81,7 @@ def write_sweeps(
     res = parameters.pop("res")
     request = grid_request(res=None if res is None else _counts(res), **parameters)
     way = path_of(path) if isinstance(path, str) else path
+    batch.session.judges = bool(criteria)
     make = each(_swept, path=way, request=request, settings=settings, criteria=criteria, around=around)
     read = partial(read_sections, fmt=batch.files.from_format)
     return batch.run(BatchTask(read, make, nodes=VOLUME_NODES, space="volumes"))

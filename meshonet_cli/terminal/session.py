@@ -45,6 +45,8 @@ class Session:
         self.batch = False
         self.summary = False
         """Whether a table of all members is the result."""
+        self.judges = False
+        """Whether grids are judged by gates or profiles."""
         self.dataset = ""
         """The one file that all members go into."""
         self.rows: list[MemberRow] = []
@@ -235,8 +237,8 @@ class Session:
     def _tabulate(self, rows: list[MemberRow]) -> None:
         from meshonet_cli.terminal.summary import BatchSummary
 
-        table = BatchSummary(rows)
-        if self.summary and table.members:
+        table = BatchSummary(rows, self.judges)
+        if self.summary and (table.members or table.judged):
             self.conclude(table)
         elif table.judged and self.batch and not (self.quiet or self.as_json):
             (self._write if self._stdout_is_taken else self.print)(table.lines())

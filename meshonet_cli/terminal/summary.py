@@ -49,19 +49,15 @@ class MemberRow:
 
 @dataclass(frozen=True)
 class BatchSummary:
-    """Values of many grids, and their verdicts if they were judged."""
+    """Values of many grids, and their verdicts if they are `judged`."""
 
     rows: Sequence[MemberRow]
+    judged: bool = False
 
     @property
     def members(self) -> list[MemberRow]:
         """The rows of grids."""
         return [row for row in self.rows if row.figures]
-
-    @property
-    def judged(self) -> bool:
-        """Whether there are verdicts."""
-        return any(row.judgement for row in self.rows)
 
     def as_json(self) -> dict[str, Any]:
         """Return the data for ``--json``."""
@@ -86,7 +82,7 @@ class BatchSummary:
             values = row.figures
             table.append([row.label, *(figure(values[c]) if c in values else "-" for c in columns)])
         statistics = [_statistics(self._values(column)[1]) for column in columns]
-        for name in ("median", "mean", "p90", "max"):
+        for name in ("median", "mean", "p90", "max") if statistics else ():
             label = f"{'worst' if name == 'max' else name} of {len(self.members)}"
             table.append([label, *(figure(values[name]) for values in statistics)])
         return self._with_verdicts(aligned(table)) if self.judged else aligned(table)

@@ -30,6 +30,16 @@ def test_a_batch_ends_in_a_table_of_verdicts(meshonet: Meshonet, jobs: tuple[str
     assert "2 done (2 of them beyond a gate), 1 failed" in done.err
 
 
+@pytest.mark.parametrize("words", [("infer", "-o", "{stem}.h5"), ("quality",), ("quality", "--summary")])
+def test_a_batch_without_any_grid_has_its_table_too(meshonet: Meshonet, words: tuple[str, ...]) -> None:
+    done = meshonet(*words, "missing.dat", "absent.dat", "--fail-on", "folded>0")
+    assert done.code == 2
+    head, *rows, counts = done.out.splitlines()
+    assert head.split() == ["grid", "verdict", "limits", "exceeded"]
+    assert [row.split() for row in rows] == [["missing.dat", "error"], ["absent.dat", "error"]]
+    assert counts == "verdicts: 2 error"
+
+
 def test_grids_on_standard_output_leave_the_table_on_standard_error(process: Process) -> None:
     done = process("infer", *FOILS[:2], *VISCOUS[:4], "-o", "-")
     assert done.returncode == 1
