@@ -201,13 +201,17 @@ class _Records(Iterator[T]):
                 if self._records is None:
                     self._records = iter(())  # a reader that fails at once is not asked again
                     self._records = self._read()
-                return next(self._records)
+                record = next(self._records)
         except MeshonetError:
             raise
         except (OSError, MemoryError) as error:
             reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
             problem = f"cannot be read ({reason})"
             raise InputError(problem, "check the file", source=self._source.name) from error
+        crossing = getattr(record, "crossing", None)  # an error for those who need the curve of an airfoil
+        if isinstance(crossing, InputError):
+            crossing.source = crossing.source or self._source.name
+        return record
 
 
 def _check_selection(source: Source, record: Format) -> None:

@@ -38,6 +38,8 @@ def boundary(rng: np.random.Generator, ni: int, nj: int, spacing: Spacing | None
         far_field = math.exp(rng.uniform(math.log(4.0), math.log(60.0)))
         try:
             airfoil = Airfoil(_section(rng), "procedural")
+            if airfoil.crossing:
+                continue
             settings = settings or _spacing(rng)
             edges = airfoil.boundary(Sampling(ni, nj, "o", far_field=far_field, **settings))
         except InputError:

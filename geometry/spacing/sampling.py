@@ -56,8 +56,9 @@ class Sampling:
         Number of nodes on a blunt base, both corners included, odd on a body in an O grid; None derives it
         from the cells next to the base and its width.
     smooth : float, optional
-        Replace the points of an airfoil by those of smoothing splines that deviate by at
-        most this many chords; corners are kept. Needs SciPy.
+        Replace the points of an airfoil by those of smoothing splines that deviate by at most this many
+        chords, about 3 times the standard deviation of the noise. Corners higher than twice as much are
+        kept, a narrower base is closed. Needs SciPy.
     refined : int, optional
         Corners are on nodes whose index is a multiple of this, so that the grid can be coarsened by it.
     viscous : bool, optional

@@ -86,9 +86,11 @@ class SamplingOptions:
     )] = None
     smooth: Annotated[float | None, _option(
         "--smooth", metavar="TOL",
-        help="Replace the points of an airfoil with rippled coordinates by smoothing splines, which deviate "
-        "from the points by at most TOL chords, e.g. 1e-4. Corners are kept, and the report gives the "
-        "changes. Needs SciPy.",
+        help="Replace the points of an airfoil with noisy or rounded coordinates by smoothing splines, which "
+        "deviate from the points by at most TOL chords. Choose about 3 times the standard deviation of the "
+        "noise, or the unit of the last digit: 6e-4 for noise of 2e-4, 1e-4 for four decimals. Corners "
+        "higher than 2 TOL are kept; a base narrower than TOL is closed. The report gives the changes. Needs "
+        "SciPy.",
     )] = None
     corners: Annotated[str, _option(
         "--corners", metavar="auto|I,J,K,L", show_default=True,

@@ -35,7 +35,7 @@ def on_outline(wall: Floats, outline: Airfoil | Outline) -> tuple[Floats, Notes]
             old = Airfoil(_without_base(wall[:-1]))
         except InputError:  # a wall that is no airfoil
             return _on_curve(wall, outline.curve)
-        return _on_airfoil(wall, old, outline)
+        return _on_curve(wall, outline.curve) if old.crossing else _on_airfoil(wall, old, outline)
     return _on_curve(wall, outline.curve)
 
 

@@ -125,8 +125,9 @@ def test_units_and_position_stay_unless_normalised():
 def test_crossing_surfaces_are_refused_with_the_place_and_the_points():
     points = selig(0.12)
     points[5:8, 1] = [-0.04, -0.05, -0.06]
+    body = Airfoil(points, places=[f"line {k + 2}" for k in range(len(points))])
     with pytest.raises(InputError) as caught:
-        Airfoil(points, places=[f"line {k + 2}" for k in range(len(points))])
+        body.boundary(Sampling(81, 21, "o"))
     wanted = str(caught.value)
     assert "crosses itself at (0.9" in wanted
     assert "between line 6 and line 7" in wanted or "between line 7 and line 6" in wanted

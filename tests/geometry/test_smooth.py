@@ -7,7 +7,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import changes_in
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import naca
-from meshonet.geometry.shapes.airfoil.section_curve import sign_changes
+from meshonet.geometry.shapes.airfoil.section_curve import RIPPLES, sign_changes
 from meshonet.geometry.spacing.sampling import Sampling
 
 O_GRID = Sampling(161, 41, "o")
@@ -55,6 +55,52 @@ def test_grids_are_made_of_the_smoothed_section() -> None:
     plain, smooth = (rounded(4).boundary(Sampling(161, 41, "o", smooth=s)) for s in (None, 1e-4))
     assert 0.0 < np.abs(plain.south - smooth.south).max() < 1e-2  # nodes move along the wall too
     assert any("smoothed by up to" in note for note in smooth.notes)
+
+
+def noisy(designation: str, noise: float, seed: int, n: int = 201) -> tuple[Airfoil, Airfoil]:
+    """A section with normally distributed noise, and the section it comes from."""
+    true = naca(designation)
+    every = true.curve.points[1 if true.blunt else 0 :]
+    points = every[np.linspace(0, len(every) - 1, n).round().astype(int)]
+    points = points if true.blunt else np.concatenate([points[:-1], points[:1]])
+    return Airfoil(points + np.random.default_rng(seed).normal(0.0, noise, points.shape)), true
+
+
+def distance(body: Airfoil, true: Airfoil) -> float:
+    """Root mean square of the distances in chords of a curve from another."""
+    off = body.curve.polyline(np.array([0.0, 0.5]))[:, None] - true.curve.polyline(np.arange(32) / 32)
+    return float(np.sqrt((off**2).sum(axis=-1).min(axis=1).mean()))
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("designation", ["0012-sharp", "2408-sharp", "4415", "0006-sharp"])
+def test_noise_is_removed_with_three_times_its_standard_deviation(designation: str, seed: int) -> None:
+    body, true = noisy(designation, 2e-4, seed)
+    after = body.smoothed(6e-4)
+    assert distance(after, true) < 2e-4
+    assert (
+        sign_changes(body.points_curve, body.chord) > 100 > RIPPLES > sign_changes(after.curve, after.chord)
+    )
+    assert after.wedge == pytest.approx(true.wedge, rel=0.3)
+
+
+def test_surfaces_that_cross_by_noise_are_smoothed_first() -> None:
+    body, _ = next(pair for seed in range(20) if (pair := noisy("0006-sharp", 2e-4, seed))[0].crossing)
+    with pytest.raises(InputError, match=r"crosses itself at .*; .*give smooth about 3 times the noise"):
+        body.boundary(O_GRID)
+    assert body.boundary(Sampling(161, 41, "o", smooth=6e-4)).south.shape == (161, 2)
+
+
+def test_a_base_that_noise_could_have_made_is_closed() -> None:
+    points = naca("0012-sharp").curve.points
+    opened = np.concatenate([points, points[:1]])
+    opened[[0, -1], 1] += [-2.5e-4, 2.5e-4]
+    body = Airfoil(opened)
+    assert body.blunt
+    after = body.smoothed(6e-4)
+    assert not after.blunt
+    assert any("its base, 0.0005 chords wide" in change for change in changes_in(after.notes))
+    assert body.smoothed(3e-4).blunt
 
 
 @pytest.mark.parametrize("tolerance", [0.0, 1e-9, 0.1, float("nan")])

@@ -15,7 +15,6 @@ from meshonet.geometry.arrays import Floats, along_and_across
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, clean_section
 from meshonet.geometry.shapes.airfoil.section_curve import (
@@ -23,9 +22,10 @@ from meshonet.geometry.shapes.airfoil.section_curve import (
     edge_notes,
     farthest_arc,
     moved_note,
+    nose_radius,
     section_curve,
     shape_notes,
-    sign_changes,
+    swapped_note,
 )
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
@@ -57,17 +57,17 @@ class Airfoil:
     (n,) are their places in the source, such as ``line 12``, for messages; `notes` say how they were changed
     before.
 
-    Raises InputError, with the place: the points are no airfoil, or its surfaces cross.
+    Raises InputError, with the place: the points are no airfoil.
     """
 
-    curve: Curve
-    """Through the points; see the drawing."""
     chord: float
     """Distance from the leading to the trailing edge."""
     leading_edge: Floats
     """(2,)"""
     trailing_edge: Floats
     """(2,) the middle of the base when blunt."""
+    crossing: InputError | None
+    """Why there is no `curve`: the surfaces of `points_curve` cross, as noisy ones do until `smoothed`."""
     gap: float
     """Distance between the ends of the two surfaces."""
     blunt: bool
@@ -85,18 +85,28 @@ class Airfoil:
         self.name, self._round = name, False
         self._section = section = clean_section(points)
         self.gap, self.blunt = section.gap, section.blunt
-        self.curve, changes = section_curve(section, places)
-        self.notes = tuple(dict.fromkeys((*notes, *changes)))
-        self.trailing_edge = self.curve.points[0]
-        arc = farthest_arc(self.curve, self.trailing_edge)
-        self.leading_edge = self.curve.at(np.array([arc]))[0]
+        curve, changes, self.crossing = section_curve(section, places)
+        self.points_curve = curve
+        self._given = (*notes, *(swapped_note(section, places) if section.swapped else ()))
+        self.notes = tuple(dict.fromkeys((*self._given, *changes)))
+        self.trailing_edge = curve.points[0]
+        arc = farthest_arc(curve, self.trailing_edge)
+        self.leading_edge = curve.at(np.array([arc]))[0]
         self.chord = float(np.hypot(*(self.leading_edge - self.trailing_edge)))
-        first, last = (self.curve.knots[1], self.curve.knots[-1]) if self.blunt else (0.0, self.curve.length)
+        first, last = (curve.knots[1], curve.knots[-1]) if self.blunt else (0.0, curve.length)
         self._arcs = float(first), arc, float(last)
 
     def __repr__(self) -> str:
         edge = f"blunt trailing edge {self.gap:.6g}" if self.blunt else "sharp or round trailing edge"
-        return f"<Airfoil {self.name!r}: chord {self.chord:.6g}, {edge}, {len(self.curve.points)} points>"
+        count = len(self.points_curve.points)
+        return f"<Airfoil {self.name!r}: chord {self.chord:.6g}, {edge}, {count} points>"
+
+    @property
+    def curve(self) -> Curve:
+        """Through the points; see the drawing. Raises InputError, with the place: the surfaces cross."""
+        if self.crossing:
+            raise self.crossing
+        return self.points_curve
 
     @property
     def unit(self) -> float:
@@ -119,14 +129,7 @@ class Airfoil:
     @cached_property
     def nose_radius(self) -> float:
         """Radius of the leading edge: of a parabola as thick as the section at 2 % of the chord."""
-        _, middle, _ = self._arcs
-        axis = (self.trailing_edge - self.leading_edge) / self.chord
-        step = np.linspace(0.0, 0.2 * self.chord, 81)
-        sides = []
-        for sign in (-1.0, 1.0):
-            along, across = along_and_across(self.curve.at(middle + sign * step) - self.leading_edge, axis)
-            sides.append(float(np.interp(0.02 * self.chord, np.maximum.accumulate(along), across)))
-        return (0.5 * (sides[1] - sides[0])) ** 2 / (0.04 * self.chord)
+        return nose_radius(self.points_curve, self._arcs[1], self.trailing_edge, self.chord)
 
     @property
     def outline_notes(self) -> tuple[str, ...]:
@@ -149,13 +152,11 @@ class Airfoil:
 
     def smoothed(self, tolerance: float) -> Airfoil:
         """Return the airfoil with its points on smoothing splines within `tolerance` chords; corners stay."""
-        from meshonet.geometry.shapes.airfoil.smooth import smooth_ring
+        from meshonet.geometry.shapes.airfoil.smooth import smooth_ring, smoothing_notes
 
-        ring, most = smooth_ring(self.curve, self.blunt, tolerance * self.chord)
-        body = Airfoil(ring, self.name, notes=self.notes)
-        before, after = (sign_changes(each.curve, each.chord) for each in (self, body))
-        moved = f"the outline is changed: smoothed by up to {most / self.chord:.2g} chords"
-        body.notes += (Change(f"{moved}, sign changes of its curvature from {before} to {after}"),)
+        ring, most = smooth_ring(self._section, self.nose_radius, tolerance * self.chord)
+        body = Airfoil(ring, self.name, notes=self._given)
+        body.notes += smoothing_notes(self, body, most)
         return body
 
     def rounded(self) -> Airfoil:
@@ -166,9 +167,9 @@ class Airfoil:
 
         body = copy(self)
         body.__dict__.pop("wedge", None)
-        body.curve, end = rounded_base(self.curve, self.chord)
-        arc = farthest_arc(body.curve, body.trailing_edge)
-        body.blunt, body._round, body._arcs = False, True, (end, arc, body.curve.length - end)
+        body.points_curve, end = rounded_base(self.curve, self.chord)
+        arc = farthest_arc(body.points_curve, body.trailing_edge)
+        body.blunt, body._round, body._arcs = False, True, (end, arc, body.points_curve.length - end)
         return body
 
     def moved_apart(self) -> Airfoil:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, along_and_across, norms
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
@@ -35,23 +35,31 @@ UNLIKE = 1.5
 _PARTS = 128  # parts of a stretch in the search for the point farthest from the trailing edge
 
 
-def section_curve(section: CleanSection, places: Sequence[str]) -> tuple[Curve, list[str]]:
-    """Return the curve through a section's points, and notes; it is straight where it would cross itself.
+def swapped_note(section: CleanSection, places: Sequence[str]) -> tuple[str, ...]:
+    """Return a note on points of a section that stood in the wrong order."""
+    named = ", ".join(places[k] if places else f"point {k}" for k in section.swapped[:6])
+    more = ", ..." if len(section.swapped) > 6 else ""
+    return (Change(f"the outline is changed: points in the wrong order are swapped ({named}{more})"),)
 
-    Surfaces that touch or cross because of rounding are moved apart first
-    (`meshonet.geometry.shapes.airfoil.separate_surfaces`).
+
+def section_curve(
+    section: CleanSection, places: Sequence[str]
+) -> tuple[Curve, tuple[str, ...], InputError | None]:
+    """Return the curve through a section's points, notes, and an error if its surfaces cross all the same.
+
+    It is straight where it would cross itself. Surfaces that touch or cross because of rounding are moved
+    apart first (`meshonet.geometry.shapes.airfoil.separate_surfaces`).
     """
     notes: list[str] = []
-    if section.swapped:
-        named = ", ".join(places[k] if places else f"point {k}" for k in section.swapped[:6])
-        more = ", ..." if len(section.swapped) > 6 else ""
-        notes.append(Change(f"the outline is changed: points in the wrong order are swapped ({named}{more})"))
+    crossed = None
     crossing = find_crossing(section.points)
     if crossing is not None:
-        before, section = section, section.moved_apart()
-        if find_crossing(section.points) is not None:
-            raise _crossed(section, crossing, places)
-        notes.append(moved_note(before, section))
+        apart = section.moved_apart()
+        if find_crossing(apart.points) is not None:
+            crossed = _crossed(section, crossing, places)
+        else:
+            notes.append(moved_note(section, apart))
+            section = apart
     points, corners = section.points, section.corners
     if section.blunt:  # point 0 is the middle of the base
         points, corners = np.concatenate([[0.5 * (points[0] + points[-1])], points]), corners + 1
@@ -67,7 +75,7 @@ def section_curve(section: CleanSection, places: Sequence[str]) -> tuple[Curve, 
         pairs = f"{straight.sum()} of its {len(points)} pairs of points"
         why = "where a smooth curve would cross itself"
         notes.append(Change(f"the outline follows straight lines between {pairs}, {why}"))
-    return curve, notes
+    return curve, tuple(notes), crossed
 
 
 def moved_note(before: CleanSection, section: CleanSection) -> str:
@@ -92,6 +100,18 @@ def sign_changes(curve: Curve, chord: float) -> int:
     bend[curve.corner_index] = 0.0
     signs = bend[np.abs(bend) > _FLAT] > 0.0
     return int((signs[1:] != signs[:-1]).sum())
+
+
+def nose_radius(curve: Curve, middle: float, edge: Floats, chord: float) -> float:
+    """Return the radius at arc length `middle`, the leading edge; see `Airfoil.nose_radius`."""
+    nose = curve.at(np.array([middle]))[0]
+    axis = (edge - nose) / chord
+    step = np.linspace(0.0, 0.2 * chord, 81)
+    sides = []
+    for sign in (-1.0, 1.0):
+        along, across = along_and_across(curve.at(middle + sign * step) - nose, axis)
+        sides.append(float(np.interp(0.02 * chord, np.maximum.accumulate(along), across)))
+    return (0.5 * (sides[1] - sides[0])) ** 2 / (0.04 * chord)
 
 
 def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str, ...]:
@@ -180,7 +200,8 @@ def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -
     return InputError(
         f"the surface crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}), "
         f"between {a} and {b} and between {c} and {d}",
-        "correct these points: no grid can be made around crossing surfaces",
+        "correct these points, or give {smooth} about 3 times the noise of the points: no grid can be made "
+        "around crossing surfaces",
     )
 
 

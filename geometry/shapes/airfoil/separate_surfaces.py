@@ -5,6 +5,8 @@ coincide or cross. Points there are moved normal to the chord, each by half the 
 `MOST` chords.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, along_and_across
@@ -20,10 +22,38 @@ def moved_apart(ring: Floats, nose: int) -> Floats:
     They are then 2 `MOST` chords apart, or less if this limit does not allow that. The polygon runs clockwise
     from the trailing edge; that point and the leading edge, `nose`, are not moved.
     """
+    chord = float(np.hypot(*(ring[nose] - ring[0])))
+
+    def least(places: Floats, _: Floats) -> Floats:
+        return np.minimum(2 * MOST * chord, _WEDGE * np.minimum(places, chord - places))
+
+    return _thickened(ring, nose, least, MOST * chord)
+
+
+def wedged_apart(ring: Floats, nose: int, thin: float) -> Floats:
+    """Return a closed polygon (n, 2) that near its trailing edge is as thick as a wedge, or thicker.
+
+    The wedge begins at the edge, with the base if there is one, and ends where the surfaces are `thin` apart.
+    """
+
+    def least(places: Floats, thickness: Floats) -> Floats:
+        end = min(int(np.argmax(np.append(thickness, thin) >= thin)), len(places) - 1)
+        base = max(thickness[0], 0.0)
+        wedge = base + (thickness[end] - base) * places / max(places[end], np.finfo(float).tiny)
+        return np.where(np.arange(len(places)) < end, wedge, thickness)
+
+    return _thickened(ring, nose, least, thin)
+
+
+def _thickened(ring: Floats, nose: int, least: Callable[[Floats, Floats], Floats], most: float) -> Floats:
+    """Return a closed polygon with each surface moved by half the missing thickness, at most by `most`.
+
+    `least` returns the least thickness (n,) at ascending distances (n,) from the edge along the chord,
+    where the section has thickness (n,).
+    """
     edge = ring[0]
     axis = ring[nose] - edge
-    chord = float(np.hypot(*axis))
-    axis = axis / chord
+    axis = axis / np.hypot(*axis)
     across = np.array([axis[1], -axis[0]])  # towards the upper side
     along, below = along_and_across(ring - edge, axis)
     height = -below
@@ -31,8 +61,8 @@ def moved_apart(ring: Floats, nose: int) -> Floats:
     upper = np.append(np.arange(nose, len(ring)), 0)
     places = np.sort(along)
     sides = [np.interp(places, *_single_valued(along[side], height[side])) for side in (lower, upper)]
-    least = np.minimum(2 * MOST * chord, _WEDGE * np.minimum(places, chord - places))
-    need = np.clip(0.5 * (least - (sides[1] - sides[0])), 0.0, MOST * chord)
+    thickness = sides[1] - sides[0]
+    need = np.clip(0.5 * (least(places, thickness) - thickness), 0.0, most)
     shift = np.interp(along, places, need)
     shift[[0, nose]] = 0.0
     sign = np.where(np.arange(len(ring)) < nose, -1.0, 1.0)

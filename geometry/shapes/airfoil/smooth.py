@@ -1,73 +1,140 @@
-"""Smoothing of sections whose coordinates have ripples.
+"""Smoothing of sections whose coordinates are noisy or rounded.
 
-Splines are those of P. Dierckx (FITPACK, through SciPy), with the fewest knots with which points are met to a
-given sum of squares: Curve and Surface Fitting with Splines (1993).
+From corner to corner, points are replaced by those of a least-squares spline with the fewest knots with
+which it stays within the tolerance. FITPACK finds it, through SciPy (P. Dierckx, Curve and Surface Fitting
+with Splines, 1993). Knots are evenly spaced, half by the number of points and half in a parameter that runs
+faster near the nose, as the angle does in the theory of thin airfoils: in the arc length, a spline that
+smooths the sides would flatten the nose.
 """
 
+from __future__ import annotations
+
 from itertools import pairwise
-from typing import Any
-from warnings import catch_warnings
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
-from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.arrays import Floats, along_and_across, norms
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import Change
+from meshonet.geometry.shapes.airfoil.clean import CleanSection
+from meshonet.geometry.shapes.airfoil.section_curve import sign_changes
+from meshonet.geometry.shapes.airfoil.separate_surfaces import wedged_apart
+
+if TYPE_CHECKING:
+    from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 _FEWEST = 12  # fewest points of a stretch that is smoothed
-_HALVINGS = 40  # bisections of the sum of squares in search of the tolerance
+_DEGREE = 5  # of the splines: their curvature has no kinks
 _ENDS = 1e3  # weight of the ends of a stretch, which are corners
+_OUTLIERS = 32  # one point of so many may be farther off than the tolerance before weights bring it back
+_ROUNDS = 12  # of weights for outliers
+_THIN = 2.0  # thickness of a section, or height of a corner, over the tolerance, that noise can cause
+_BESIDE = 3  # points from a corner to the ends of the line that it stands out from
+_HEAVIER = 2.0  # factor of the weight of an outlier in each round
 
 
-def smooth_ring(curve: Curve, blunt: bool, limit: float) -> tuple[Floats, float]:
+def smooth_ring(section: CleanSection, nose_radius: float, limit: float) -> tuple[Floats, float]:
     """Return the points (n, 2) of a section moved to splines within `limit`, and the largest displacement.
 
-    Corners are kept. The `curve` of a `blunt` section begins at the middle of its base, which is omitted.
+    Corners are kept, but a base that is narrower than `limit` is closed at its middle, and so is one whose
+    ends noise has swapped. Where noise could close the section, it stays as thick as a wedge.
 
     Raises InputError: SciPy is not installed.
     """
-    stretches = _stretches(curve, blunt)
-    parts = [_fitted(stretch, limit) for stretch in stretches]
-    most = max(float(norms(a - b).max()) for a, b in zip(parts, stretches, strict=True))
-    return np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:] if blunt else parts[0][:0]]), most
+    given = np.concatenate([section.points, section.points[: 0 if section.blunt else 1]])
+    points = _closed(given, limit)
+    nose = int(np.argmax(norms(points - points[0])))
+    corners = [k for k in section.corners.tolist() if _stands_out(points, k, limit)]
+    stops = sorted({0, len(points) - 1, *corners})
+    parts = [_fitted(points[a : b + 1], points[nose], nose_radius, limit) for a, b in pairwise(stops)]
+    ring = np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]])
+    ring = ring if (ring[0] != ring[-1]).any() else ring[:-1]
+    given = given[: len(ring)]
+    away = wedged_apart(ring, nose, _THIN * limit) - ring
+    away[[k for k in stops if k < len(ring)]] = 0.0
+    left = np.maximum(limit - norms(ring - given), 0.0)
+    ring = ring + away * np.minimum(1.0, left / np.maximum(norms(away), np.finfo(float).tiny))[:, None]
+    return ring, float(norms(ring - given).max())
 
 
-def _stretches(curve: Curve, blunt: bool) -> list[Floats]:
-    """Return the points (n, 2) of a section from corner to corner, both included, the base left out."""
-    points, corners = curve.points, curve.corner_index
-    if blunt:
-        points, marks = points[1:], corners - 1
-    else:
-        points, marks = np.concatenate([points, points[:1]]), corners
-    stops = sorted({0, len(points) - 1, *(int(k) for k in marks if k >= 0)})
-    return [points[a : b + 1] for a, b in pairwise(stops)]
+def smoothing_notes(before: Airfoil, after: Airfoil, most: float) -> tuple[str, ...]:
+    """Return what smoothing changed, points by `most` at most."""
+    chord = before.chord
+    old, new = (sign_changes(each.points_curve, each.chord) for each in (before, after))
+    moved = f"the outline is changed: smoothed by up to {most / chord:.2g} chords"
+    notes: tuple[str, ...] = (Change(f"{moved}, sign changes of its curvature from {old} to {new}"),)
+    if before.blunt and not after.blunt:
+        base = f"its base, {before.gap / chord:.2g} chords wide"
+        notes += (Change(f"the outline is changed: {base}, is no wider than noise and is closed"),)
+    return notes
 
 
-def _fitted(points: Floats, limit: float) -> Floats:
-    """Return points (n, 2) on a smoothing spline that is within `limit` of all of them, ends as they are."""
+def _closed(points: Floats, limit: float) -> Floats:
+    """Return points (n, 2) with the ends at their middle if they are near or noise swapped them."""
+    edge = 0.5 * (points[0] + points[-1])
+    axis = edge - points[np.argmax(norms(points - edge))]
+    _, across = along_and_across(points[[0, -1]] - edge, axis / np.hypot(*axis))
+    if norms(points[0] - edge) <= (0.5 if across[1] > across[0] else 1.0) * limit:
+        points = points.copy()
+        points[[0, -1]] = edge
+    return points
+
+
+def _stands_out(points: Floats, k: int, limit: float) -> bool:
+    """Return whether a corner, or an end, is farther from the line between its neighbours than noise is."""
+    a, b = points[max(k - _BESIDE, 0)], points[min(k + _BESIDE, len(points) - 1)]
+    _, across = along_and_across(points[k] - a, b - a)
+    return k in (0, len(points) - 1) or bool(abs(across) > _THIN * limit * np.hypot(*(b - a)))
+
+
+def _fitted(points: Floats, nose: Floats, radius: float, limit: float) -> Floats:
+    """Return points (n, 2) on the spline with the fewest knots within `limit` of all, ends as they are."""
     if len(points) < _FEWEST:
         return points
+    u = _parameter(points, nose, radius)
+    even = 0.5 * (u / u[-1] + np.linspace(0.0, 1.0, len(u)))  # knots follow the density of points too
+    ends = u[[0] * (_DEGREE + 1)], u[[-1] * (_DEGREE + 1)]
+    for count in range(len(points) - _DEGREE):
+        inner = np.interp(np.linspace(0.0, 1.0, count + 2)[1:-1], even, u)
+        fit = _within(points, u, np.concatenate([ends[0], inner, ends[1]]), limit)
+        if fit is not None:
+            return fit
+    return points
+
+
+def _parameter(points: Floats, nose: Floats, radius: float) -> Floats:
+    """Return the parameter (n,) of points: ds / sqrt(distance from the nose + radius / 2).
+
+    Around a parabola of this radius it is the angle of the theory of thin airfoils, up to a factor.
+    """
+    away = norms(0.5 * (points[1:] + points[:-1]) - nose)
+    return np.append(0.0, np.cumsum(norms(points[1:] - points[:-1]) / np.sqrt(away + 0.5 * radius)))
+
+
+def _within(points: Floats, u: Floats, knots: Floats, limit: float) -> Floats | None:
+    """Return points (n, 2) on the least-squares spline with `knots`, or None if it is not within `limit`.
+
+    A few points may be farther off at first: their weights are increased until they are not.
+    """
     try:
         from scipy.interpolate import splev, splprep
     except ImportError:
         remedy = "install it: pip install 'meshonet[smooth]'"
         raise InputError("{smooth} needs scipy, which is not installed", remedy) from None
-    u = np.concatenate([[0.0], np.cumsum(np.sqrt(norms(np.diff(points, axis=0))))])
     weight = np.ones(len(points))
     weight[[0, -1]] = _ENDS
-    best, low, high = points, 0.0, len(points) * limit**2
-    for _ in range(_HALVINGS):
-        middle = high if low == 0.0 and best is points else 0.5 * (low + high)
-        with catch_warnings(action="ignore", category=RuntimeWarning):  # of sums that it does not quite reach
-            spline: Any = splprep(points.T, w=weight, u=u, k=5, s=middle)[0]
+    for _ in range(_ROUNDS):
+        try:
+            spline: Any = splprep(points.T, w=weight, u=u, k=_DEGREE, t=knots, task=-1)[0]
+        except ValueError:  # an interval between knots has too few points
+            return None
         fit = np.stack(splev(u, spline), axis=1)
         fit[0], fit[-1] = points[0], points[-1]
-        if norms(fit - points).max() <= limit:
-            best, low = fit, middle
-            if middle == high:
-                break
-        else:
-            high = middle if middle < high else 0.5 * high
-        if low and high - low < 0.02 * high:
-            break
-    return best
+        outliers = norms(fit - points) > limit
+        if not outliers.any():
+            return fit
+        if outliers.sum() > len(points) // _OUTLIERS:
+            return None
+        weight[outliers] *= _HEAVIER
+    return None
