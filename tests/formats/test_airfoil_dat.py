@@ -3,6 +3,7 @@ import itertools
 import numpy as np
 import pytest
 
+import meshonet
 from meshonet.formats.source import Source
 from meshonet.formats.text.airfoil_dat import parse, read_shapes, sniff
 from meshonet.geometry.errors import InputError
@@ -237,13 +238,15 @@ def test_a_trailing_edge_that_cannot_be_read_is_refused_with_its_line(row):
         parse(f"TEST\n{row}\n" + lines(SELIG[1:]), "a.dat")
 
 
-def test_crossing_surfaces_are_named_by_their_lines():
+def test_crossing_surfaces_are_named_by_their_lines(tmp_path):
     points = SELIG.copy()
     points[3, 1] = -0.1
+    bad = tmp_path / "bad.dat"
+    bad.write_text("T\n" + lines(points))
     with pytest.raises(InputError) as caught:
-        parse("T\n" + lines(points), "bad.dat")
+        meshonet.grid(str(bad))
     wanted = str(caught.value)
-    assert wanted.startswith("bad.dat: the surface crosses itself at (0.")
+    assert wanted.startswith(f"{bad}: the surface crosses itself at (0.")
     assert "line 5" in wanted
 
 
