@@ -31,6 +31,8 @@ class Period:
     """Length of the shift, 0 for a turn."""
     mismatch: float
     """Largest distance of nodes after it, over their distance from the axis or over the shift."""
+    along: tuple[float, ...] = ()
+    """Unit vector (x, y, z) of a shift, empty for a turn."""
 
 
 def periods(grid: Grid) -> tuple[Period, ...]:
@@ -61,7 +63,8 @@ def _period(screw: Screw, sides: Sequence[tuple[Floats, Floats]]) -> Period:
     own, donor = (np.concatenate(nodes) for nodes in zip(*sides, strict=True))
     if not screw.angle:
         length = float(norms(screw.shift))
-        return Period(0.0, length, float(norms(donor - own - screw.shift).max()) / length)
+        apart = float(norms(donor - own - screw.shift).max()) / length
+        return Period(0.0, length, apart, tuple((screw.shift / length + 0.0).tolist()))
     turn = 2.0 * math.pi / screw.angle
     angle = 2.0 * math.pi / round(turn) if abs(turn - round(turn)) <= _ALIKE * abs(turn) else screw.angle
     (x, r, a), (x2, r2, b) = (_cylindrical(nodes, screw) for nodes in (own, donor))

@@ -83,7 +83,8 @@ def _period_line(row: Period) -> str:
     if row.angle:
         motion, size = f"turned by {row.angle:.6g} degrees", "the radius"
     else:
-        motion, size = f"shifted by {row.shift:.6g}", "this"
+        way = ", ".join(f"{each:.4g}" for each in row.along)
+        motion, size = f"shifted by {row.shift:.6g} along ({way})", "this"
     return f"periodic sides: {motion}, nodes then {row.mismatch:.2g} of {size} apart"
 
 

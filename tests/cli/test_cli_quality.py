@@ -357,3 +357,8 @@ def test_a_page_that_cannot_be_written_is_refused(
     assert done.code == 2
     assert told in done.err
     assert not Path(name).exists()
+
+
+def test_the_shift_of_periodic_sides_has_its_direction(meshonet: Meshonet) -> None:
+    meshonet("infer", "naca:0012", "--pitch", "0,0.9", "--cells", "1500", "-o", "passage.cgns")
+    assert "periodic sides: shifted by 0.9 along (0, 1, 0), nodes" in meshonet("quality", "passage.cgns").out

@@ -45,6 +45,7 @@ def test_a_shift_has_its_length() -> None:
     grid = Grid((Block(nodes),), (), (Connection(*ends[0], *ends[1], (1,), Motion((0.3, 0.4))),))
     (period,) = periods(grid)
     assert (period.angle, period.shift) == (0.0, pytest.approx(0.5, rel=1e-15))
+    assert period.along == pytest.approx((0.6, 0.8, 0.0))
     assert period.mismatch < 1e-15
 
 
