@@ -3,10 +3,9 @@
 `limited_to` sets the number temporarily, for the Python thread that calls it: other threads keep theirs.
 """
 
-import functools
 import os
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from contextvars import ContextVar, copy_context
 from typing import Any, TypeVar
 
@@ -68,17 +67,6 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
 def run_in_threads(jobs: Sequence[Callable[[], Any]]) -> list[Any]:
     """Return what each of `jobs` returns, several at once if threads are free (see `in_threads`)."""
     return in_threads(lambda job: job(), jobs)
-
-
-class cached_property(functools.cached_property[Made]):  # noqa: N801  # as the one that it is
-    """As that of `functools`, without the lock that all objects of a class share in Python 3.11.
-
-    With it, threads that work out the same property of different objects would wait for each other.
-    """
-
-    def __init__(self, work: Callable[[Any], Made]) -> None:
-        super().__init__(work)
-        self.lock = nullcontext()
 
 
 @contextmanager

@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, extent_of
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.domain.ring import ring_loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
-from meshonet.geometry.threads import cached_property
 
 
 @dataclass(frozen=True, eq=False)

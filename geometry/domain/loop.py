@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Bools, Floats
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import turning
-from meshonet.geometry.threads import cached_property
 from meshonet.geometry.ties import EQUAL
 
 CORNER_DEG = 30.0

@@ -18,8 +18,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from meshonet.geometry.arrays import Indices, distinct
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.threads import cached_property
 
 
 @dataclass(frozen=True, eq=False)

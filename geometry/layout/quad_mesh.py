@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, Indices
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.threads import cached_property
 from meshonet.kernels._native import connect_quads
 
 

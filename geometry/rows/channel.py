@@ -20,11 +20,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, cross2, middle, norms
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.profile_points import apart
-from meshonet.geometry.threads import cached_property
 from meshonet.kernels._native import (
     channel_nodes,
     channel_points,

@@ -12,6 +12,7 @@ from copy import copy
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms, wrapped
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import arctan2
@@ -20,7 +21,6 @@ from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.rows.channel import Channel
 from meshonet.geometry.rows.profile_points import check_profile, distinct_points
-from meshonet.geometry.threads import cached_property
 
 _SAMPLES = 2000  # points of the curve among which the edges are looked for
 _BASE = 0.1  # of the chord: corners that are no farther apart than this, and blunt, have an edge between them

@@ -11,12 +11,12 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.connection import Motion
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.blade import BladeSurface
 from meshonet.geometry.rows.channel import Channel
 from meshonet.geometry.rows.frame import UNITS
 from meshonet.geometry.rows.profile_points import as_points
-from meshonet.geometry.threads import cached_property
 
 FEWEST, MOST = 2, 1000
 """Blades of a row."""

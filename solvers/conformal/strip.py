@@ -97,7 +97,7 @@ def modes(F: Any, xp: Any = np) -> Any:
     """
     n = F.shape[-1]
     c, kept = xp.fft.fft(F) / n, min(MODES, (n - 1) // 2)
-    zeros = _zeros(c, 2 * (MODES - kept), xp)
+    zeros = xp.zeros((*c.shape[:-1], 2 * (MODES - kept)), dtype=c.dtype, device=c.device)
     return xp.concatenate([c[..., : kept + 1], zeros, c[..., n - kept :]], -1)
 
 
@@ -142,7 +142,7 @@ def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:
 
 def to_columns(c: Any, xp: Any = np) -> Any:
     """Return samples at `COLUMNS` equal steps of theta of the functions with modes c (..., 2 MODES + 1)."""
-    zeros = _zeros(c, COLUMNS - 2 * MODES - 1, xp)
+    zeros = xp.zeros((*c.shape[:-1], COLUMNS - 2 * MODES - 1), dtype=c.dtype, device=c.device)
     return xp.fft.ifft(xp.concatenate([c[..., : MODES + 1], zeros, c[..., MODES + 1 :]], -1), norm="forward")
 
 
@@ -150,10 +150,6 @@ def from_columns(values: Any, xp: Any = np) -> Any:
     """Return modes (..., 2 MODES + 1) of samples at `COLUMNS` equal steps of theta."""
     spectrum = xp.fft.fft(values) / COLUMNS
     return xp.concatenate([spectrum[..., : MODES + 1], spectrum[..., -MODES:]], -1)
-
-
-def _zeros(like: Any, count: int, xp: Any) -> Any:
-    return xp.zeros((*like.shape[:-1], count), dtype=like.dtype, device=like.device)
 
 
 def picard(

@@ -13,6 +13,7 @@ from functools import lru_cache
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of, read_only, wrapped
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import Loop
@@ -20,7 +21,6 @@ from meshonet.geometry.elementary import modulus
 from meshonet.geometry.rows.blade import BladeSurface, clustered
 from meshonet.geometry.rows.channel import MeridionalMap
 from meshonet.geometry.rows.row import Row
-from meshonet.geometry.threads import cached_property
 from meshonet.solvers.blocking.cascade.cascade import Cascade
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 

@@ -13,8 +13,9 @@ from functools import partial
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, wrapped
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.rows.row import Row
-from meshonet.geometry.threads import cached_property, in_threads, run_in_threads
+from meshonet.geometry.threads import in_threads, run_in_threads
 from meshonet.solvers.rows.columns import respaced_columns
 from meshonet.solvers.rows.key_sections import KeySection
 from meshonet.solvers.rows.key_tables import KeyTables

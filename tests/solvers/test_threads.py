@@ -12,11 +12,12 @@ from solver_shapes import bump, naca
 import meshonet
 from meshonet.geometry import threads
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import folded_cells, measure
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.summary import Quality
-from meshonet.geometry.threads import cached_property, in_threads, limited_to, thread_count, threads_for
+from meshonet.geometry.threads import in_threads, limited_to, thread_count, threads_for
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
 

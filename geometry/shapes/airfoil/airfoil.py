@@ -70,6 +70,8 @@ class Airfoil:
     """Why there is no `curve`: the surfaces of `points_curve` cross, as noisy ones do until `smoothed`."""
     gap: float
     """Distance between the ends of the two surfaces."""
+    nose_radius: float
+    """Radius of the leading edge: of a parabola as thick as the section at 2 % of the chord."""
     blunt: bool
     """The trailing edge is a straight base; a gap below `SHARP_GAP` chords has been closed at its middle."""
 
@@ -95,6 +97,7 @@ class Airfoil:
         self.chord = float(np.hypot(*(self.leading_edge - self.trailing_edge)))
         first, last = (curve.knots[1], curve.knots[-1]) if self.blunt else (0.0, curve.length)
         self._arcs = float(first), arc, float(last)
+        self.nose_radius = nose_radius(curve, arc, self.trailing_edge, self.chord)
 
     def __repr__(self) -> str:
         edge = f"blunt trailing edge {self.gap:.6g}" if self.blunt else "sharp or round trailing edge"
@@ -125,11 +128,6 @@ class Airfoil:
         lower, a, b, upper = self.curve.at(np.array([first + step, first, last, last - step]))
         u, v = upper - b, lower - a
         return math.degrees(math.atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]))
-
-    @cached_property
-    def nose_radius(self) -> float:
-        """Radius of the leading edge: of a parabola as thick as the section at 2 % of the chord."""
-        return nose_radius(self.points_curve, self._arcs[1], self.trailing_edge, self.chord)
 
     @property
     def outline_notes(self) -> tuple[str, ...]:

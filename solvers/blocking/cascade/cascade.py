@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, complex_of, pairs_of
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
@@ -15,7 +16,6 @@ from meshonet.geometry.elementary import times
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.reach import MOST_CELLS, check_reach
 from meshonet.geometry.shapes.assembly import far_loop
-from meshonet.geometry.threads import cached_property
 from meshonet.solvers.blocking.cascade.passage import NEAR, Passage
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.layers.rings import Ring, march_ring

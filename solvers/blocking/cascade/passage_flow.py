@@ -23,9 +23,10 @@ from functools import partial
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, Indices
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.elementary import arccos, arctan2, cosh, log, modulus, sinh, times
 from meshonet.geometry.linear import solve
-from meshonet.geometry.threads import cached_property, in_threads, run_in_threads, thread_count
+from meshonet.geometry.threads import in_threads, run_in_threads, thread_count
 
 _GAUSS = (-(3.0**-0.5), 3.0**-0.5)  # places in a side from -1 to 1, of weight 1
 _TINY = 1e-12  # in place of a distance of 0, where the integrand is 0 in the limit

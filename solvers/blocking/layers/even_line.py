@@ -17,9 +17,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, Indices
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
-from meshonet.geometry.threads import cached_property
 from meshonet.solvers.blocking.layers.attach import loop_nodes
 from meshonet.solvers.blocking.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
 from meshonet.solvers.least_squares import NormalEquations, Residuals

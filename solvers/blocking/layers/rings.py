@@ -16,12 +16,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.threads import cached_property
 from meshonet.kernels._native import nearest_points
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, steps_of_means
 from meshonet.solvers.blocking.layers.even_line import FINER, SLACK, Measures

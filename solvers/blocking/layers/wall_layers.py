@@ -9,11 +9,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.cached import cached_property
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_points
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.threads import cached_property
 from meshonet.kernels._native import nearest_points
 from meshonet.solvers.blocking.decomposition.named_counts import nearer
 from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides

@@ -74,9 +74,17 @@ def test_what_no_blocks_can_have_is_refused() -> None:
         meshonet.grid(empty, count={"inlet": 20, "outlet": 30}, cells=900)
     with pytest.raises(InputError, match=r"no side 'intake'.*inlet"):
         meshonet.grid(CHANNEL, count={"intake": 20}, cells=900)
-    straight = np.array([[0.0, 0.0], [3.0, 0.0], [6.0, 0.0], [6.0, 3.0], [0.0, 3.0]])
-    names = ["slip", "plate", "out", "top", "in"]
-    plate = Domain((ring_loop(straight, hole=False, corners=list(range(5)), names=names),))
-    assert counted(plate, count={"plate": 20}, cells=900)["plate"] == 20
     with pytest.raises(InputError, match="goes straight on"):
-        meshonet.grid(plate, count={"plate": 20}, cells=900, first_cell={"slip": 0.05, "plate": 0.05})
+        meshonet.grid(plate_behind(2.0), count={"plate": 20}, cells=900)
+
+
+def plate_behind(length: float) -> Domain:
+    """Return a box of 6 by 3 with a plate behind a slip wall of some length on its floor."""
+    points = np.array([[0.0, 0.0], [length, 0.0], [6.0, 0.0], [6.0, 3.0], [0.0, 3.0]])
+    names = ["slip", "plate", "out", "top", "in"]
+    return Domain((ring_loop(points, hole=False, corners=list(range(5)), names=names),))
+
+
+@pytest.mark.parametrize("layers", [{}, {"first_cell": {"slip": 0.05, "plate": 0.05}}], ids=["", "layers"])
+def test_a_plate_that_ends_on_a_line_of_symmetry_has_its_count(layers: dict[str, object]) -> None:
+    assert counted(plate_behind(3.0), count={"plate": 20}, cells=900, **layers)["plate"] == 20
