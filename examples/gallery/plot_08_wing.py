@@ -12,7 +12,7 @@ from meshonet.geometry.shapes.airfoil.naca import naca
 root = meshonet.Section(naca("2412"), chord=1.0, z=0.0)
 tip = meshonet.Section(naca("0012"), chord=0.5, z=2.0, x=0.4, twist=-2.0)
 grid = meshonet.stack(meshonet.Stack((root, tip)), around=81, span=25, first_cell=1e-3, far_field=10)
-meshonet.plot(grid, "wing.png", up="y", seen_from=(-40, 25))
+meshonet.plot(grid, "wing.png", up="y", seen_from=(-30, 40))
 
 # %%
 # A slice through the volume at half span:
