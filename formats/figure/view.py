@@ -96,8 +96,8 @@ class View:
 
 def check_flat(view: View) -> None:
     """Raise InputError for settings that only grids in space have: a slice, a direction of view, an axis."""
-    given = {"span": view.span or None, "meridional": view.meridional or None, "slice": view.slice}
-    for name, value in (given | {"seen_from": view.seen_from, "up": view.up}).items():
+    settings = {"span": view.span or None, "meridional": view.meridional or None, "slice": view.slice}
+    for name, value in (settings | {"seen_from": view.seen_from, "up": view.up}).items():
         if value is not None:
             raise InputError("the grid is in the plane", f"leave {{{name}}} out", parameter=name)
 

@@ -20,7 +20,7 @@ from meshonet.geometry.arrays import extent_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.domain.loop import CORNER_DEG, Loop
+from meshonet.geometry.domain.loop import Loop, turns_sharply
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.shape import Shape
@@ -117,7 +117,8 @@ def four_sided(domain: Domain) -> bool:
 
 def convex_corners(loop: Loop) -> list[int]:
     """Return the numbers of the points of a loop at which it has convex corners."""
-    convex = loop.corner_angles < 180.0 - CORNER_DEG
+    turn = np.radians(180.0 - loop.corner_angles)
+    convex = turns_sharply(turn) & (turn > 0.0)
     return [point for point, is_convex in zip(loop.corners, convex, strict=True) if is_convex]
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Indices, Topology, extent_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.domain.loop import turns_sharply
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
@@ -24,8 +25,6 @@ from meshonet.geometry.polygon.self_intersection import check_outline
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.spacing.along_curve import stretch_arcs
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
-
-_LEAST_TURN = np.radians(30.0)  # least turn of the four corners of a domain
 
 
 class Outline:
@@ -118,7 +117,7 @@ class Outline:
         """Return the convex corners, in order along the curve."""
         turn = turning(self.curve.points, closed=True) * (1.0 if self._left else -1.0)
         index = self.curve.corner_index
-        return np.asarray(index[turn[index] > _LEAST_TURN])
+        return np.asarray(index[turns_sharply(turn[index]) & (turn[index] > 0.0)])
 
     def _quad(self, sampling: Sampling) -> Boundary:
         ni, nj = sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ

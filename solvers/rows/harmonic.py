@@ -10,7 +10,7 @@ from meshonet.solvers.sparse import SparsePattern
 
 
 class HarmonicMoves:
-    """Harmonic displacements of the nodes of meshes of the same quads, of which the same nodes are given.
+    """Harmonic displacements of the nodes of meshes of the same quads, with the same nodes prescribed.
 
     Neighbours weigh as the inverse square of their distance, so that small cells keep their form. Nodes with
     a partner move as that does.
@@ -18,25 +18,25 @@ class HarmonicMoves:
     Parameters
     ----------
     mesh : one of the meshes.
-    given : (n,) nodes whose displacements are given.
+    prescribed : (n,) nodes whose displacements are prescribed.
     """
 
-    def __init__(self, mesh: QuadMesh, given: Bools) -> None:
+    def __init__(self, mesh: QuadMesh, prescribed: Bools) -> None:
         partner = mesh.places.partner
         self.own = np.where(partner >= 0, partner, np.arange(len(partner)))
-        self.given = given | given[self.own]
-        self.free = np.flatnonzero(~self.given & (partner < 0))
-        number = np.full(len(given), -1)
+        self.prescribed = prescribed | prescribed[self.own]
+        self.free = np.flatnonzero(~self.prescribed & (partner < 0))
+        number = np.full(len(prescribed), -1)
         number[self.free] = np.arange(len(self.free))
         self.edges = self.own[mesh.edges].T
         a, b = self.edges
-        self.inner = ~self.given[a] & ~self.given[b]
+        self.inner = ~self.prescribed[a] & ~self.prescribed[b]
         diagonal, inner = np.arange(len(self.free)), (number[ends[self.inner]] for ends in (a, b))
         self.pattern = SparsePattern(len(self.free), *(np.concatenate([diagonal, each]) for each in inner))
 
     def of(self, mesh: QuadMesh, moves: Floats) -> Floats:
-        """Return displacements (n, 2): `moves` (n, 2) where they are given, elsewhere means of neighbours."""
-        moves = np.where(self.given[:, None], moves, 0.0)
+        """Return displacements (n, 2): `moves` (n, 2) where prescribed, elsewhere means of neighbours."""
+        moves = np.where(self.prescribed[:, None], moves, 0.0)
         (a, b), count = self.edges, len(moves)
         off = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
         weight = 1.0 / (off**2).sum(axis=1)
@@ -44,7 +44,7 @@ class HarmonicMoves:
         factor = self.pattern.factor(np.concatenate([diagonal, -weight[self.inner]]))
         right = np.zeros((count, 2))
         for one, other in ((a, b), (b, a)):
-            side = ~self.given[one] & self.given[other]
+            side = ~self.prescribed[one] & self.prescribed[other]
             for axis in (0, 1):
                 right[:, axis] += np.bincount(one[side], weight[side] * moves[other[side], axis], count)
         moves[self.free] = factor.solve(right[self.free])

@@ -62,8 +62,8 @@ def test_growth_beyond_its_limit_is_in_the_report_and_no_other(
     steps = largest_step_ratio(inputs / "grid.cgns")
     assert keeps == (not reported) == (judged.code == 0) == (steps <= limit * (1.0 + 1e-6))
     if reported:
-        value, place, given = reported[0]
+        value, place, growth = reported[0]
         assert float(value) == pytest.approx(steps, abs=6e-4)
         assert float(value) == pytest.approx(float(figure[0][0]), abs=6e-4)
         assert place.endswith(f" along {figure[0][1]}")
-        assert float(given) == limit
+        assert float(growth) == limit

@@ -316,9 +316,9 @@ def test_a_problem_takes_one_mesh_after_the_other() -> None:
     problem = Problem(meshes[0], unknowns, walls, None, None)
     for each in meshes:
         problem.take(each)
-        found = minimise(problem, 300, 1e-8, (SIZED,), (1.0, 0.1))
+        optimum = minimise(problem, 300, 1e-8, (SIZED,), (1.0, 0.1))
         alone = optimise(each, iterations=300, tolerance=1e-8, held=held, growth=(1.0, 0.1))
-        assert found.valid
-        assert found.value == pytest.approx(alone.value, rel=1e-6)
-        np.testing.assert_array_equal(found.mesh.nodes[held], mesh.nodes[held])
-        np.testing.assert_allclose(found.mesh.nodes, alone.mesh.nodes, atol=1e-3)
+        assert optimum.valid
+        assert optimum.value == pytest.approx(alone.value, rel=1e-6)
+        np.testing.assert_array_equal(optimum.mesh.nodes[held], mesh.nodes[held])
+        np.testing.assert_allclose(optimum.mesh.nodes, alone.mesh.nodes, atol=1e-3)

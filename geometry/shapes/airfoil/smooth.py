@@ -42,20 +42,20 @@ def smooth_ring(section: CleanSection, nose_radius: float, limit: float) -> tupl
 
     Raises InputError: SciPy is not installed.
     """
-    given = np.concatenate([section.points, section.points[: 0 if section.blunt else 1]])
-    points = _closed(given, limit)
+    unsmoothed = np.concatenate([section.points, section.points[: 0 if section.blunt else 1]])
+    points = _closed(unsmoothed, limit)
     nose = int(np.argmax(norms(points - points[0])))
     corners = [k for k in section.corners.tolist() if _stands_out(points, k, limit)]
     stops = sorted({0, len(points) - 1, *corners})
     parts = [_fitted(points[a : b + 1], points[nose], nose_radius, limit) for a, b in pairwise(stops)]
     ring = np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]])
     ring = ring if (ring[0] != ring[-1]).any() else ring[:-1]
-    given = given[: len(ring)]
+    unsmoothed = unsmoothed[: len(ring)]
     away = wedged_apart(ring, nose, _THIN * limit) - ring
     away[[k for k in stops if k < len(ring)]] = 0.0
-    left = np.maximum(limit - norms(ring - given), 0.0)
+    left = np.maximum(limit - norms(ring - unsmoothed), 0.0)
     ring = ring + away * np.minimum(1.0, left / np.maximum(norms(away), np.finfo(float).tiny))[:, None]
-    return ring, float(norms(ring - given).max())
+    return ring, float(norms(ring - unsmoothed).max())
 
 
 def smoothing_notes(before: Airfoil, after: Airfoil, most: float) -> tuple[str, ...]:
