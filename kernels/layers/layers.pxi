@@ -10,6 +10,14 @@ cdef extern from "layers/layers.h":
     void redistribute_lines(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const double *first, const double *fade,
                             int threads, double *scratch) nogil
 
+cdef extern from "layers/sampled.h":
+    ctypedef struct NodeLines:
+        ptrdiff_t lines, nodes, size
+        const double *node
+        const double *arc
+    void c_sampled_lines "sampled_lines"(const NodeLines *all, const double *at, ptrdiff_t count, double *points,
+                                         double *slopes) nogil
+
 cdef extern from "layers/law.h":
     void c_layer_law "layer_law"(const double *wanted, const double *slopes, ptrdiff_t n, ptrdiff_t rows, double most,
                                  double steeper, double *cells) nogil
@@ -76,3 +84,18 @@ def layer_law(wanted, slopes, double most, double steeper, cells):
     cdef Written to = fills(cells, (n, rows))
     with nogil:
         c_layer_law(sums, ends, n, rows, most, steeper, to)
+
+
+def sampled_lines(lines, arcs, at, points):
+    """Fill `points` (k, n, c) at arc lengths `at` (k, n) of lines (k, m >= 3, c) with nodes at `arcs` (k, m); see ``sampled.h``."""
+    cdef ptrdiff_t k, m, c = lines.shape[2], n = at.shape[1]
+    k, m = arcs.shape
+    if m < 3 or n < 1:
+        raise ValueError("lines of fewer than 3 nodes, or no points")
+    cdef NodeLines all = NodeLines(k, m, c, reads(lines, (k, m, c)), reads(arcs, (k, m)))
+    cdef Read places = reads(at, (k, n))
+    cdef Written to = fills(points, (k, n, c))
+    slopes = np.empty((m, c))
+    cdef Written room = fills(slopes, (m, c))
+    with nogil:
+        c_sampled_lines(&all, places, n, to, room)

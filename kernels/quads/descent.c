@@ -134,7 +134,8 @@ void quad_descent_free(QuadDescent *d)
 
 size_t quad_descent_doubles(const QuadDescent *d, ptrdiff_t unknowns)
 {
-    return (size_t)(2 * d->mesh.nodes + 5 * unknowns + 2 * d->mesh.edges + 9 * d->walls.nodes);
+    return (size_t)(2 * d->mesh.nodes + 5 * unknowns + 2 * d->mesh.edges + 9 * d->walls.nodes) +
+           quad_batches(&d->mesh) / sizeof(double) + 1;
 }
 
 void quad_descent_place(QuadDescent *d, ptrdiff_t unknowns, double *doubles, float *floats)
@@ -148,17 +149,18 @@ void quad_descent_place(QuadDescent *d, ptrdiff_t unknowns, double *doubles, flo
     w->tangent = d->mesh.force + d->mesh.edges, w->turned = w->tangent + 2 * count;
     w->turning = w->turned + count, w->force = w->turning + count, w->place = w->force + count;
     w->point = w->place + count;
+    d->mesh.rests = (unsigned char *)(w->point + 2 * count);
 }
 
 /* Nodes from unknowns. */
-static void set_nodes(QuadDescent *d, const double *at)
+static void set_nodes(QuadDescent *d, const double *at, int first_time)
 {
     for (ptrdiff_t k = 0; k < d->free_count; k++)
         d->x[2 * d->free[k]] = at[2 * k], d->x[2 * d->free[k] + 1] = at[2 * k + 1];
     for (ptrdiff_t k = 0; k < d->walls.nodes; k++)
         if (d->walls.unknown[k] >= 0)
             d->walls.arc[k] = at[d->walls.unknown[k]];
-    walls_place(&d->walls, d->x);
+    walls_place(&d->walls, d->x, first_time);
     for (ptrdiff_t k = 0; k < d->tied_count; k++)
         for (int c = 0; c < 2; c++)
             d->x[2 * d->tied[2 * k] + c] = d->x[2 * d->tied[2 * k + 1] + c] + d->shift[2 * k + c];
@@ -203,7 +205,7 @@ static double attempt(void *problem, double factor, double *smallest)
     const float *restrict direction = d->steps.direction;
     for (ptrdiff_t k = 0; k < d->steps.n; k++)
         d->there[k] = d->here[k] + (factor > 0.0 ? factor * (double)direction[k] : 0.0);
-    set_nodes(d, d->there);
+    set_nodes(d, d->there, 0);
     return value_at_nodes(d, d->steps.fresh, smallest);
 }
 
@@ -263,14 +265,16 @@ int quad_descent_start(QuadDescent *d, int renew)
     s->largest_move = largest_move;
     set_sizes(d);
     get_unknowns(d, d->here);
-    set_nodes(d, d->here);
+    set_nodes(d, d->here, 1);
     const int failed = s->n > 0 && (renew || !d->stiffness.values) ? make_stiffness(d) : 0;
-    if (!failed)
+    if (!failed) {
+        quad_rest(&d->mesh, d->x, d->unknown); /* after the preconditioner, which uses the same room */
         steps_start(s);
+    }
     return failed;
 }
 
 void quad_descent_end(QuadDescent *d)
 {
-    set_nodes(d, d->here);
+    set_nodes(d, d->here, 0);
 }

@@ -121,23 +121,61 @@ static double ease(const QuadMesh *mesh, const double *x, double *g)
     return energy;
 }
 
+/* The logarithms of the lengths of a batch of edges, and the first factors of their forces. */
+MESHONET_INLINE void batch_lengths(const QuadMesh *mesh, const double *restrict x, ptrdiff_t first, ptrdiff_t count)
+{
+    const ptrdiff_t *restrict edge = mesh->edge + 2 * first;
+    double *restrict length = mesh->length + first, *restrict force = mesh->force + first;
+    const double *restrict target = mesh->target + first;
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t k = 0; k < count; k++) {
+        const ptrdiff_t a = 2 * edge[2 * k], b = 2 * edge[2 * k + 1];
+        const double dx = x[b] - x[a], dy = x[b + 1] - x[a + 1];
+        length[k] = 0.5 * logarithm(dx * dx + dy * dy + 1e-300, force + k) - target[k];
+    }
+}
+
+static ptrdiff_t in_batch(const QuadMesh *mesh, ptrdiff_t first)
+{
+    return mesh->edges - first < BATCH ? mesh->edges - first : BATCH;
+}
+
+size_t quad_batches(const QuadMesh *mesh)
+{
+    return (size_t)((mesh->edges + BATCH - 1) / BATCH);
+}
+
+MESHONET_CLONES
+void quad_rest(const QuadMesh *mesh, const double *x, const ptrdiff_t *unknown)
+{
+    for (ptrdiff_t first = 0; first < mesh->edges; first += BATCH) {
+        int rests = 1;
+        for (ptrdiff_t k = first; k < first + in_batch(mesh, first) && rests; k++) {
+            rests = unknown[mesh->edge[2 * k]] < 0 && unknown[mesh->edge[2 * k + 1]] < 0;
+            for (int i = 0; i < NEXT_EDGES; i++)
+                rests = rests && mesh->line[NEXT_EDGES * k + i] == k;
+        }
+        mesh->rests[first / BATCH] = (unsigned char)rests;
+        if (rests)
+            batch_lengths(mesh, x, first, in_batch(mesh, first));
+    }
+}
+
 MESHONET_CLONES
 static double all_pairs(const QuadMesh *mesh, const double *restrict x, double *restrict g)
 {
     const ptrdiff_t *restrict edge = mesh->edge, *restrict line = mesh->line, n = mesh->edges;
     double *restrict length = mesh->length, *restrict force = mesh->force;
-    const double *restrict target = mesh->target;
     const double cells = (double)mesh->cells, pairs = (double)mesh->pairs, limit = mesh->limit;
     const double by = mesh->smoothness * cells / pairs, steep = mesh->steep * cells / pairs;
     double energy = 0.0, excess = 0.0;
-    MESHONET_INDEPENDENT
-    for (ptrdiff_t k = 0; k < n; k++) {
-        const ptrdiff_t a = 2 * edge[2 * k], b = 2 * edge[2 * k + 1];
-        const double dx = x[b] - x[a], dy = x[b + 1] - x[a + 1];
-        length[k] = 0.5 * logarithm(dx * dx + dy * dy + 1e-300, force + k) - target[k];
-    }
+    for (ptrdiff_t first = 0; first < n; first += BATCH)
+        if (!mesh->rests[first / BATCH])
+            batch_lengths(mesh, x, first, in_batch(mesh, first));
     for (ptrdiff_t first = 0; first < n; first += BATCH) {
-        const ptrdiff_t count = n - first < BATCH ? n - first : BATCH;
+        if (mesh->rests[first / BATCH])
+            continue;
+        const ptrdiff_t count = in_batch(mesh, first);
         double squares[BATCH], excesses[BATCH];
         MESHONET_INDEPENDENT
         for (ptrdiff_t l = 0; l < count; l++) {
@@ -166,11 +204,12 @@ static double all_pairs(const QuadMesh *mesh, const double *restrict x, double *
             excess += more * more;
             g[a] -= by_x * dx, g[a + 1] -= by_x * dy, g[b] += by_x * dx, g[b + 1] += by_x * dy;
         }
-    for (ptrdiff_t k = 0; k < n; k++) {
-        const ptrdiff_t a = 2 * edge[2 * k], b = 2 * edge[2 * k + 1];
-        const double fx = force[k] * (x[b] - x[a]), fy = force[k] * (x[b + 1] - x[a + 1]);
-        g[a] -= fx, g[a + 1] -= fy, g[b] += fx, g[b + 1] += fy;
-    }
+    for (ptrdiff_t first = 0; first < n; first += BATCH)
+        for (ptrdiff_t k = first; !mesh->rests[first / BATCH] && k < first + in_batch(mesh, first); k++) {
+            const ptrdiff_t a = 2 * edge[2 * k], b = 2 * edge[2 * k + 1];
+            const double fx = force[k] * (x[b] - x[a]), fy = force[k] * (x[b + 1] - x[a + 1]);
+            g[a] -= fx, g[a + 1] -= fy, g[b] += fx, g[b + 1] += fy;
+        }
     return 0.5 * (by * energy + steep * excess);
 }
 

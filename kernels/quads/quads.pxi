@@ -87,6 +87,9 @@ def smallest_corners(nodes, quads):
     return smallest
 
 
+cdef ptrdiff_t CELLS_UNHEARD = 1 << 20  # visits of cells between two looks at signals, for which other threads may have to wait
+
+
 cdef class QuadDescent:
     """Minimisations of the functional over quads that share nodes (``descent.h``); moves `nodes` (n, 2) and `arc` (w,).
 
@@ -171,18 +174,21 @@ cdef class QuadDescent:
         With `renew` the preconditioner is first updated to the current nodes. `steep` is the weight of ratios of
         neighbouring lengths whose logarithms exceed `limit`.
         """
-        cdef int done = 0, state = GOES_ON
+        cdef int done = 0, state = GOES_ON, stop
         cdef QuadMesh *mesh = &self.state.mesh
         cdef Steps *steps = &self.state.steps
+        cdef ptrdiff_t unheard = max(1, CELLS_UNHEARD // max(mesh.cells, 1))
         mesh.shape, mesh.smoothness, mesh.epsilon, mesh.size = shape, smoothness, epsilon, size
         mesh.steep, mesh.limit = steep, limit
         steps.reach, steps.farthest, steps.still, steps.gain = 0.125, 1.0, float("inf"), gain
         self._start(renew)
         while done < most and state == GOES_ON and steps.n > 0:
             PyErr_CheckSignals()
+            stop = <int>min(most, done + unheard)
             with nogil:
-                state = steps_take(steps)
-            done += 1
+                while done < stop and state == GOES_ON:
+                    state = steps_take(steps)
+                    done += 1
         with nogil:
             quad_descent_end(&self.state)
         return steps.value, steps.smallest, done

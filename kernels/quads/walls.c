@@ -6,10 +6,20 @@
 
 #define LEAST 1e-9 /* of a loop's length: the least distance between its nodes */
 
-void walls_place(const Walls *walls, double *x)
+static int slides(const Walls *walls, const WallLoop *loop)
+{
+    for (ptrdiff_t k = loop->first_node; k < loop->last_node; k++)
+        if (walls->unknown[k] >= 0)
+            return 1;
+    return 0;
+}
+
+void walls_place(const Walls *walls, double *x, int first_time)
 {
     for (ptrdiff_t l = 0; l < walls->loops; l++) {
         const WallLoop *loop = walls->loop + l;
+        if (!first_time && !slides(walls, loop))
+            continue;
         const ptrdiff_t first = loop->first_node, count = loop->last_node - first, n = loop->lengths.n;
         const double length = loop->lengths.table[n * loop->lengths.pieces];
         ptrdiff_t *interval = walls->interval + first;

@@ -23,8 +23,9 @@ typedef struct {
     ptrdiff_t *interval;
 } Walls;
 
-/* Put the nodes x (nodes of the mesh, 2) that slide at their arc lengths; find tangents and turning. */
-void walls_place(const Walls *walls, double *x);
+/* Put the nodes x (nodes of the mesh, 2) that slide at their arc lengths; find tangents and turning, of loops without
+   such nodes only the first time. */
+void walls_place(const Walls *walls, double *x, int first_time);
 
 /* Return `weight` times the sum over wall edges of the squares (and sixth powers) of what they turn by beyond `allowed`,
    and its derivative by the arc lengths in `force`; infinite where nodes are out of order. */

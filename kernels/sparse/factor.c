@@ -94,6 +94,10 @@ void sparse_solve(const SparsePattern *a, const int *lower_row, const double *lo
         for (ptrdiff_t c = 0; c < sides; c++)
             scratch[k * sides + c] = x[a->order[k] * sides + c];
     ptrdiff_t side = 0;
+    if (sides == 2) { /* known to the compiler */
+        solve(a, lower_row, lower, pivots, 2, 2, scratch);
+        side = 2;
+    }
     for (; side + 2 <= sides; side += 2)
         solve(a, lower_row, lower, pivots, sides, 2, scratch + side);
     if (side < sides)

@@ -12,6 +12,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
+from meshonet.kernels._native import sampled_lines
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,19 +104,11 @@ def spaced(lines: Floats, law: Callable[[Floats], Floats]) -> Floats:
 
 
 def sampled(lines: Floats, arc: Floats, at: Floats) -> Floats:
-    """Return points (k, n, 2) at arcs (k, n) on cubic pieces whose tangents are those of parabolas."""
-    h = np.diff(arc, axis=1)[..., None]
-    delta = np.diff(lines, axis=1) / h
-    slope = np.empty_like(lines)
-    slope[:, 1:-1] = (delta[:, :-1] * h[:, 1:] + delta[:, 1:] * h[:, :-1]) / (h[:, :-1] + h[:, 1:])
-    slope[:, 0] = 2.0 * delta[:, 0] - slope[:, 1]
-    slope[:, -1] = 2.0 * delta[:, -1] - slope[:, -2]
-    row = np.arange(len(lines))[:, None]
-    piece = np.stack([np.searchsorted(a, s, side="right") for a, s in zip(arc, at, strict=True)]) - 1
-    piece = np.clip(piece, 0, h.shape[1] - 1)
-    step, start, stop = h[row, piece], lines[row, piece], lines[row, piece + 1]
-    q = (at - arc[row, piece])[..., None] / step
-    bend = q * (1 - q) * step * ((1 - q) * slope[row, piece] - q * slope[row, piece + 1])
-    points = start + q * q * (3 - 2 * q) * (stop - start) + bend
-    points[:, 0], points[:, -1] = lines[:, 0], lines[:, -1]
-    return np.asarray(points)
+    """Return points (k, n, ...) at arcs (k, n) of lines (k, m, ...), on cubic pieces.
+
+    Their tangents are those of parabolas through three nodes.
+    """
+    points = np.empty((*at.shape, lines.shape[2]))
+    lines, arc, at = (np.ascontiguousarray(each) for each in (lines, arc, at))
+    sampled_lines(lines, arc, at, points)
+    return points
