@@ -50,7 +50,7 @@ def around_base(
     south = np.concatenate([lines.lower[:0:-1], lines.wall[:-1], lines.upper])
     west, east = (straight(south[k], lines.north[k], lines.nj) for k in (0, -1))
     boundary = Boundary(south, lines.north, west, east, "quad", name=lines.name, chord=lines.chord)
-    front = Front(boundary, wake, ends / first)
+    front = Front(boundary, wake, ends / first, concave=lines.turned)
     nodes = marched(front, lines.nj - 1, first, growth, free_rows, constant, multiple)
     grid = _joined(nodes, between, wake, lines.name, first)
     heights = norms(

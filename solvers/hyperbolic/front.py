@@ -44,13 +44,16 @@ class Front:
     ends: Floats | None  # (2, 2) unit directions in which the ends of an open front move
     widening: Floats | None  # (n,) factors of the first step, relative to the wall, for an open front
     edge: Edge | None  # the sharpest corner of a closed front
+    concave: bool  # it has corners that turn towards the grid, at its smallest cells
 
-    def __init__(self, boundary: Boundary, wake: int = 0, widening: Floats | None = None) -> None:
+    def __init__(
+        self, boundary: Boundary, wake: int = 0, widening: Floats | None = None, *, concave: bool = False
+    ) -> None:
         """Take an ``o`` or ``c`` boundary, or a ``quad`` with a wake of `wake` cells at both ends of south.
 
         `widening` (wake + 1,) are the factors of the first-cell height along this wake, from the edge on.
         """
-        self._south = boundary.south
+        self._south, self.concave = boundary.south, concave
         self._closed = boundary.periodic
         self.ends = self.widening = None
         self.slender, self.edge = 0.0, None

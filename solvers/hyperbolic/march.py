@@ -15,7 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import exp
@@ -54,6 +54,10 @@ With fewer rows some lines would be at the limit everywhere and those beside the
 
 EVENINGS = 6  # most marches in which steps are corrected so that growth is even
 WITHIN = 0.998  # fraction of the growth beyond 1 that these aim at
+
+AT_CORNERS = 12  # most marches from a front with concave corners, whose first steps are corrected
+ALIKE = 1e-6  # relative error of first cells from which these corrections go on
+EQUAL = 1e-9  # relative difference of steps that are equal
 
 AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a level
 
@@ -193,8 +197,13 @@ def _evened(
         rate = math.log(1.0 + (growth - 1.0) * WITHIN)
         shares = even_shares(nodes, steps, rate, constant)
         nodes, steps = _marched(front, cells, first, settings, constant, edge=None, shares=shares)
-    if nodes is not None and growth is not None and float(fastest(nodes).max()) > math.log(growth):
-        limit_growth(nodes, growth, constant)  # beside a concave corner even equal steps grow
+    if nodes is not None and growth is not None:
+        faster = fastest(nodes) > math.log(growth)
+        # beside a concave corner even equal steps grow; other levels need more rows there, since nodes moved
+        # along some lines but not along their neighbours bend cells as narrow as those at the corner
+        more_rows = front.concave and bool((faster & (np.diff(steps) > EQUAL * steps[1:])).any())
+        if faster.any() and not more_rows:
+            limit_growth(nodes, growth, constant)
     return nodes
 
 
@@ -225,13 +234,20 @@ def _marched(
     )
     threads = threads_for(levels[0].size)
     distance = distance_to_march(front, first, cells, settings, constant, edge)
-    for _ in range(4):
+    widening = front.widening
+    for _ in range(AT_CORNERS if front.concave else 4):
         steps = level_steps(first, distance, cells, constant, edge, shares)
         with filling("grid", "row", levels[0, 1:, 0]):
-            hyperbolic_march(levels[0], levels[1], steps, *knobs, front.ends, front.widening, None, threads)
+            hyperbolic_march(levels[0], levels[1], steps, *knobs, front.ends, widening, None, threads)
         reached = front.reach(levels)
         if not math.isfinite(reached):
             return None, steps
+        if front.concave and widening is not None:
+            # were nodes moved afterwards, only the lines from the corner would, past their neighbours
+            wrong = norms((levels[:, 1] - levels[:, 0]).T) / front.heights(first)
+            widening = widening / wrong
+            if float(np.abs(wrong - 1.0).max()) > ALIKE:
+                continue
         if NEAREST <= reached / front.outer <= FARTHEST:
             break
         distance *= (0.75 * NEAREST + 0.25 * FARTHEST) * front.outer / reached

@@ -168,3 +168,44 @@ def test_first_cells_too_thick_for_a_base_are_noted_with_ones_that_fit(base: flo
     none, angle = advice(fits)
     assert not none
     assert angle < 130.0
+
+
+def rounded(base: float, upper: float, lower: float) -> Airfoil:
+    """`blunt` whose surfaces turn by `upper` and `lower` degrees towards the base over 40 % of its height."""
+    reach, sides = 0.4 * base, []
+    points = blunt(base + reach).curve.points[1:]
+    for sign, turn in ((1.0, np.radians(upper)), (-1.0, np.radians(lower))):
+        side = points[sign * points[:, 1] > 0]
+        side = side[np.argsort(side[:, 0])]
+        side = side[side[:, 0] < 1.0 - 1.3 * reach]
+        angle = np.linspace(0.0, turn, 24)
+        x = 1.0 - reach + reach * np.sin(angle) / np.sin(turn)
+        y = abs(side[-1, 1]) - reach * (1.0 - np.cos(angle)) / np.sin(turn)
+        sides.append(np.concatenate([side, np.stack([x, sign * y], axis=1)]))
+    return Airfoil(np.concatenate([sides[0][::-1], [[0.0, 0.0]], sides[1]]), "rounded")
+
+
+@pytest.mark.parametrize("ni", [400, 401])
+@pytest.mark.parametrize(("base", "upper", "lower"), [(0.2, 60, 50), (0.04, 75, 2), (0.1, 45, 70)])
+def test_flanks_rounded_towards_the_base_leave_even_cells(
+    base: float, upper: float, lower: float, ni: int
+) -> None:
+    result = made(rounded(base, upper, lower), growth=1.15, ni=ni, nj=130)  # were 150 to 178 degrees
+    report = quality_report(result.grid)
+    assert result.quality.folded == 0
+    assert report.quality["max_angle"].max < 135.0
+    for figure, most in (("wall_growth", 1.15), ("growth", 1.7)):
+        value = report.figures(figure)
+        assert value is not None
+        assert value.value <= most
+    for row in report.figures.wall_rows:
+        assert row.height.max == pytest.approx(row.height.min, rel=1e-9)
+
+
+def test_too_few_rows_beside_a_rounded_flank_are_refused_with_as_many_as_suffice() -> None:
+    body = rounded(0.2, 60, 50)
+    with pytest.raises(InputError, match="rows of nodes cannot reach the far field growing by 1.15") as told:
+        made(body, growth=1.15, ni=401, nj=97)
+    least = re.search(r"use (\d+) rows or more", str(told.value))
+    assert least is not None
+    assert made(body, growth=1.15, ni=401, nj=int(least[1])).quality["max_angle"].max < 135.0
