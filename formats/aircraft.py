@@ -14,6 +14,10 @@
     on = "fuselage"
     file = "wing.toml"              # or [[wings.sections]], as in the file of a wing
 
+    [[wings]]                       # or patches of a surface, as [[bodies]] may be too
+    surface = "jet.cgns"            # Plot3D, CGNS or VTK, half of it
+    patches = [1, 2]                # numbers or names; without: those with no side in the plane of symmetry
+
     [[wings]]                       # others before or behind it
     name = "tail"                   # of its patch
     file = "tail.toml"
@@ -26,12 +30,15 @@ from pathlib import Path
 
 import numpy as np
 
+from meshonet.formats.aircraft_surface import surface_body, surface_wing
 from meshonet.formats.rows.points import point_blocks
 from meshonet.formats.source import Source, open_source, printable
 from meshonet.formats.stack_table import stack_table
 from meshonet.formats.toml_table import Table, toml_table
 from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.aircraft.axes import FILE_AXES, AircraftAxes
 from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.aircraft.surface_wing import SurfaceWing
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.sections.stack import Stack
@@ -48,11 +55,15 @@ def read_aircraft(data: Table, source: Source) -> Aircraft:
     bodies, wings = data.rows("bodies"), data.rows("wings")
     if len(bodies) > 1:
         raise bodies[1].error("name", "a second one of bodies", "give one body")
-    body = _body(bodies[0], folder)
-    wing, *others = [_wing(row, folder, body) for row in wings]
+    axes, notes = FILE_AXES, tuple[str, ...]()
+    if "surface" in bodies[0].data:
+        body, axes, notes = surface_body(bodies[0], folder)
+    else:
+        body = _body(bodies[0], folder)
+    wing, *others = [_wing(row, folder, body, axes) for row in wings]
     name = data.text("name", source.stem or "aircraft")
     half = data.flag("half", default=True)
-    return Aircraft(body, wing, name, half, tuple(others))
+    return Aircraft(body, wing, name, half, tuple(others), axes, notes)
 
 
 def _body(row: Table, folder: Path) -> Body:
@@ -77,10 +88,12 @@ def _from_file(row: Table, folder: Path) -> Floats:
     return blocks[0]
 
 
-def _wing(row: Table, folder: Path, body: Body) -> Stack:
+def _wing(row: Table, folder: Path, body: Body, axes: AircraftAxes) -> Stack | SurfaceWing:
     on = row.text("on", body.name)
     if on != body.name:
         raise row.error("on", f"{printable(on)} is no body", f"use {body.name}")
+    if "surface" in row.data:
+        return surface_wing(row, folder, axes)
     if "file" not in row.data:
         with row.located():
             return stack_table(row, folder, "wing", ("on",))

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from aircraft_surfaces import body_patch, wing_patches, written
 from command_lines import run_line
 from periodic_domains import write_bank
 from printed import differences
@@ -146,6 +147,7 @@ def all_inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (tmp_path / name).write_text("\n".join(f"{x:.8f} {y:.8f}" for x, y in loop) + "\n")
     cubed_sphere().write(tmp_path / "wing.xyz")
     half_sphere().write(tmp_path / "m6.fmt")
+    written(tmp_path / "model.xyz", [body_patch(), *wing_patches()])
     write_step(tmp_path / "wing.step")
     for name in ("duct.xyz", "box.xyz", "wing.cgns"):
         Grid((Block(box()),)).write(tmp_path / name)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from meshonet.geometry.aircraft.axes import FILE_AXES, AircraftAxes
 from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.aircraft.surface_wing import SurfaceWing
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -21,15 +23,20 @@ class Aircraft:
     ----------
     body : Body
         The fuselage.
-    wing : Stack
-        Sections from the inside of the body to the tip. Its longest chord is the unit of the grid's lengths.
+    wing : Stack or SurfaceWing
+        Sections from the inside of the body to the tip, or its surface. Its longest chord is the unit of
+        the grid's lengths.
     name : str, optional
         Of the aircraft.
     half : bool, optional
         Whether the grid ends in the plane of symmetry; otherwise it is joined there to its mirror image,
         whose patches have the same names.
-    others : tuple of Stack, optional
+    others : tuple of Stack or SurfaceWing, optional
         Further wings before or behind it, such as a tail plane or canards, each with a name of its own.
+    axes : AircraftAxes, optional
+        Axes of the file of its surfaces, which the grid is turned to.
+    notes : tuple of str, optional
+        What was changed of the body.
 
     Raises
     ------
@@ -50,22 +57,25 @@ class Aircraft:
     """
 
     body: Body
-    wing: Stack
+    wing: Stack | SurfaceWing
     name: str = "aircraft"
     half: bool = True
-    others: tuple[Stack, ...] = ()
+    others: tuple[Stack | SurfaceWing, ...] = ()
+    axes: AircraftAxes = FILE_AXES
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         taken = ["symmetry", "farfield"]
         for number, (wing, names) in enumerate(zip(self.wings, self.patches, strict=True)):
             at = f"wings[{number}]"
-            _refuse_no_wing(wing, at)
+            if isinstance(wing, Stack):
+                _refuse_no_wing(wing, at)
             _refuse_name(names[0], [*taken, "tip"], f"{at}.name")
             taken += names
         _refuse_name(self.body.name, taken, "bodies[0].name")
 
     @property
-    def wings(self) -> tuple[Stack, ...]:
+    def wings(self) -> tuple[Stack | SurfaceWing, ...]:
         """The wing and the others."""
         return (self.wing, *self.others)
 

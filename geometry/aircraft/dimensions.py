@@ -50,7 +50,7 @@ def aircraft_dimensions(aircraft: Aircraft, first_cell: float, far_field: float)
     return AircraftDimensions(
         length=aircraft.body.extent,
         diameter=2.0 * float(np.max(radii)),
-        spans={name: 2.0 * wing.sections[-1].z for name, wing in zip(names, aircraft.wings, strict=True)},
+        spans={name: 2.0 * wing.end[2] for name, wing in zip(names, aircraft.wings, strict=True)},
         chord=chord,
         first_cell=first_cell * chord,
         far_field=far_field * chord + 0.5 * aircraft.body.extent,

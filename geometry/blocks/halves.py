@@ -30,34 +30,52 @@ def with_image(half: Grid) -> Grid:
     These lie in z = 0 exactly. The blocks of the image follow those of the half, in the same order; the grid
     is not periodic.
     """
-    step = len(half.blocks)
-    blocks = (*half.blocks, *map(_image, half.blocks))
-    counts = [block.counts for block in half.blocks]
+    step, image = len(half.blocks), with_i_reversed(half)
+    blocks = (*half.blocks, *map(_mirrored, image.blocks))
     own, images, joints = [], [], list(half.connections)
-    for patch in half.patches:
-        sides = face_counts(counts[patch.block], patch.side)
-        side, span = _reversed(patch.side, patch.range(sides), counts[patch.block])
+    for patch, other in zip(half.patches, image.patches, strict=True):
+        block = half.blocks[patch.block]
+        sides = face_counts(block.counts, patch.side)
         if patch.kind == "symmetry":
             ways = _ways(tuple(range(1, len(sides) + 1)), patch.side)
-            ends = (patch.block, patch.side, patch.range(sides)), (patch.block + step, side, span)
+            ends = (
+                (patch.block, patch.side, patch.range(sides)),
+                (other.block + step, other.side, other.range(sides)),
+            )
             joints.append(Connection(*ends[0], *ends[1], ways))
             continue
         own.append(patch)
-        images.append(_on(patch, side, span, step))
-    for each in half.connections:
-        (block, first, span), (donor, second, other) = each.ends
-        ends = (
-            (block + step, *_reversed(first, span, counts[block])),
-            (donor + step, *_reversed(second, other, counts[donor])),
-        )
-        ways = _ways(_ways(each.orientation, first), second, donor=True)
-        joints.append(Connection(*ends[0], *ends[1], ways))
+        images.append(replace(other, block=other.block + step))
+    for each in image.connections:
+        joints.append(replace(each, block=each.block + step, donor=each.donor + step))
     return replace(half, blocks=blocks, patches=(*own, *images), connections=tuple(joints))
 
 
-def _image(block: Block) -> Block:
-    """Return the mirror image of a block, i reversed; 0 keeps its sign."""
-    nodes = np.array(block.nodes[::-1], order="K")
+def with_i_reversed(grid: Grid) -> Grid:
+    """Return a grid with i of its blocks running the other way, which changes its handedness.
+
+    It is not periodic.
+    """
+    counts = [block.counts for block in grid.blocks]
+    patches, joints = [], []
+    for patch in grid.patches:
+        sides = face_counts(counts[patch.block], patch.side)
+        patches.append(_on(patch, *_reversed(patch.side, patch.range(sides), counts[patch.block])))
+    for each in grid.connections:
+        (block, first, span), (donor, second, other) = each.ends
+        ends = (
+            (block, *_reversed(first, span, counts[block])),
+            (donor, *_reversed(second, other, counts[donor])),
+        )
+        ways = _ways(_ways(each.orientation, first), second, donor=True)
+        joints.append(Connection(*ends[0], *ends[1], ways))
+    blocks = tuple(Block(np.array(block.nodes[::-1], order="K"), finite=True) for block in grid.blocks)
+    return replace(grid, blocks=blocks, patches=tuple(patches), connections=tuple(joints))
+
+
+def _mirrored(block: Block) -> Block:
+    """Return the mirror image of a block in z = 0; 0 keeps its sign."""
+    nodes = block.nodes.copy(order="K")
     nodes[..., 2] = 0.0 - nodes[..., 2]
     return Block(nodes, finite=True)
 
@@ -77,9 +95,7 @@ def _ways(ways: tuple[int, ...], side: Side, *, donor: bool = False) -> tuple[in
     return tuple(-way if (abs(way) if donor else k) == 1 else way for k, way in enumerate(ways, start=1))
 
 
-def _on(patch: Patch, side: Side, span: Range, step: int) -> Patch:
-    """Return a patch on a range of a side of the block `step` after its own."""
+def _on(patch: Patch, side: Side, span: Range) -> Patch:
+    """Return a patch on a range of a side of its block."""
     across = patch.across and span[1]
-    return replace(
-        patch, side=side, start=span[0][0], stop=span[0][1], across=across, block=patch.block + step
-    )
+    return replace(patch, side=side, start=span[0][0], stop=span[0][1], across=across)

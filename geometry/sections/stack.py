@@ -93,9 +93,20 @@ class Stack:
         return np.array([section.z for section in self.sections])
 
     @property
+    def chords(self) -> Floats:
+        """(n,) chords of the sections."""
+        return np.array([section.chord for section in self.sections])
+
+    @property
     def chord(self) -> float:
         """The greatest chord."""
-        return max(section.chord for section in self.sections)
+        return float(self.chords.max())
+
+    @property
+    def end(self) -> tuple[float, float, float]:
+        """Position of the last section: x and y of its leading edge before the twist, and z."""
+        last = self.sections[-1]
+        return last.x, last.y, last.z
 
     @property
     def notes(self) -> tuple[str, ...]:

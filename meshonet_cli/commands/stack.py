@@ -50,7 +50,7 @@ def stack(
     base: Annotated[float | None, _sampling(
         "--base", metavar="H",
         help="Smallest height of trailing edges, in chords of their section. Thinner edges of wings and "
-        "blades are opened to this height. [default: 0.005]",
+        "blades are opened to this height. [default: 0.005, and 0.001 for wings from surfaces]",
     )] = None,
     cells: Annotated[int | None, _sampling(
         "--cells", metavar="N",

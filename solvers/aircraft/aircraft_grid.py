@@ -99,7 +99,8 @@ def planned_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, fl
     for ring, *cap in zip(rings, inside[::2], inside[1::2], strict=True):
         high = off_tip(high, np.concatenate([each.ravel() for each in cap]), ring)
     half = _joined(aircraft, plan, lattices, low, high)
-    return half if aircraft.half else with_image(half), growth, (*notes, *_flat_tips(aircraft))
+    whole = aircraft.axes.to_file(half if aircraft.half else with_image(half))
+    return whole, growth, (*aircraft.notes, *notes, *_flat_tips(aircraft))
 
 
 def _flat_tips(aircraft: Aircraft) -> Iterator[str]:

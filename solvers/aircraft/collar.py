@@ -26,6 +26,7 @@ from meshonet.geometry.ties import first_least
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.rows.columns import arcs_of
 from meshonet.solvers.rows.span_spacing import smooth_arcs
+from meshonet.solvers.stacking.tip import least_sine
 
 MARGIN = 0.28
 """Least distance of a collar's outer rectangle from the section, in chords, where the body is long enough.
@@ -148,10 +149,12 @@ def _shifted(places: Floats, box: Rectangle, towards: float) -> Floats:
 
 def collar(
     root: Floats, outer: Floats, rows: int, first: float, last: Floats, straight: float = 0.0
-) -> Floats:
+) -> tuple[Floats, float]:
     """Return nodes (n, rows + 1, 2) between closed loops (n, 2), with first cells `first` and `last` (n,).
 
-    Lines are those of an elliptic grid, for `straight` = 1 parabolas along the normals, or between both.
+    Lines are those of an elliptic grid, for `straight` = 1 parabolas along the normals, or between both. The
+    number is the least sine of an angle between these lines and those across them, before they are turned to
+    the normals and divided.
     """
     arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)
@@ -165,7 +168,7 @@ def collar(
     out += turn[:, None] * (wanted * exp(-wanted / way) * fade * fade)[..., None]
     out[:, 0], out[:, -1] = root, outer
     out[-1] = out[0]
-    return out
+    return out, least_sine(np.pad(lines[::-1], ((0, 0), (0, 0), (0, 1))))
 
 
 def _rows(arcs: Floats, rows: int, first: float, last: Floats) -> Floats:

@@ -33,11 +33,14 @@ _EVEN = 1.15
 WIDEST = 1.25
 """Growth of cells from a collar to nose, tail, keel and crown."""
 _STRAIGHT = 0.0, 0.3, 0.6, 1.0
-"""Shares of straight lines in collars that are tried, until no angle has a sine below `_SINE`; else the best.
+"""Shares of straight lines in collars that are tried, until no angle has a sine below `_SINE` or `_LINES`;
+else the best.
 
 Elliptic grids may fold at a thin trailing edge that lies far from the middle of the rectangle.
 """
 _SINE = 0.15
+_LINES = 0.05
+"""Least sine of an angle between the lines of a collar before they are turned to the normals (`collar`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +106,7 @@ def planned_collar(holes: list[Hole], first: float, growth: float) -> tuple[Coll
         plan = replace(plan, straight=straight)
         levels = [CollarLevel.of(plan, hole) for hole in holes]
         tried.append((replace(plan, sine=min(level.sine for level in levels)), levels))
-        if tried[-1][0].sine > _SINE:
+        if tried[-1][0].sine > _SINE and min(level.between for level in levels) > _LINES:
             break
     plan, levels = first_least(tried, lambda each: -each[0].sine)
     low, top = (
@@ -122,6 +125,7 @@ class CollarLevel:
     plan, box, scale : counts, the rectangle, lengths in space of units of s and theta.
     zeta : of the level beside the section.
     ring : (n, rows + 1, 2) the collar, in lengths in space.
+    between : least sine of an angle between its lines before they are turned to the normals.
     last : lengths in space of its outermost cells at the front, below, above and at the back.
     """
 
@@ -130,6 +134,7 @@ class CollarLevel:
     scale: Floats
     zeta: float
     ring: Floats
+    between: float
     last: tuple[float, float, float, float]
 
     @classmethod
@@ -150,13 +155,14 @@ class CollarLevel:
             last[side] = np.minimum(last[side], way * (1.0 - 1.0 / WIDEST) / (1.0 - math.pow(WIDEST, -cells)))
         grown = smooth_arcs(lengths(plane, outer), (plan.first, None), plan.rows)
         last = _graded(np.minimum(last, _AHEAD * (grown[:, -1] - grown[:, -2])))
-        ring = collar(plane, outer, plan.rows, plan.first, last, plan.straight)
+        ring, between = collar(plane, outer, plan.rows, plan.first, last, plan.straight)
         step = norms(ring[:, -1] - ring[:, -2])
         parts = (
             step[half - nose + 1 : half + nose], step[half + nose : -edge - 1],
             step[edge + 1 : half - nose + 1], np.concatenate([step[:edge], step[-edge:]]),
         )  # fmt: skip
-        return cls(plan, box, scale, hole.zeta, ring, tuple(float(np.median(part)) for part in parts))  # type: ignore[arg-type]
+        outer_steps = tuple(float(np.median(part)) for part in parts)
+        return cls(plan, box, scale, hole.zeta, ring, between, outer_steps)  # type: ignore[arg-type]
 
     @property
     def sine(self) -> float:

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.aircraft.surface_wing import SurfaceWing
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.sections.stack import Stack
+from meshonet.solvers.aircraft.lofts import Loft, SectionLoft, SurfaceLoft
 from meshonet.solvers.aircraft.root import root_heights
 from meshonet.solvers.rows.span_spacing import spaced_cells, two_sided
 from meshonet.solvers.stacking.section_nodes import GAP, Around, around, unit_nodes
@@ -18,6 +20,8 @@ _TRIED = (1.2, 1.0), (1.25, 1.0), (1.25, 1.4), (1.3, 1.7), (1.4, 1.7), (1.5, 1.7
 """Growth of cells around sections that is tried, and times that cells at the nose are longer than usual."""
 _BASE = 2
 """Cells across a base."""
+_SHARP = 0.001
+"""Least height of the base of a wing that is a surface, in chords, where none is given."""
 _ROUNDS = 6
 """Times a part is scaled; lines are nearly straight over a first cell."""
 
@@ -48,40 +52,40 @@ class WingLines:
 
     Parameters
     ----------
-    wing : the sections.
+    loft : the lines, from inside the body.
     name : of the wing.
-    unit : (sections, n, 2) nodes around the sections, from the middle of the base over the upper side.
-    roots : (n,) heights z where lines leave the body.
-    notes : what was changed of the sections.
+    roots : (n,) heights z where they leave the body.
+    notes : what was changed of the wing.
     """
 
-    wing: Stack
+    loft: Loft
     name: str
-    unit: Floats
     roots: Floats
     notes: tuple[str, ...]
 
     @classmethod
-    def of(cls, wing: Stack, name: str, body: Body, nodes: int, base: float = GAP) -> WingLines:
+    def of(
+        cls, wing: Stack | SurfaceWing, name: str, body: Body, nodes: int, base: float | None = None
+    ) -> WingLines:
         """Return `nodes` lines, of a wing with trailing edges of at least `base` chords.
 
         Raises InputError: too few nodes, a wing that does not begin in the body or does not leave it.
         """
-        plan = EvenAround(
-            **vars(around(nodes, gap=base, base=_BASE, edge=wing.te_spacing, nose=wing.le_spacing))
-        )
-        units, notes = zip(*(unit_nodes(section, plan) for section in wing.sections), strict=True)
-        unit = np.stack(units)
-        roots = root_heights(wing, name, unit[:, :-1], body)
-        changes = (*wing.notes, *dict.fromkeys(filter(None, notes)))
-        return cls(wing, name, unit, np.append(roots, roots[0]), changes)
+        if isinstance(wing, SurfaceWing):
+            least = _SHARP if base is None else base
+            opened = wing.opened(least)
+            loft: Loft = SurfaceLoft.of(opened, body, _around(nodes, least))
+            notes = opened.notes
+        else:
+            loft, notes = _through_sections(wing, nodes, GAP if base is None else base)
+        roots = root_heights(loft, name, body)
+        roots[-1] = roots[0]
+        return cls(loft, name, roots, notes)
 
     def points(self, parts: Floats) -> Floats:
         """Return points (k, n, 3) at parts (k, n) of the way along the lines, in z."""
-        wing = self.wing
-        z = self.roots + parts * (wing.z[-1] - self.roots)
-        columns = [wing.lofted(self.unit[:, k : k + 1], z[:, k])[:, 0] for k in range(z.shape[1])]
-        return np.stack(columns, axis=1)
+        z = self.roots + parts * (self.loft.tip - self.roots)
+        return np.stack([self.loft.line(k, z[:, k]) for k in range(z.shape[1])], axis=1)
 
     def with_first(self, parts: Floats, first: float) -> Floats:
         """Return parts (k, n) of the way of which the second are at the distance `first` from the root."""
@@ -96,3 +100,14 @@ class WingLines:
         """Mean length of the lines."""
         ends = self.points(np.array([[0.0], [1.0]]) + np.zeros(len(self.roots)))
         return float(norms(ends[1] - ends[0]).mean())
+
+
+def _around(nodes: int, base: float, edge: float | None = None, nose: float | None = None) -> EvenAround:
+    return EvenAround(**vars(around(nodes, gap=base, base=_BASE, edge=edge, nose=nose)))
+
+
+def _through_sections(wing: Stack, nodes: int, base: float) -> tuple[Loft, tuple[str, ...]]:
+    """Return lines through nodes around the sections of a wing, and notes."""
+    plan = _around(nodes, base, wing.te_spacing, wing.le_spacing)
+    units, notes = zip(*(unit_nodes(section, plan) for section in wing.sections), strict=True)
+    return SectionLoft(wing, np.stack(units)), (*wing.notes, *dict.fromkeys(filter(None, notes)))

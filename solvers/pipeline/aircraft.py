@@ -46,7 +46,7 @@ def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) ->
 
 def _refuse_thick_cells(aircraft: Aircraft, first: float) -> None:
     """Raise InputError for first cells that are high beside a section of a wing."""
-    shortest = min(section.chord for wing in aircraft.wings for section in wing.sections)
+    shortest = min(float(wing.chords.min()) for wing in aircraft.wings)
     if first > _HIGHEST * shortest:
         problem = f"first cells are {first:g} high at a wing with a chord of {shortest:g}"
         raise InputError(problem, f"use at most {_HIGHEST:g} of it", parameter="first_cell")
@@ -57,8 +57,8 @@ def _refuse_far_tip(aircraft: Aircraft, far: float) -> None:
     body = aircraft.body
     middle = 0.5 * float(body.meridian[0, 0] + body.meridian[-1, 0])
     for wing, (name, _) in zip(aircraft.wings, aircraft.patches, strict=True):
-        tip = wing.sections[-1]
-        away = math.hypot(tip.x - middle, tip.y - body.y, tip.z)
+        x, y, z = wing.end
+        away = math.hypot(x - middle, y - body.y, z)
         if away > _REACH * far:
             at = f"the tip of the {name} is {away:.6g} from the middle of the body"
             raise InputError(

@@ -45,7 +45,9 @@ def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, 
     Raises InputError: node counts that are too small; NoValidGridError: the grid of a section has folded
     cells.
     """
-    plan = around(request.surface.around, gap=request.base, edge=stack.te_spacing, nose=stack.le_spacing)
+    plan = around(
+        request.surface.around, gap=request.surface.base, edge=stack.te_spacing, nose=stack.le_spacing
+    )
     height = request.height() * stack.chord
     rows = 1 + blade_rows(request)
     planes, notes = [], []

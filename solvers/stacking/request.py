@@ -31,7 +31,8 @@ class StackRequest(FirstCell):
         Approximate number of cells of the volume around a wing or blade, in place of `around` and `span` or
         of one of them.
     base : float, optional
-        Smallest height of trailing edges, in chords of their section.
+        Smallest height of trailing edges, in chords of their section; None is 0.005, and 0.001 for a wing
+        that is a surface.
     first_cell : float, optional
         First-cell height at every wall node; None is 1e-3.
     y_plus, reynolds, chord_fraction : float, optional
@@ -64,7 +65,7 @@ class StackRequest(FirstCell):
     around: int | None = None
     span: int | None = None
     cells: int | None = None
-    base: float = GAP
+    base: float | None = None
     layers: int | None = None
     growth: float | None = None
     far_field: float = DEFAULT_FAR_FIELD
@@ -104,7 +105,9 @@ class StackRequest(FirstCell):
     @property
     def surface(self) -> WingSurface:
         """Node counts of the surface."""
-        return WingSurface(self.around or DEFAULT_AROUND, self.span or DEFAULT_SPAN, self.base)
+        return WingSurface(
+            self.around or DEFAULT_AROUND, self.span or DEFAULT_SPAN, GAP if self.base is None else self.base
+        )
 
     def height(self, unit: float = 1.0) -> float:
         """Return the first-cell height in chords; `unit` is the reference length of a y+, in chords."""

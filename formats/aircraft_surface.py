@@ -1,0 +1,126 @@
+"""Bodies and wings of aircraft that are patches of a surface file, such as Plot3D or CGNS."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from meshonet.formats.registry import read_grids
+from meshonet.formats.source import printable
+from meshonet.formats.toml_table import Table
+from meshonet.geometry.aircraft.axes import AircraftAxes, axes_of
+from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.aircraft.body_cuts import FLAT, body_cuts
+from meshonet.geometry.aircraft.surface_wing import SurfaceWing
+from meshonet.geometry.aircraft.wing_strips import wing_strips
+from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import Change
+
+KEYS = "surface", "patches"
+"""Keys of a body or wing that is a surface."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Patches:
+    """Patches (ni, nj, 3) of a file, with their names where it has any."""
+
+    nodes: tuple[Floats, ...]
+    names: tuple[str, ...]
+
+    def numbers(self, row: Table) -> list[int]:
+        """Return the numbers of the patches that a row chooses by numbers or names, all if it does not."""
+        chosen = row.data.get("patches")
+        if chosen is None:
+            return list(range(len(self.nodes)))
+        if not isinstance(chosen, list) or not chosen:
+            raise row.error("patches", "is no list of numbers or names", 'write [0, 1] or ["body"]')
+        out = []
+        for each in chosen:
+            known = isinstance(each, int) and not isinstance(each, bool) and 0 <= each < len(self.nodes)
+            if known or (isinstance(each, str) and each in self.names):
+                out.append(each if known else self.names.index(each))
+                continue
+            names = f" or {', '.join(self.names[:8])}" if self.names else ""
+            problem = f"{printable(str(each))} is no patch of the file"
+            raise row.error("patches", problem, f"use 0 to {len(self.nodes) - 1}{names}")
+        return out
+
+
+def surface_body(row: Table, folder: Path) -> tuple[Body, AircraftAxes, tuple[str, ...]]:
+    """Return the body that a row names, the axes of its file, and notes.
+
+    Without `patches` these are the patches of the file with a side in the plane of symmetry.
+
+    Raises InputError: a file that holds no surface; a body that is none of half an aircraft, or has holes.
+    """
+    row.only("name", *KEYS)
+    file = _read(row, folder)
+    numbers, name = file.numbers(row), row.text("name", "fuselage")
+    axes = axes_of(np.concatenate([file.nodes[k].reshape(-1, 3) for k in numbers]))
+    if axes is None:
+        problem, remedy = "lies on both sides of y=0 and of z=0", "give the half on one side of one of them"
+        raise row.error("surface", problem, remedy)
+    patches = {k: axes.to_aircraft(file.nodes[k]) for k in numbers}
+    if "patches" not in row.data:
+        patches = {k: nodes for k, nodes in patches.items() if _in_plane(nodes)}
+    with row.in_file_of("surface"):
+        if not patches:
+            raise InputError("no patch has a side in the plane of symmetry", "give the half of a body")
+        cuts = body_cuts(list(patches.values()), name)
+        meridian = cuts.meridian
+        if meridian is None:
+            raise InputError(f"the {name} is no body of revolution", "give its meridian")
+        body = Body(meridian, cuts.nose[1], name)
+    used = ", ".join(map(str, patches))
+    notes = [f"the {name} is patch {used} of {printable(row.text('surface'))}; {axes.description}"]
+    return body, axes, (*notes, *cuts.notes)
+
+
+def surface_wing(row: Table, folder: Path, axes: AircraftAxes) -> SurfaceWing:
+    """Return the wing that a row names, turned from the axes of the file to those of the aircraft.
+
+    Without `patches` these are the patches of the file without a side in the plane of symmetry.
+
+    Raises InputError: a file that holds no surface; patches that do not lie around a wing.
+    """
+    row.only("on", "name", *KEYS)
+    file = _read(row, folder)
+    name = row.text("name", "wing")
+    patches = {k: axes.to_aircraft(file.nodes[k]) for k in file.numbers(row)}
+    if "patches" not in row.data:
+        patches = {k: nodes for k, nodes in patches.items() if not _in_plane(nodes)}
+    with row.in_file_of("surface"):
+        if not patches:
+            raise InputError("all patches have a side in the plane of symmetry", "give {patches} of the wing")
+        strips, closing = wing_strips(list(patches.values()), name)
+        wing = SurfaceWing.ending(strips, name)
+    used = ", ".join(map(str, patches))
+    notes = [f"the {name} is patch {used} of {printable(row.text('surface'))}"]
+    if closing:
+        left_out = ", ".join(str(list(patches)[k]) for k in closing)
+        notes.append(Change(f"the tip of the {name} is flat: patch {left_out} is left out"))
+    return replace(wing, notes=(*notes, *wing.notes))
+
+
+def _in_plane(nodes: Floats) -> bool:
+    """Return whether a side of a patch (ni, nj, 3) lies in z = 0."""
+    sides: Sequence[Floats] = (nodes[0], nodes[-1], nodes[:, 0], nodes[:, -1])
+    flat = FLAT * extent_of(nodes.reshape(-1, 3))
+    return any(
+        bool((np.abs(side[:, 2]) <= flat).all()) and np.ptp(side, axis=0).max() > flat for side in sides
+    )
+
+
+def _read(row: Table, folder: Path) -> _Patches:
+    file = str(folder / row.text("surface"))
+    with row.in_file_of("surface"):
+        grids = list(read_grids(file))
+        blocks = [block.nodes for grid in grids for block in grid.blocks]
+        if not blocks or any(nodes.ndim != 3 or nodes.shape[-1] != 3 for nodes in blocks):
+            raise InputError("holds no surface", "give patches of nodes in space", source=file)
+    zones = tuple(str(each) for grid in grids for each in grid.provenance.get("zones") or ())
+    return _Patches(tuple(blocks), zones if len(zones) == len(blocks) else ())

@@ -1,0 +1,71 @@
+"""Axes of a file and those of an aircraft: x along the body, y up, z along the span."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.halves import with_i_reversed
+
+_NAMES = "xyz"
+_FLAT = 1e-6
+"""Distance from the plane of symmetry, over the size of a surface, that is none."""
+
+
+@dataclass(frozen=True)
+class AircraftAxes:
+    """The axis of a file that points up, and that along the span, by their numbers.
+
+    Parameters
+    ----------
+    up, span : int, optional
+        1 for y, 2 for z.
+    sign : int, optional
+        -1 where the half of the aircraft in the file is that of negative places along the span.
+    """
+
+    up: int = 1
+    span: int = 2
+    sign: int = 1
+
+    @property
+    def description(self) -> str:
+        """The axes as a part of a sentence."""
+        half = ">=" if self.sign > 0 else "<="
+        return f"{_NAMES[self.up]} points up, and the half is that of {_NAMES[self.span]} {half} 0"
+
+    def to_aircraft(self, points: Floats) -> Floats:
+        """Return points (..., 3) of a file in the axes of the aircraft."""
+        return np.stack([points[..., 0], points[..., self.up], self.sign * points[..., self.span]], axis=-1)
+
+    def to_file(self, grid: Grid) -> Grid:
+        """Return a grid in the axes of the file; i of its blocks is reversed where these are mirrored."""
+        if self == AircraftAxes():
+            return grid
+        if (self.sign > 0) != (self.up == 1):  # the other handedness
+            grid = with_i_reversed(grid)
+        blocks = []
+        for block in grid.blocks:
+            nodes = np.empty_like(block.nodes)
+            nodes[..., 0], nodes[..., self.up] = block.nodes[..., 0], block.nodes[..., 1]
+            nodes[..., self.span] = self.sign * block.nodes[..., 2] + 0.0
+            blocks.append(Block(nodes, finite=True))
+        return replace(grid, blocks=tuple(blocks))
+
+
+FILE_AXES = AircraftAxes()
+"""Those of an aircraft that is not turned."""
+
+
+def axes_of(points: Floats) -> AircraftAxes | None:
+    """Return the axes of half an aircraft with points (n, 3); None if these are those of both halves."""
+    flat = _FLAT * float(np.ptp(points, axis=0).max())
+    for span in (2, 1):
+        for sign in (1, -1):
+            if (sign * points[:, span]).min() >= -flat:
+                return AircraftAxes(3 - span, span, sign)
+    return None

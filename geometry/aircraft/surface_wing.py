@@ -1,0 +1,248 @@
+"""A wing given as a surface: strips of nodes from its root on a body to its tip."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.geometry.aircraft.wing_strips import at_heights
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.curves.cubic import CubicTable
+from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import Change
+from meshonet.geometry.sections.stack import Tip
+
+_NOSE = 0.02
+"""Distance from the point farthest from the trailing edge, in chords, within which a joint is the nose."""
+_SLIM = 0.95
+"""Thickness over chord at a tip, over that one chord before it, below which the tip is closing."""
+_SHORT = 0.05
+"""Least chord of the tip over the longest one."""
+_CLOSING = 0.1
+"""Part of the span at the tip within which lines need not rise."""
+_LEVELS = 33
+"""Heights between root and tip at which chords are measured."""
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceWing:
+    """A wing whose surface is given by strips of nodes; straight lines join them along the span.
+
+    ::
+
+        root        tip          stations (rows of nodes) go from the root to the tip, z rises along each
+          +----+-----+   edge    line; nodes of a row from the trailing edge over the upper side to the nose
+          +----+-----+           and back on the lower side, from strip to strip. The numbers of stations may
+          +----+-----+   nose    differ.
+
+    Nodes between those of a row lie on cubic splines. The wing ends in a plane of constant z: where it gets
+    thinner, as a rounded tip does, or at the first node of its last station (`ending`).
+
+    Parameters
+    ----------
+    strips : tuple of array
+        (stations, n, 3) nodes of each strip.
+    height : float
+        z of the plane in which the wing ends.
+    name : str, optional
+        Of the wing and its patch.
+    notes : tuple of str, optional
+        What was changed.
+
+    Raises
+    ------
+    InputError
+        Strips of other shapes, with lines along which z does not rise; a wing without thickness.
+    """
+
+    strips: tuple[Floats, ...]
+    height: float
+    name: str = "wing"
+    notes: tuple[str, ...] = ()
+    tip: Tip = "flat"
+
+    def __post_init__(self) -> None:
+        for number, strip in enumerate(self.strips):
+            if strip.ndim != 3 or strip.shape[2] != 3 or min(strip.shape[:2]) < 2:
+                problem = f"a strip of shape {strip.shape}"
+                raise InputError(problem, "give (stations, nodes, 3)", place=f"strips[{number}]")
+            steps = np.diff(strip[..., 2], axis=0)
+            if not steps.min() > 0.0:
+                row, column = np.unravel_index(int(steps.argmin()), steps.shape)
+                x, y, z = strip[row, column]
+                problem = (
+                    f"a line along the span of the {self.name} turns back at x={x:.6g}, y={y:.6g}, z={z:.6g}"
+                )
+                raise InputError(problem, "give lines along which the distance from the body rises")
+
+    @classmethod
+    def ending(cls, strips: tuple[Floats, ...], name: str = "wing") -> SurfaceWing:
+        """Return the wing that ends at the last station, or where its tip begins to close, with a note."""
+        strips = tuple(map(_rising, strips))
+        end = min(float(strip[-1, :, 2].min()) for strip in strips)
+        wing = cls(strips, end, name)
+        heights = max((strip[:, :, 2].min(axis=1) for strip in strips), key=len)
+        heights = np.append(heights[(heights > wing.z[0]) & (heights < end)], end)
+        chord, thick = wing.sizes(heights)
+        if chord.max() <= 0.0 or thick.max() <= 0.0:
+            raise InputError(f"the {name} has no thickness", "give its upper and its lower side")
+        share = thick / np.where(chord > 0.0, chord, 1.0)
+        before = float(np.interp(end - chord[-1], heights, share))
+        fit = np.flatnonzero((share >= _SLIM * before) & (chord >= _SHORT * chord.max()))
+        last = float(heights[fit[-1]]) if len(fit) else end
+        if last == end:
+            return wing
+        closing = f"the tip of the {name} is flat, where its thickness begins to shrink"
+        note = f"{closing}: the last {end - last:.3g} of its span are left out"
+        return replace(wing, height=last, notes=(Change(note),))
+
+    @property
+    def z(self) -> Floats:
+        """(n,) heights from the first one that all lines have to the tip."""
+        begin = max(float(strip[0, :, 2].max()) for strip in self.strips)
+        return np.linspace(begin, self.height, _LEVELS)
+
+    @property
+    def chords(self) -> Floats:
+        """(n,) chords at heights `z`."""
+        return self.sizes(self.z)[0]
+
+    @property
+    def chord(self) -> float:
+        """The greatest chord."""
+        return float(self.chords.max())
+
+    @property
+    def end(self) -> tuple[float, float, float]:
+        """Position of the nose of the last section."""
+        x, y, z = _on(self.line(self.nose), np.array([self.height]))[0].tolist()
+        return x, y, z
+
+    @cached_property
+    def arcs(self) -> Floats:
+        """(strips,) lengths across the strips in chords, half way along the span."""
+        z = self.z[[_LEVELS // 2]]
+        lengths = [float(norms(np.diff(at_heights(strip, z)[0], axis=0)).sum()) for strip in self.strips]
+        return np.array(lengths) / self.sizes(z)[0]
+
+    @cached_property
+    def nose(self) -> float:
+        """The place of the nose (see `line`)."""
+        z = self.z[[_LEVELS // 2]]
+        rows = [at_heights(strip, z)[0] for strip in self.strips]
+        edge = 0.5 * (rows[0][0] + rows[-1][-1])
+        apart = [norms(row - edge) for row in rows]
+        most = max(float(each.max()) for each in apart)
+        for number in range(1, len(rows)):
+            if apart[number][0] >= (1.0 - _NOSE) * most:
+                return float(number)
+        number = max(range(len(rows)), key=lambda k: float(apart[k].max()))
+        way = np.append(0.0, np.cumsum(norms(np.diff(rows[number], axis=0))))
+        return number + float(way[int(apart[number].argmax())] / way[-1])
+
+    def line(self, place: float) -> Floats:
+        """Return the line (stations, 3) along the span at a place: a strip's number, plus the part across."""
+        return self.lines(np.array([place]))[0]
+
+    def lines(self, places: Floats) -> list[Floats]:
+        """Return the lines (stations, 3) at rising places (n,); see `line`."""
+        numbers = np.minimum(places.astype(int), len(self.strips) - 1)
+        out: list[Floats] = []
+        for number in range(len(self.strips)):
+            parts = places[numbers == number] - number
+            out += list(np.moveaxis(self._splines(number, parts), 1, 0))
+        return out
+
+    def arc(self, place: float) -> float:
+        """Return the length from the base's upper corner to a place, in chords, half way along the span."""
+        return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
+
+    def places(self, arcs: Floats) -> Floats:
+        """Return the places (n,) at lengths (n,): the inverse of `arc`."""
+        return np.interp(arcs, self._bounds, np.arange(len(self.strips) + 1))
+
+    @property
+    def _bounds(self) -> Floats:
+        return np.append(0.0, np.cumsum(self.arcs))
+
+    def base(self, z: Floats) -> Floats:
+        """Return the heights of the base (n,) at heights z (n,), in chords there."""
+        upper, lower = self.edges(z)
+        across = upper - lower
+        along = 0.5 * (upper + lower) - _on(self.line(self.nose), z)
+        square = _cross(along, across)
+        return np.asarray(np.abs(square) / (along[:, :2] ** 2).sum(axis=1))
+
+    def edges(self, z: Floats) -> tuple[Floats, Floats]:
+        """Return the upper and the lower corners (n, 3) of the trailing edge at heights z (n,)."""
+        return _on(self.line(0.0), z), _on(self.line(float(len(self.strips))), z)
+
+    def opened(self, least: float) -> SurfaceWing:
+        """Return the wing with a base of at least so many chords, and a note if it was lower.
+
+        The thickness increases in proportion to the distance from the nose.
+        """
+        thin = float(self.base(self.z).min())
+        if thin >= least * (1.0 - 1e-9):
+            return self
+        strips = tuple(self._thicker(number, least) for number in range(len(self.strips)))
+        note = f"the trailing edge of the {self.name}, {thin:.2g} chords high, is opened to {least:g} chords"
+        return replace(self, strips=strips, notes=(*self.notes, Change(note)))
+
+    def _thicker(self, number: int, least: float) -> Floats:
+        strip = self.strips[number]
+        z = strip[..., 2].ravel()
+        nose, (upper, lower) = _on(self.line(self.nose), z), self.edges(z)
+        chord = (0.5 * (upper + lower) - nose)[:, :2]
+        square = (chord * chord).sum(axis=1)
+        normal = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.sqrt(square)[:, None]
+        height = ((upper - lower)[:, :2] * normal).sum(axis=1)
+        missing = 0.5 * np.maximum(least * np.sqrt(square) - height, 0.0)
+        along = np.clip(((strip.reshape(-1, 3) - nose)[:, :2] * chord).sum(axis=1) / square, 0.0, None)
+        columns = np.arange(strip.shape[1]) / (strip.shape[1] - 1)
+        sign = np.where(number + columns < self.nose, 1.0, -1.0) + np.zeros(strip.shape[:2])
+        moved = strip.copy()
+        moved[..., :2] += ((sign.ravel() * missing * along)[:, None] * normal).reshape(*strip.shape[:2], 2)
+        return moved
+
+    def _splines(self, number: int, parts: Floats) -> Floats:
+        """Return lines (stations, n, 3) at parts (n,) of the way across a strip."""
+        rows = []
+        for row in self.strips[number]:
+            arcs = np.append(0.0, np.cumsum(norms(np.diff(row, axis=0))))
+            rows.append(CubicTable(row, arcs)(parts * arcs[-1]))
+        return np.stack(rows)
+
+    def sizes(self, z: Floats) -> tuple[Floats, Floats]:
+        """Return chord and thickness (n,) at heights z (n,)."""
+        loops = np.concatenate([at_heights(strip, z) for strip in self.strips], axis=1)
+        chord = loops[:, 0] + loops[:, -1]
+        apart = norms(loops - 0.5 * chord[:, None])
+        at = apart.argmax(axis=1)
+        nose = loops[np.arange(len(z)), at]
+        along = 0.5 * chord - nose
+        length = norms(along)
+        high = _cross(along[:, None], loops - nose[:, None]) / np.where(length > 0.0, length, 1.0)[:, None]
+        return length, np.asarray(np.ptp(high, axis=1))
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    """Return the z component (...) of the product of vectors (..., 3)."""
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+
+
+def _rising(strip: Floats) -> Floats:
+    """Return a strip without its last stations, if z does not rise to them: a tip is flat where it closes."""
+    flat = np.flatnonzero((np.diff(strip[..., 2], axis=0) <= 0.0).any(axis=1))
+    if not flat.size:
+        return strip
+    left_out = strip[-1, :, 2].max() - strip[flat[0], :, 2].min()
+    return strip[: flat[0] + 1] if left_out <= _CLOSING * np.ptp(strip[..., 2]) else strip
+
+
+def _on(line: Floats, z: Floats) -> Floats:
+    """Return points (n, 3) on a line (stations, 3) at heights z (n,), which may lie beyond its ends."""
+    return monotone_cubic(line[:, 2], line, z, linear=True)

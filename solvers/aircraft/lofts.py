@@ -1,0 +1,111 @@
+"""Lines along the span of a wing, from inside a body to the tip: through its sections, or on its surface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.aircraft.surface_wing import SurfaceWing
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.sections.stack import Stack
+from meshonet.solvers.stacking.section_nodes import Around
+
+_INWARDS = 0.0, 0.01, 0.02, 0.05, 0.1
+"""Lengths, in chords, by which the lines of a surface that ends on a body are tried to go on into it."""
+
+
+class Loft(Protocol):
+    """Lines along the span."""
+
+    @property
+    def begin(self) -> Floats:
+        """(n,) heights z where they begin, inside the body."""
+
+    @property
+    def tip(self) -> float:
+        """Height where all end."""
+
+    @property
+    def remedy(self) -> str:
+        """What a user can do where they do not begin inside."""
+
+    def line(self, number: int, z: Floats) -> Floats:
+        """Return points (m, 3) on a line at heights z (m,)."""
+
+
+@dataclass(frozen=True, eq=False)
+class SectionLoft:
+    """Lines through the nodes `unit` (sections, n, 2) around the sections of a `stack`."""
+
+    stack: Stack
+    unit: Floats
+    remedy: str = "give a first section inside the body, such as in z = 0, and a last one outside"
+
+    @property
+    def begin(self) -> Floats:
+        """(n,) heights of the first section."""
+        return np.full(self.unit.shape[1], self.stack.z[0])
+
+    @property
+    def tip(self) -> float:
+        """Height of the last section."""
+        return float(self.stack.z[-1])
+
+    def line(self, number: int, z: Floats) -> Floats:
+        """Return points (m, 3) on a line at heights z (m,)."""
+        return self.stack.lofted(self.unit[:, number : number + 1], z)[:, 0]
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceLoft:
+    """Lines on the surface of a wing: the first and the last in the middle of its base.
+
+    Parameters
+    ----------
+    lines : each (stations, 3), from the upper corner of the base around the nose to the lower one.
+    begin : (n,) heights where lines begin, with those in the middle of the base.
+    tip : height where they end.
+    """
+
+    lines: Sequence[Floats]
+    begin: Floats
+    tip: float
+    remedy: str = "give patches of the wing that end on the body or inside of it"
+
+    @classmethod
+    def of(cls, wing: SurfaceWing, body: Body, plan: Around) -> SurfaceLoft:
+        """Return the lines of a wing on a body, distributed as in a `plan` with two cells on the base.
+
+        Lines that end on the body go on into it, straight and as far as they must.
+        """
+        base = float(np.median(wing.base(wing.z)))
+        q = np.linspace(0.0, 1.0, plan.cells + 1)
+        nose, whole = wing.arc(wing.nose), float(wing.arcs.sum())
+        upper = nose * plan.law(base, nose)(q)
+        lower = whole - (whole - nose) * plan.law(base, whole - nose)(q)
+        places = wing.places(np.concatenate([upper, lower[-2::-1]]))
+        places[plan.cells] = wing.nose
+        lines = wing.lines(places)
+        z = np.array([line[0, 2] for line in lines])
+        begin = np.concatenate([[max(z[0], z[-1])], z, [max(z[0], z[-1])]])
+        for inwards in _INWARDS:
+            loft = cls(lines, begin - inwards * wing.chord, wing.height)
+            first = [loft.line(k, loft.begin[k : k + 1])[0] for k in range(len(begin))]
+            if body.outside(np.stack(first)).max() < 0.0:
+                break
+        return loft
+
+    def line(self, number: int, z: Floats) -> Floats:
+        """Return points (m, 3) on a line at heights z (m,)."""
+        if number in (0, len(self.lines) + 1):
+            return 0.5 * (_on(self.lines[0], z) + _on(self.lines[-1], z))
+        return _on(self.lines[number - 1], z)
+
+
+def _on(line: Floats, z: Floats) -> Floats:
+    return monotone_cubic(line[:, 2], line, z, linear=True)
