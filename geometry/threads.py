@@ -3,13 +3,19 @@
 `limited_to` sets the number temporarily, for the Python thread that calls it: other threads keep theirs.
 """
 
+from __future__ import annotations
+
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar, copy_context
-from typing import Any, TypeVar
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from meshonet.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    from meshonet.geometry.helpers import Helpers
 
 MOST = 64
 """Threads that a kernel starts at the most (``TEAM_MOST`` of ``team.h``)."""
@@ -23,6 +29,7 @@ Item = TypeVar("Item")
 Made = TypeVar("Made")
 
 _limit: ContextVar[int | None] = ContextVar("threads", default=None)
+_helpers: ContextVar[Helpers | None] = ContextVar("helpers", default=None)
 
 
 def cores() -> int:
@@ -46,22 +53,28 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
     """Return what `work` returns for each of `items`, several at once if threads are free.
 
     Worth it where each takes milliseconds, most of them in kernels or NumPy's loops. Each may use its share
-    of the threads in turn.
+    of the threads in turn, and threads that have nothing left to do help others with their items. Items are
+    begun in their order: the longest should be first.
     """
-    threads = min(thread_count(), len(items))
-    if threads < 2:
+    inside = _helpers.get()
+    if len(items) < 2 or not (inside or thread_count() > 1):
         return [work(item) for item in items]
-    from concurrent.futures import ThreadPoolExecutor  # takes longer to load than the options of a command
+    from meshonet.geometry.helpers import Helpers  # takes longer to load than the options of a command
 
-    share = thread_count() // threads
+    share = max(thread_count() // len(items), 1)
 
-    def shared(item: Item) -> Made:
-        with limited_to(share):
-            return work(item)
+    def shared(item: Item, helpers: Helpers) -> Made:
+        _limit.set(share)
+        _helpers.set(helpers)
+        return work(item)
 
-    with ThreadPoolExecutor(threads) as pool:
-        jobs = [pool.submit(copy_context().run, shared, item) for item in items]
-        return [job.result() for job in jobs]
+    def jobs(helpers: Helpers) -> list[Callable[[], Made]]:
+        return [partial(copy_context().run, shared, item, helpers) for item in items]
+
+    if inside:
+        return inside.run(jobs(inside))
+    with Helpers.at_hand(thread_count() - 1) as helpers:
+        return helpers.run(jobs(helpers))
 
 
 def run_in_threads(jobs: Sequence[Callable[[], Any]]) -> list[Any]:
@@ -79,8 +92,10 @@ def limited_to(threads: int | None) -> Iterator[None]:
     """
     if threads is not None and threads < 1:
         raise InputError(f"{threads} threads", "use 1 or more", parameter="threads")
-    token = _limit.set(_limit.get() if threads is None else threads)
+    limit = _limit.set(_limit.get() if threads is None else threads)
+    helpers = _helpers.set(_helpers.get() if threads is None else None)
     try:
         yield
     finally:
-        _limit.reset(token)
+        _helpers.reset(helpers)
+        _limit.reset(limit)

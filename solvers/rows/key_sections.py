@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from meshonet.geometry.arrays import Bools, Floats, Indices, norms, wrapped
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.threads import run_in_threads
 from meshonet.solvers.blocking.layers.layer_rows import layer_lines
 from meshonet.solvers.energy.quad_problem import Problem
 from meshonet.solvers.energy.quads import minimise, problem_of
@@ -76,6 +78,30 @@ class SectionPlan:
 
 
 @dataclass(frozen=True, eq=False)
+class LayerColumns:
+    """Columns of the layers of a section, before nodes are spaced along them.
+
+    Parameters
+    ----------
+    walls : (k,) arc lengths of the blade where they begin.
+    lines : (k, m, 2) nodes along them.
+    ends : (k, 2) where they end, at the front.
+    """
+
+    walls: Floats
+    lines: Floats
+    ends: Floats
+
+    @classmethod
+    def of(cls, plane: SectionPlane, places: Floats) -> LayerColumns:
+        """Return the columns of a section that begin at places u (k,)."""
+        front = plane.front_arcs(places)
+        lines, walls = plane.cascade.ring.columns(front)
+        lines = straight_near(lines, plane.from_corners(walls))
+        return cls(walls, lines, plane.cascade.ring.front.at(front))
+
+
+@dataclass(frozen=True, eq=False)
 class KeySection:
     """The nodes of a section.
 
@@ -94,8 +120,10 @@ class KeySection:
 def planned(
     planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], wake: tuple[float, float],
     gaps: tuple[bool, bool],
-) -> tuple[SectionPlan, KeySection]:  # fmt: skip
+) -> tuple[SectionPlan, list[LayerColumns | None], KeySection]:  # fmt: skip
     """Return the plan for sections of about so many `cells` each, and the middle one of `planes`.
+
+    In between are the columns of the others.
 
     `longest` are the greatest lengths of the rows to inlet and outlet, by the number of their loop, `wake` is
     that of the plan, `gaps` are whether the blade ends in a gap at hub and casing.
@@ -115,12 +143,21 @@ def planned(
     moves = HarmonicMoves(whole.mesh, held)
     plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, held, moves, places, wake)
     even = places.evened(planes, growth, pairs)
-    plan, section = replace(plan, places=even), KeySection(plane, whole, at)
+    section = KeySection(plane, whole, at)
     try:
-        return plan, _placed(plan, section)
+        return _begun(replace(plan, places=even), planes, section)
     except NoValidGridError:  # layers are folded where nodes had to move far
-        plan = replace(plan, places=places)
-        return plan, _placed(plan, section)
+        return _begun(plan, planes, section)
+
+
+def _begun(
+    plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySection
+) -> tuple[SectionPlan, list[LayerColumns | None], KeySection]:
+    """Return a plan, columns of the others by it, and the middle section with nodes at its places."""
+    others = [plane for plane in planes if plane is not section.plane]
+    columns = [partial(LayerColumns.of, plane, plan.places.at(plane.height)) for plane in others]
+    placed, *made = run_in_threads([partial(_placed, plan, section), *columns])
+    return plan, [*made[: len(made) // 2], None, *made[len(made) // 2 :]], placed
 
 
 class NextSections:
@@ -130,13 +167,14 @@ class NextSections:
         self.plan = plan
         self._problem: Problem | None = None
 
-    def of(self, before: KeySection, plane: SectionPlane) -> KeySection:
-        """Return the section of a plane from that `before` it.
+    def of(self, before: KeySection, plane: SectionPlane, columns: LayerColumns | None = None) -> KeySection:
+        """Return the section of a plane from that `before` it, with its columns if they are known.
 
         Raises NoValidGridError: its cells stay folded.
         """
         plan = self.plan
-        layout, places = _carried(plan, before, plane, plan.places.at(plane.height))
+        columns = columns or LayerColumns.of(plane, plan.places.at(plane.height))
+        layout, places = _carried(plan, before, plane, columns)
         if self._problem is None:
             self._problem = _problem(plan, plane, layout.mesh)
         else:
@@ -177,7 +215,7 @@ def _placed(plan: SectionPlan, section: KeySection) -> KeySection:
             made = section
             for k in range(1, steps + 1):
                 places = wanted if k == steps else np.mod(section.places + k / steps * move, 1.0)
-                layout, own = _carried(plan, made, plane, places)
+                layout, own = _carried(plan, made, plane, LayerColumns.of(plane, places))
                 problem = _problem(plan, plane, layout.mesh, ends_slide=True)
                 made = KeySection(plane, _optimum(plan, plane, layout, problem, FINE), own)
             return made
@@ -188,7 +226,7 @@ def _placed(plan: SectionPlan, section: KeySection) -> KeySection:
 
 
 def _carried(
-    plan: SectionPlan, before: KeySection, plane: SectionPlane, places: Floats
+    plan: SectionPlan, before: KeySection, plane: SectionPlane, columns: LayerColumns
 ) -> tuple[Layout, Floats]:
     """Return a neighbour's layout with layers, inlet and outlet of a section, and u of nodes at the blade.
 
@@ -196,23 +234,21 @@ def _carried(
     middle line of the blade in theta. Between inlet, outlet and layers the rest of displacements is harmonic.
     """
     nodes = before.layout.mesh.nodes
-    shares, ring = before.plane.shares(nodes), plane.cascade.ring
+    shares = before.plane.shares(nodes)
     aside = plane.camber(shares) - before.plane.camber(shares)
     start = np.stack([plane.stations(shares), nodes[:, 1] + aside], axis=1)
-    end, front = start.copy(), plane.front_arcs(places)
-    lines, walls = ring.columns(front)
-    lines = straight_near(lines, plane.from_corners(walls))
+    end = start.copy()
     inner = norms(start[plan.outward] - start[plan.columns[:, -1]])
     rows = plan.columns.shape[1] - 1
     layers = plane.cascade.layers
-    first = layers.first * plane.cascade.factors_at(walls)
-    end[plan.columns] = layer_lines(lines, ring.front.at(front), inner, rows, layers, first)
+    first = layers.first * plane.cascade.factors_at(columns.walls)
+    end[plan.columns] = layer_lines(columns.lines, columns.ends, inner, rows, layers, first)
     for own, at in zip(plan.ends, (0.0, plane.map.length), strict=True):
         end[own, 0] = at
     mesh = before.layout.mesh.with_nodes(start)
     nodes = start + plan.moves.of(mesh, end - start)
     nodes[plan.held] = end[plan.held]
-    return replace(before.layout, mesh=mesh.with_nodes(nodes)), plane.places_of(walls)
+    return replace(before.layout, mesh=mesh.with_nodes(nodes)), plane.places_of(columns.walls)
 
 
 def _problem(plan: SectionPlan, plane: SectionPlane, mesh: QuadMesh, *, ends_slide: bool = False) -> Problem:

@@ -14,7 +14,7 @@ from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import in_threads
 from meshonet.solvers.blocking.cascade.passage import INLET, NEAR, OUTLET
 from meshonet.solvers.rows.behind import even_behind
-from meshonet.solvers.rows.key_sections import KeySection, NextSections, SectionPlan, planned
+from meshonet.solvers.rows.key_sections import KeySection, LayerColumns, NextSections, SectionPlan, planned
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.span_lines import key_heights
 
@@ -42,17 +42,20 @@ def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
     """
     planes = _planes(row, first, growth)
     gaps = row.hub_gap > 0.0, row.tip_gap > 0.0
-    plan, middle = planned(planes, cells, _longest(planes), _wake(row, planes), gaps)
+    plan, columns, middle = planned(planes, cells, _longest(planes), _wake(row, planes), gaps)
     half = KEYS // 2
 
-    def chain(others: Sequence[SectionPlane]) -> list[KeySection]:
-        return _chain(plan, middle, others, plane_at)
+    def chain(others: Sequence[int]) -> list[KeySection]:
+        sections, following = [middle], NextSections(plan)
+        for k in others:
+            section = _reached(following, sections[-1], planes[k], plane_at, _HALVINGS, columns[k])
+            sections.append(section)
+        return sections[1:]
 
     def plane_at(height: float) -> SectionPlane:
         return SectionPlane.of(row, height, first, growth)
 
-    ways = planes[half - 1 :: -1], planes[half + 1 :]
-    below, above = in_threads(chain, ways)
+    below, above = in_threads(chain, (range(half - 1, -1, -1), range(half + 1, KEYS)))
     return KeyTables(plan, even_behind((*below[::-1], middle, *above), plan.columns))
 
 
@@ -106,25 +109,13 @@ def _wake(row: Row, planes: Sequence[SectionPlane]) -> tuple[float, float]:
     return mean, min(max(lean + slope, -most), most) - lean
 
 
-def _chain(
-    plan: SectionPlan, section: KeySection, planes: Sequence[SectionPlane],
-    plane_at: Callable[[float], SectionPlane],
-) -> list[KeySection]:  # fmt: skip
-    """Return sections that follow one another, each from the one before."""
-    sections, following = [], NextSections(plan)
-    for plane in planes:
-        section = _reached(following, section, plane, plane_at, _HALVINGS)
-        sections.append(section)
-    return sections
-
-
 def _reached(
     following: NextSections, section: KeySection, plane: SectionPlane,
-    plane_at: Callable[[float], SectionPlane], halvings: int,
+    plane_at: Callable[[float], SectionPlane], halvings: int, columns: LayerColumns | None = None,
 ) -> KeySection:  # fmt: skip
     """Return a section from another, where cells stay folded by way of that half-way between both."""
     try:
-        return following.of(section, plane)
+        return following.of(section, plane, columns)
     except NoValidGridError:
         if not halvings:
             raise

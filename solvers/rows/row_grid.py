@@ -52,7 +52,7 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     def ends_of(k: int) -> GapEnds:
         return gap_ends(row, stacked.beside, int(stacked.leading[min(k, 1)]), zones[k], first, growth)
 
-    (made, rest), *ends = run_in_threads([stacked.nodes, *(partial(ends_of, k) for k in open_)])
+    *ends, (made, rest) = run_in_threads([*(partial(ends_of, k) for k in open_), stacked.nodes])
 
     def section(k: int) -> ZoneSection:
         if not zones[k].gap:
@@ -96,7 +96,7 @@ def _joined(
     turn: Motion,
 ) -> Grid:  # fmt: skip
     """Return all blocks as one grid."""
-    blocks: list[Block] = []
+    blocks: list[tuple[Floats, Indices]] = []
     patches: list[Patch] = []
     connections: list[Connection] = []
     starts: list[int] = []
@@ -104,10 +104,9 @@ def _joined(
     for zone, section, (low, high) in zip(zones, sections, stacked.bounds, strict=True):
         start = len(blocks)
         starts.append(start)
-        parts = [(space[low : high + 1], ids) for ids in stacked.layout.blocks]
+        blocks += [(space[low : high + 1], ids) for ids in stacked.layout.blocks]
         if section.inside:
-            parts += [(section.inside.space, ids[::-1]) for ids in section.inside.fill.layout.blocks]
-        blocks += in_threads(lambda part: _block(*part), parts)
+            blocks += [(section.inside.space, ids[::-1]) for ids in section.inside.fill.layout.blocks]
         patches += [replace(patch, block=patch.block + start) for patch in section.plane.patches]
         patches += _end_patches(zone, section.layout, start, whole)
         for each in section.plane.connections:
@@ -119,7 +118,8 @@ def _joined(
             face = tuple((0, n - 1) for n in ids.shape)
             ends = (below + number, "top", face), (above + number, "bottom", face)
             connections.append(Connection(*ends[0], *ends[1], (1, 2)))  # type: ignore[arg-type]
-    return Grid(tuple(blocks), tuple(patches), tuple(connections), row.name)
+    made = in_threads(lambda block: _block(*block), blocks)
+    return Grid(tuple(made), tuple(patches), tuple(connections), row.name)
 
 
 def _block(nodes: Floats, ids: Indices) -> Block:

@@ -17,7 +17,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import folded_cells, measure
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.summary import Quality
-from meshonet.geometry.threads import in_threads, limited_to, thread_count, threads_for
+from meshonet.geometry.threads import in_threads, limited_to, run_in_threads, thread_count, threads_for
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
 
@@ -164,3 +164,34 @@ def test_threads_work_out_a_property_of_several_objects_at_once() -> None:
     with limited_to(2):
         assert in_threads(lambda each: each.value, objects) == [0, 0]
     assert [each.value for each in objects] == [0, 0]
+
+
+def test_a_thread_without_items_helps_another_with_those_inside() -> None:
+    both = threading.Barrier(2, timeout=10.0)
+
+    def wide() -> list[int]:
+        return in_threads(lambda _: both.wait(), [0, 1])
+
+    with limited_to(2):
+        several, single = run_in_threads([wide, lambda: None])
+    assert (sorted(several), single) == ([0, 1], None)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_the_error_of_the_first_item_that_fails_is_raised(count: int) -> None:
+    def fails(item: int) -> int:
+        if item in (2, 3, 5):
+            raise InputError(str(item))
+        return item
+
+    with limited_to(count), pytest.raises(InputError, match=r"^2$"):
+        in_threads(lambda _: in_threads(fails, range(8)), [0, 1])
+
+
+def test_a_limit_inside_of_threads_starts_no_others() -> None:
+    def single(_: int) -> set[int]:
+        with limited_to(1):
+            return set(in_threads(lambda _: threading.get_ident(), range(20)))
+
+    with limited_to(2):
+        assert [len(each) for each in in_threads(single, [0, 1])] == [1, 1]
