@@ -68,7 +68,11 @@ def _zone_names(grid: Grid, taken: set[str]) -> list[str]:
     """Return a name for the zone of each block: that in its original file, else the grid's with a number."""
     own = grid.provenance.get("zones")
     count = len(grid.blocks)
-    if not isinstance(own, list) or len(own) != count or not all(isinstance(name, str) for name in own):
+    if (
+        not isinstance(own, list | tuple)
+        or len(own) != count
+        or not all(isinstance(name, str) for name in own)
+    ):
         title = grid.name or "Zone"
         own = [title] if count == 1 else [f"{title[: NAME_LENGTH - 5]}-{k}" for k in range(1, count + 1)]
     names: list[str] = []

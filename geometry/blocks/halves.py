@@ -28,7 +28,7 @@ def with_image(half: Grid) -> Grid:
     """Return a grid in space and its mirror image in z = 0, joined at its patches of kind symmetry.
 
     These lie in z = 0 exactly. The blocks of the image follow those of the half, in the same order; the grid
-    is not periodic.
+    is not periodic. Names of its blocks get the ending ``-image``.
     """
     step, image = len(half.blocks), with_i_reversed(half)
     blocks = (*half.blocks, *map(_mirrored, image.blocks))
@@ -48,7 +48,10 @@ def with_image(half: Grid) -> Grid:
         images.append(replace(other, block=other.block + step))
     for each in image.connections:
         joints.append(replace(each, block=each.block + step, donor=each.donor + step))
-    return replace(half, blocks=blocks, patches=(*own, *images), connections=tuple(joints))
+    facts = dict(half.provenance)
+    if "zones" in facts:
+        facts["zones"] = [*facts["zones"], *(f"{name}-image" for name in facts["zones"])]
+    return replace(half, blocks=blocks, patches=(*own, *images), connections=tuple(joints), provenance=facts)
 
 
 def with_i_reversed(grid: Grid) -> Grid:

@@ -16,14 +16,20 @@ from meshonet.geometry.blocks.patches import Patch
 def wall_surface(grid: Grid) -> Grid:
     """Return a grid of the patches of a volume that are walls, with normals that point into the volume.
 
-    Blocks of the volume are right-handed. Edges in the plane z = 0 that are not joined to others are its
-    patch ``symmetry``; the names of the walls are those of its zones.
+    Blocks of the volume are right-handed. Edges in its plane of symmetry, z = 0 or y = 0, that are not
+    joined to others are its patch ``symmetry``; the names of the walls are those of its zones.
     """
     walls = [patch for patch in grid.patches if patch.kind == "wall"]
     blocks = [_outwards(grid, patch) for patch in walls]
-    zones = {"zones": tuple(patch.name for patch in walls)}
+    zones = {"zones": [patch.name for patch in walls]}
     surface = Grid(tuple(blocks), (), find_connections(blocks), grid.name, zones)
-    return replace(surface, patches=tuple(_symmetry(surface)))
+    return replace(surface, patches=tuple(_symmetry(surface, _axis(grid))))
+
+
+def _axis(grid: Grid) -> int:
+    """Return the axis across the plane of symmetry: 1 or 2, for y or z."""
+    sides = [grid.face(each.block, each.side) for each in grid.patches if each.kind == "symmetry"]
+    return 1 if sides and not any(side[..., 1].any() for side in sides) else 2
 
 
 def _outwards(grid: Grid, patch: Patch) -> Block:
@@ -35,11 +41,11 @@ def _outwards(grid: Grid, patch: Patch) -> Block:
     return Block(np.ascontiguousarray(nodes if inwards else nodes.swapaxes(0, 1)))
 
 
-def _symmetry(surface: Grid) -> list[Patch]:
+def _symmetry(surface: Grid, axis: int) -> list[Patch]:
     patches = []
     for number, (block, joined) in enumerate(zip(surface.blocks, surface.joined_ranges(), strict=True)):
         for side in SIDES:
-            edge = face_of(block.nodes[..., 2], side)
+            edge = face_of(block.nodes[..., axis], side)
             if not edge.any() and side not in [each for each, _ in joined]:
                 patches.append(Patch("symmetry", side, 0, len(edge) - 1, block=number))
     return patches

@@ -8,6 +8,7 @@ half is the mirror image.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -224,7 +225,18 @@ def _joined(
         blocks.append(_right_handed(np.moveaxis(nodes, 0, 2)))
     connections = find_connections(blocks)
     joined = with_equal_nodes(blocks, connections)
-    return Grid(joined, tuple(_patches(joined, plan, tip, aircraft)), connections, aircraft.name)
+    patches, facts = tuple(_patches(joined, plan, tip, aircraft)), {"zones": _names(plan, aircraft)}
+    return Grid(joined, patches, connections, aircraft.name, facts)
+
+
+def _names(plan: AircraftPlan, aircraft: Aircraft) -> list[str]:
+    """Return the names of the blocks, after the wings and the parts of the body that they are beside."""
+    body, tips = aircraft.body.name, dict(aircraft.patches)
+    wings = [wing.name for wing in plan.wings]
+    names = [f"{name}-{part}" for name in wings for part in ("collar", "above", "below")]
+    names += [f"{before}-to-{after}" for before, after in pairwise(wings)]
+    names += [f"{body}-{part}" for part in ("nose", "nose-core", "tail", "tail-core")]
+    return [*names, *(f"{tips[name]}-{part}" for name in wings for part in ("ring", "core"))]
 
 
 def _right_handed(nodes: Floats) -> Block:

@@ -5,12 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from aircraft_shapes import unclaimed_faces, wall
-from aircraft_surfaces import SPAN, TOML, body_patch, radius, wing_patches, written
+from aircraft_surfaces import LENGTH, SPAN, TOML, body_patch, radius, wing_patches, written
 
+from meshonet import read as read_grid
 from meshonet.formats.stack import stack_of
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.wall_surface import wall_surface
 from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, measure_volumes
 from meshonet.geometry.shapes.airfoil.naca import naca_points
 from meshonet.solvers.aircraft.aircraft_grid import aircraft_grid
@@ -79,3 +81,21 @@ def test_mirrored_files_have_mirrored_grids(grid: Grid, tmp_path: Path) -> None:
     assert unclaimed_faces(other) == 0
     for block, own in zip(other.blocks, grid.blocks, strict=True):
         assert np.array_equal(block.nodes[::-1] * [1.0, -1.0, 1.0], own.nodes)
+
+
+def test_the_surface_has_its_plane_of_symmetry_in_the_axes_of_the_file(grid: Grid) -> None:
+    surface = wall_surface(grid)
+    edges = [surface.face(patch.block, patch.side) for patch in surface.patches]
+    assert {patch.name for patch in surface.patches} == {"symmetry"}
+    assert not any(edge[:, 1].any() for edge in edges)
+    assert sum(np.abs(np.diff(edge[:, 0])).sum() for edge in edges) == pytest.approx(2.0 * LENGTH, rel=1e-3)
+
+
+def test_blocks_are_named_after_what_they_are_beside(grid: Grid, tmp_path: Path) -> None:
+    names = ["wing-collar", "wing-above", "wing-below", "fuselage-nose", "fuselage-nose-core"]
+    names += ["fuselage-tail", "fuselage-tail-core", "tip-ring", "tip-core"]
+    assert grid.provenance["zones"] == names
+    grid.write(tmp_path / "jet.cgns")
+    assert read_grid(str(tmp_path / "jet.cgns")).provenance["zones"] == names
+    (collar, _), *_ = wall(grid, "wing")
+    assert np.array_equal(collar, grid.blocks[0].nodes[:, 0, : collar.shape[1]])
