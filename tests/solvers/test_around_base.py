@@ -204,7 +204,9 @@ def test_flanks_rounded_towards_the_base_leave_even_cells(
 
 def test_too_few_rows_beside_a_rounded_flank_are_refused_with_as_many_as_suffice() -> None:
     body = rounded(0.2, 60, 50)
-    with pytest.raises(InputError, match="rows of nodes cannot reach the far field growing by 1.15") as told:
+    with pytest.raises(
+        InputError, match=r"rows of nodes cannot reach the far field growing by 1\.15"
+    ) as told:
         made(body, growth=1.15, ni=401, nj=97)
     least = re.search(r"use (\d+) rows or more", str(told.value))
     assert least is not None
