@@ -77,6 +77,18 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
         return helpers.run(jobs(helpers))
 
 
+def over_blocks(work: Callable[[Item], Made], items: Sequence[Item], nodes: Sequence[int]) -> list[Made]:
+    """Return what `work` returns for each of `items`, which have so many `nodes`.
+
+    Those with many, whose kernels use all threads, come one after the other, the rest several at once.
+    """
+    many = [threads_for(count) > 1 for count in nodes]
+    few = [item for item, alone in zip(items, many, strict=True) if not alone]
+    together = threads_for(sum(count for count, alone in zip(nodes, many, strict=True) if not alone)) > 1
+    made = iter(in_threads(work, few) if together else map(work, few))
+    return [work(item) if alone else next(made) for item, alone in zip(items, many, strict=True)]
+
+
 def run_in_threads(jobs: Sequence[Callable[[], Any]]) -> list[Any]:
     """Return what each of `jobs` returns, several at once if threads are free (see `in_threads`)."""
     return in_threads(lambda job: job(), jobs)

@@ -73,10 +73,10 @@ LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")
 """Fields of `Lines` that are reported."""
 
 
-def block_figures(grid: Grid, quality: Quality | None = None) -> BlockFigures:
+def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None = None) -> BlockFigures:
     """Return the figures of a multi-block grid; of volumes, `quality` is measured unless it is given.
 
-    Lines of volumes have percentiles if `quality` has.
+    Lines of volumes have percentiles if `quality` has. Without these, lines `run` need no measuring.
     """
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes
@@ -85,11 +85,12 @@ def block_figures(grid: Grid, quality: Quality | None = None) -> BlockFigures:
         sizes = tuple(block.counts for block in grid.blocks)
         numbers = shared_nodes(sizes, grid.connections, periodic=True)
         count = 1 + max(int(number.max()) for number in numbers)
-        run = solid_lines(grid, percentiles=angles.p99 is not None)
+        if not run or angles.p99 is not None:
+            run = solid_lines(grid, percentiles=angles.p99 is not None)
         return BlockFigures(sizes, None, count, len(grid.connections), angles, run)
     nodes = vertices(grid)
     counts, count = block_counts(grid, nodes), len(nodes.valence)
-    more = count, len(grid.connections), deviation(grid), lines(grid, nodes)
+    more = count, len(grid.connections), deviation(grid), run or lines(grid, nodes)
     return BlockFigures(counts.sizes, counts.irregular, *more)
 
 

@@ -6,20 +6,23 @@ ones, through which no line continues; across a face of a volume at its inner no
 be irregular.
 """
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.across import across
 from meshonet.geometry.blocks.block import PLACES, face_of
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.families import families
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.vertices import Vertices
 from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.quality.growth import DIRECTIONS, Extreme, Growth, Tally, ratios
-from meshonet.geometry.threads import threads_for
+from meshonet.geometry.threads import over_blocks, threads_for
 from meshonet.kernels import _native
 
 
@@ -139,38 +142,42 @@ def solid_lines(grid: Grid, *, percentiles: bool = True) -> Lines:
 
     The `percentiles`, inside blocks and across faces, are computed in single precision.
     """
-    parts = [*_solid_inside(grid, percentiles), *_solid_across(grid, percentiles)]
-    return lines_of(grid, parts, along=False, places=percentiles)
+    numbers, nodes = range(len(grid.blocks)), [block.nodes[..., 0].size for block in grid.blocks]
+    inside = over_blocks(lambda number: _solid_inside(grid, number, percentiles), numbers, nodes)
+    nodes = [2 * math.prod(stop - start + 1 for start, stop in each.range) for each in grid.connections]
+    beyond = over_blocks(lambda each: _solid_across(grid, each, percentiles), grid.connections, nodes)
+    return lines_of(grid, [*chain.from_iterable(inside), *beyond], along=False, places=percentiles)
 
 
-def _solid_inside(grid: Grid, kept: bool) -> Iterator[BlockLines]:
-    for number, block in enumerate(grid.blocks):
-        ni = block.counts[0]
-        summary, where = np.empty((ni, 3, 2, 2)), np.empty((ni, 3, 2, 3), dtype=np.int64)
-        values = np.empty((3, 2, *block.counts), dtype=np.float32) if kept else None
-        _native.solids_lines(block.nodes, threads_for(block.nodes[..., 0].size), summary, where, values)
-        for axis, count in enumerate(block.counts):
-            size = int(np.prod(block.counts)) // count * (count - 2)
-            measures = [Tally(kept=kept), Tally(kept=kept)]
-            inner = tuple(slice(1, -1) if each == axis else slice(None) for each in range(3))
-            for m, tally in enumerate(measures):
-                plane = int(summary[:, axis, m, 0].argmax())
-                at = number, *(int(k) for k in where[plane, axis, m])
-                high, total = float(summary[plane, axis, m, 0]), float(summary[:, axis, m, 1].sum())
-                if size:
-                    own = [] if values is None else [values[axis, m][inner]]
-                    tally.add_summed(high, total, size, at, DIRECTIONS[axis], own)
-            yield BlockLines(number, axis, True, *measures)
+def _solid_inside(grid: Grid, number: int, kept: bool) -> list[BlockLines]:
+    block = grid.blocks[number]
+    ni = block.counts[0]
+    summary, where = np.empty((ni, 3, 2, 2)), np.empty((ni, 3, 2, 3), dtype=np.int64)
+    values = np.empty((3, 2, *block.counts), dtype=np.float32) if kept else None
+    _native.solids_lines(block.nodes, threads_for(block.nodes[..., 0].size), summary, where, values)
+    parts = []
+    for axis, count in enumerate(block.counts):
+        size = int(np.prod(block.counts)) // count * (count - 2)
+        measures = [Tally(kept=kept), Tally(kept=kept)]
+        inner = tuple(slice(1, -1) if each == axis else slice(None) for each in range(3))
+        for m, tally in enumerate(measures):
+            plane = int(summary[:, axis, m, 0].argmax())
+            at = number, *(int(k) for k in where[plane, axis, m])
+            high, total = float(summary[plane, axis, m, 0]), float(summary[:, axis, m, 1].sum())
+            if size:
+                own = [] if values is None else [values[axis, m][inner]]
+                tally.add_summed(high, total, size, at, DIRECTIONS[axis], own)
+        parts.append(BlockLines(number, axis, True, *measures))
+    return parts
 
 
-def _solid_across(grid: Grid, kept: bool) -> Iterator[BlockLines]:
-    for each in grid.connections:
-        own, donor = across(grid, each, 2)
-        line = np.stack([own[1], own[0], donor[1]])
-        inner = [slice(1, -1) if n > 2 else slice(None) for n in line.shape[1:3]]
-        line = line[:, inner[0], inner[1]]
-        axis, end = PLACES[each.side]
-        at = [first + (part.start or 0) for (first, _), part in zip(each.range, inner, strict=True)]
-        at.insert(axis, 0 if end == 0 else grid.blocks[each.block].counts[axis] - 1)
-        values = (np.expand_dims(measure(line)[0], axis) for measure in (ratios, bends))
-        yield part_of_values((each.block, *at), axis, False, values, kept=kept)
+def _solid_across(grid: Grid, each: Connection, kept: bool) -> BlockLines:
+    own, donor = across(grid, each, 2)
+    line = np.stack([own[1], own[0], donor[1]])
+    inner = [slice(1, -1) if n > 2 else slice(None) for n in line.shape[1:3]]
+    line = line[:, inner[0], inner[1]]
+    axis, end = PLACES[each.side]
+    at = [first + (part.start or 0) for (first, _), part in zip(each.range, inner, strict=True)]
+    at.insert(axis, 0 if end == 0 else grid.blocks[each.block].counts[axis] - 1)
+    values = (np.expand_dims(measure(line)[0], axis) for measure in (ratios, bends))
+    return part_of_values((each.block, *at), axis, False, values, kept=kept)

@@ -21,7 +21,7 @@ from meshonet.geometry.quality.cell_run import FEW, NONE, PERCENTS
 from meshonet.geometry.quality.metrics import SOLID_METRICS, SOLID_NAMES
 from meshonet.geometry.quality.surfaces import bad_cell
 from meshonet.geometry.summary import Quality, Summary
-from meshonet.geometry.threads import threads_for
+from meshonet.geometry.threads import over_blocks, threads_for
 from meshonet.kernels import _native
 
 CORNERS, BEZIER = 0, 1
@@ -82,7 +82,8 @@ def measure_volumes(grid: Grid, *, percentiles: bool = False) -> Quality:
     sizes = [int(np.prod([count - 1 for count in block.counts])) for block in grid.blocks]
     cells = sum(sizes)
     kept = slice(None) if percentiles and cells <= FEW else NONE
-    runs = [_run_over(*each, kept) for each in zip(grid.blocks, volumes, strict=True)]
+    pairs = list(zip(grid.blocks, volumes, strict=True))
+    runs = over_blocks(lambda pair: _run_over(*pair, kept), pairs, _nodes_of(grid))
     low, high = np.stack([run.low for run in runs]), np.stack([run.high for run in runs])
     total = np.sum([run.total for run in runs], axis=0)
     metrics = {}
@@ -95,11 +96,20 @@ def measure_volumes(grid: Grid, *, percentiles: bool = False) -> Quality:
             ends = [*percentiles_of(np.concatenate([part.ravel() for part in parts]), PERCENTS)]
         span = float(low[:, k].min()), float(total[k]) / cells, float(high[:, k].max())
         metrics[metric.name] = Summary(*span, (block, *map(int, runs[block].where[k, end])), *ends)
-    folded = sum(count_folded_solids(block.nodes) for block in grid.blocks)
-    doubtful = folded
-    if metrics["bezier_ratio"].min <= 0:
-        doubtful = sum(count_folded_solids(block.nodes, BEZIER) for block in grid.blocks)
+    folded = _folded_of(grid, CORNERS)
+    doubtful = _folded_of(grid, BEZIER) if metrics["bezier_ratio"].min <= 0 else folded
     return Quality(cells, folded, metrics, doubtful)
+
+
+def _folded_of(grid: Grid, test: int) -> int:
+    return sum(
+        over_blocks(lambda block: count_folded_solids(block.nodes, test), grid.blocks, _nodes_of(grid))
+    )
+
+
+def _nodes_of(grid: Grid) -> list[int]:
+    """Return the number of nodes of each block."""
+    return [block.nodes[..., 0].size for block in grid.blocks]
 
 
 def solid_metric(grid: Grid, name: str) -> list[Floats]:
@@ -117,14 +127,7 @@ def padded_volumes(grid: Grid) -> list[Floats]:
 
     The layer has the volumes of the cells across connections, and elsewhere repeats those of the block.
     """
-    padded = []
-    for block in grid.blocks:
-        sizes = np.zeros([count + 1 for count in block.counts])
-        _native.solids_volumes(block.nodes, threads_for(sizes.size), sizes)
-        for axis in range(3):
-            layers = np.moveaxis(sizes, axis, 0)
-            layers[0], layers[-1] = layers[1], layers[-2]
-        padded.append(sizes)
+    padded = over_blocks(_padded, grid.blocks, _nodes_of(grid))
 
     def layer(depth: int) -> Callable[[int, Side], NDArray[Any]]:
         def face(block: int, side: Side) -> NDArray[Any]:
@@ -140,6 +143,16 @@ def padded_volumes(grid: Grid) -> list[Floats]:
         if own.shape == donor.shape:
             beyond[...], before[...] = donor, own
     return padded
+
+
+def _padded(block: Block) -> Floats:
+    """Return the cell volumes of a block, repeated in one layer of cells around it."""
+    sizes = np.zeros([count + 1 for count in block.counts])
+    _native.solids_volumes(block.nodes, threads_for(sizes.size), sizes)
+    for axis in range(3):
+        layers = np.moveaxis(sizes, axis, 0)
+        layers[0], layers[-1] = layers[1], layers[-2]
+    return sizes
 
 
 class _BlockRun(NamedTuple):

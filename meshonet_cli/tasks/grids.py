@@ -61,7 +61,9 @@ def reported(
         if grid.topology == "blocks":
             from meshonet.geometry.quality.blocks import block_counts, block_figures
 
-            report.blocks = block_figures(grid, result.quality) if detailed else block_counts(grid)
+            report.blocks = (
+                block_figures(grid, result.quality, result.lines) if detailed else block_counts(grid)
+            )
         if criteria:
             report.judgement = criteria.judge(grid, result.quality)
     return grid.with_provenance(**provenance()), report

@@ -16,6 +16,7 @@ from meshonet.solvers.solution import Outcome, Solution
 from meshonet.solvers.stages import stage
 
 if TYPE_CHECKING:
+    from meshonet.geometry.quality.lines import Lines
     from meshonet.solvers.deformation.request import DeformRequest
     from meshonet.solvers.pipeline.request import GridRequest
     from meshonet.solvers.progress import HistoryRow
@@ -41,6 +42,8 @@ class Result:
         for `meshonet.geometry.errors.spelled`.
     history : tuple of HistoryRow, optional
         Cycles of the method, if the request keeps them.
+    lines : Lines, optional
+        Those of a multi-block grid, as far as they were measured for a note.
     """
 
     solution: Solution
@@ -48,6 +51,7 @@ class Result:
     seconds: Mapping[str, float]
     notes: tuple[str, ...] = ()
     history: tuple[HistoryRow, ...] = ()
+    lines: Lines | None = None
 
     @property
     def grid(self) -> Grid:
@@ -82,10 +86,12 @@ def judged(
     facts = change_facts(solution.notes) if solution.notes else {}
     if facts:
         solution = replace(solution, grid=solution.grid.with_provenance(**facts))
+    run = None
     if solution.growth < math.inf:
-        from meshonet.solvers.pipeline.wall_facts import growth_note
+        from meshonet.solvers.pipeline.wall_facts import growth_note, lines_without_percentiles
 
         with stage("quality", seconds):
-            notes = (*solution.notes, *growth_note(solution.grid, solution.growth))
+            run = lines_without_percentiles(solution.grid) if solution.grid.topology == "blocks" else None
+            notes = (*solution.notes, *growth_note(solution.grid, solution.growth, run))
         solution = replace(solution, notes=notes)
-    return Result(solution, quality, seconds, solution.notes, history)
+    return Result(solution, quality, seconds, solution.notes, history, run)

@@ -16,7 +16,7 @@ _SAME = 1e-6
 def wall_facts(grid: Grid) -> tuple[str, ...]:
     """Return notes on first cells and growth at each wall of a multi-block grid, planar or in space."""
     notes = []
-    for row in wall_rows(grid, grid.walls(), _lines(grid).by_wall):
+    for row in wall_rows(grid, grid.walls(), lines_without_percentiles(grid).by_wall):
         low, high = row.height.min, row.height.max
         cells = f"{low:.6g}" if high - low <= _SAME * high else f"{low:.6g} to {high:.6g}"
         rows = f", growth up to {row.growth.max:.3f} along lines from it" if row.growth else ""
@@ -24,13 +24,15 @@ def wall_facts(grid: Grid) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def growth_note(grid: Grid, limit: float) -> tuple[str, ...]:
+def growth_note(grid: Grid, limit: float, run: Lines | None = None) -> tuple[str, ...]:
     """Return a note with the largest ratio of neighbouring cells and its node, if it is above a limit.
+
+    `run` are the lines of multi-block grids, measured unless they are given.
 
     It is that along all grid lines, as `quality` reports it. If it is not along a line from a wall, for which
     the limit is meant, the note has the largest ratio along those, too.
     """
-    ratios, leaving = _growth(grid)
+    ratios, leaving = _growth(grid, run)
     largest = most_of(ratios.families().values())
     if largest is None or largest.max <= limit * (1.0 + _SAME):
         return ()
@@ -41,14 +43,15 @@ def growth_note(grid: Grid, limit: float) -> tuple[str, ...]:
     return (f"neighbouring cells differ by up to {largest.max:.3f} {where}{beside}",)
 
 
-def _growth(grid: Grid) -> tuple[Growth, Extreme | None]:
+def _growth(grid: Grid, run: Lines | None) -> tuple[Growth, Extreme | None]:
     """Return the ratios of neighbouring cells along each direction, and along lines from walls."""
     if grid.topology != "blocks":
         ratios = growth(grid)
         return ratios, growth_off_walls(ratios, grid.walls())
-    run = _lines(grid)
+    run = run or lines_without_percentiles(grid)
     return run.growth, run.leaving
 
 
-def _lines(grid: Grid) -> Lines:
+def lines_without_percentiles(grid: Grid) -> Lines:
+    """Return the growth and bend of the lines of a multi-block grid; those of volumes have no percentiles."""
     return solid_lines(grid, percentiles=False) if grid.form == "volume" else lines(grid, vertices(grid))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from space_grids import lattice, pipe, sphere_patches, turned
 
+from meshonet.geometry import threads
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.find_connections import find_connections
@@ -22,7 +23,9 @@ from meshonet.geometry.quality.blocks import block_figures
 from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.gates import parse_gates
 from meshonet.geometry.quality.growth import ratios
+from meshonet.geometry.quality.measure import measure
 from meshonet.geometry.quality.report import quality_report
+from meshonet.geometry.threads import limited_to
 
 GROWTH = 1.2
 
@@ -57,6 +60,20 @@ def test_a_shell_has_its_first_cell_growth_and_angle(split: int) -> None:
     assert [result.verdict for result in report.profile.results if result.check.figure == "wall_growth"] == [
         "pass"
     ]
+
+
+@pytest.mark.parametrize("nodes_each", [16, 400])  # blocks with threads of their own, and several at once
+def test_threads_change_nothing_in_the_figures_of_blocks(
+    monkeypatch: pytest.MonkeyPatch, nodes_each: int
+) -> None:
+    grid = shell(split=3)
+    monkeypatch.setattr(threads, "NODES_EACH", nodes_each)
+    single, *several = [], [], []
+    for count, figures in zip((1, 2, 3), (single, *several), strict=True):
+        with limited_to(count):
+            quality = measure(grid, percentiles=True)
+            figures += [quality, block_figures(grid, quality)]
+    assert several == [single, single]
 
 
 def test_growth_of_volumes_has_its_percentile() -> None:
