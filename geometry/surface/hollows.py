@@ -16,6 +16,9 @@ CONCAVE_DEG = 30.0
 _LEAST = 0.01
 """Length of all concave edges over the size of the surface up to which they are dents, not junctions."""
 
+_BESIDE = 0.1
+"""Distance from a concave edge, over the size of the surface, up to which cells fold because of it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Hollows:
@@ -35,9 +38,21 @@ class Hollows:
 
     def sharpest(self) -> tuple[float, int] | None:
         """Return the least angle and a node of its edge, None where no edge is concave."""
+        return self._at(int(self.angles.argmin())) if len(self.edges) else None
+
+    def nearest(self, surface: Surface, numbers: Indices) -> tuple[float, int] | None:
+        """Return angle and node of the edge nearest to nodes with these numbers (n,).
+
+        None if it is farther away than a tenth of the surface's size.
+        """
         if not len(self.edges):
             return None
-        k = int(self.angles.argmin())
+        edges = surface.nodes[self.edges[:, 0]]
+        away = norms(surface.nodes[numbers][:, None] - edges).min(axis=0)
+        k = int(away.argmin())
+        return self._at(k) if away[k] <= _BESIDE * surface.size else None
+
+    def _at(self, k: int) -> tuple[float, int]:
         return float(self.angles[k]), int(self.edges[k, 0])
 
 

@@ -85,3 +85,20 @@ def test_threads_do_not_change_a_bit_of_a_relaxed_march(eager_threads: None) -> 
 def test_an_acute_junction_is_refused_with_its_angle_and_place() -> None:
     with pytest.raises(NoValidGridError, match=r"walls meet at an angle of 15 degrees at patch 0, i=0, j=\d"):
         marched(wedge(15.0), 1e-3, 49, 3.0)
+
+
+def test_the_junction_that_is_named_is_the_one_beside_the_folded_cells() -> None:
+    surface = surface_of(grid_of(boxes({*L_SHAPE, (2, 0, 0), (3, 0, 0), (4, 0, 0), (4, 1, 0)})))
+    hollows, (x, y, _) = hollows_of(surface), surface.nodes.T
+
+    def named(x0: float, y0: float) -> tuple[float, float] | None:
+        node = np.hypot(x - x0, y - y0).argmin()
+        found = hollows.nearest(surface, np.array([node]))
+        return found and (round(x[found[1]], 6), round(y[found[1]], 6))
+
+    edges = surface.nodes[hollows.edges[:, 0], :2]
+    left, right = edges[edges[:, 0].argmin()], edges[edges[:, 0].argmax()]
+    assert left[0] < right[0]
+    assert named(*left + [0.2, 0.0]) == pytest.approx(tuple(left))
+    assert named(*right + [0.0, 0.2]) == pytest.approx(tuple(right))
+    assert named(x.max(), y.min()) is None

@@ -208,11 +208,16 @@ def _refusal(volume: _Volume, cells: int, tries: int, surface: Surface, hollows:
         columns = sum((block.counts[0] - 1) * (block.counts[1] - 1) for block in volume.blocks)
         problem = f"{volume.folded} of {cells * columns} cells are folded"
     problem += f" after {tries} tries with other smoothing"
-    remedy, sharpest = "give a nearer {far_field}, or smoother patches", hollows.sharpest()
-    if sharpest is not None:
-        problem += f"; walls meet at an angle of {sharpest[0]:.0f} degrees at {surface.place(sharpest[1])}"
+    worst = _worst(volume.blocks)
+    under = [int(surface.lattices[cell.block or 0][cell.i, cell.j]) for cell in worst]
+    edge = hollows.nearest(surface, np.array(under)) if under else hollows.sharpest()
+    remedy = "give a nearer {far_field}, or smoother patches"
+    if edge is not None:
+        problem += f"; walls meet at an angle of {edge[0]:.0f} degrees at {surface.place(edge[1])}"
         remedy = "give a nearer {far_field}, or a wider or rounded edge there"
-    return NoValidGridError(f"{problem}; {remedy}", _worst(volume.blocks))
+    elif under:
+        problem += f", the worst above {surface.place(under[0])}"
+    return NoValidGridError(f"{problem}; {remedy}", worst)
 
 
 def _worst(blocks: tuple[Block, ...]) -> list[BadCell]:
