@@ -99,6 +99,6 @@ def test_the_junction_that_is_named_is_the_one_beside_the_folded_cells() -> None
     edges = surface.nodes[hollows.edges[:, 0], :2]
     left, right = edges[edges[:, 0].argmin()], edges[edges[:, 0].argmax()]
     assert left[0] < right[0]
-    assert named(*left + [0.2, 0.0]) == pytest.approx(tuple(left))
-    assert named(*right + [0.0, 0.2]) == pytest.approx(tuple(right))
+    assert named(left[0] + 0.2, left[1]) == pytest.approx(tuple(left))
+    assert named(right[0], right[1] + 0.2) == pytest.approx(tuple(right))
     assert named(x.max(), y.min()) is None
