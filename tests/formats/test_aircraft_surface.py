@@ -120,3 +120,26 @@ def test_thin_trailing_edges_of_surfaces_are_opened_only_where_asked(tmp_path: P
     thicker = wing.opened(0.01)
     assert thicker.base(z) == pytest.approx(0.01, rel=1e-2)
     assert thicker.notes[-1] == "the trailing edge of the wing, 0.0031 chords high, is opened to 0.01 chords"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (TOML.replace("jet", "none", 1), r"bodies\[0\].surface: .*no such file"),
+        (TOML.replace('"jet.xyz"', "3", 1), r"bodies\[0\].surface: 3 is no text"),
+        (TOML + "patches = [true]", r"wings\[0\].patches: True is no patch of the file; use 0 to 2"),
+        (TOML + "patches = []", r"wings\[0\].patches: is no list of numbers or names"),
+        (TOML + "sections = 3", r"wings\[0\].sections: is not known; use on, name, surface, patches"),
+        (TOML + 'on = "hull"', r"wings\[0\].on: hull is no body; use fuselage"),
+    ],
+)
+def test_wrong_keys_and_values_are_refused(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        read(tmp_path, [body_patch(), *wing_patches()], text)
+
+
+def test_a_wing_may_be_a_surface_on_a_body_with_a_meridian(tmp_path: Path) -> None:
+    meridian = [[x, float(radius(np.array(x)))] for x in (0.0, 1.0, 3.0, 7.0, 10.0)]
+    wings = TOML[TOML.index("[[wings]]") :]
+    jet = read(tmp_path, wing_patches(), f'kind = "aircraft"\n[[bodies]]\nmeridian = {meridian}\n{wings}')
+    assert wing_of(jet).notes == ("the wing is patch 0, 1 of jet.xyz",)
