@@ -12,7 +12,7 @@ from meshonet.geometry.blocks.copies import copied
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.revolve import AxisLine, Revolution, revolution, revolved
-from meshonet.geometry.blocks.transform import coarser_grid, normalised, turned
+from meshonet.geometry.blocks.transform import coarser_grid, normalised, scaled, turned
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
 
@@ -30,7 +30,8 @@ class Conversion:
     coarsen : keep every `coarsen`-th node.
     revolve : angle in degrees by which planar grids are revolved about `axis`; None leaves them planar.
     axis : line in the plane; None is the x axis.
-    copies : number of copies of a periodic grid beside each other.
+    copies : number of copies of a periodic grid beside each other, along each of its periods.
+    scale : factor on all lengths.
     """
 
     extrude: float | None = None
@@ -40,7 +41,8 @@ class Conversion:
     coarsen: int = 1
     revolve: float | None = None
     axis: AxisLine | None = None
-    copies: int = 1
+    copies: int | tuple[int, ...] = 1
+    scale: float = 1.0
 
     def turn(self) -> Revolution | None:
         """Return how grids are turned about an axis, None if they are not."""
@@ -67,7 +69,8 @@ class Conversion:
             return grid
         grid = coarser_grid(grid, self.coarsen) if self.coarsen > 1 else grid
         grid = turned(grid) if self.swap else grid
-        return copied(normalised(grid) if self.normalise else grid, self.copies)
+        grid = normalised(grid) if self.normalise else grid
+        return copied(scaled(grid, self.scale) if self.scale != 1.0 else grid, self.copies)
 
     def read(self, source: str, fmt: str | None, *, boundaries: bool) -> Iterator[Grid | Boundary]:
         """Yield the boundaries of `source`, or else its grids."""
@@ -78,7 +81,8 @@ class Conversion:
 
     def of_boundaries(self, source: str, output: str, from_format: str | None, to_format: str | None) -> bool:
         """Return whether boundaries are written: grids are not changed, and one of the formats has none."""
-        if self.heights() or self.turn() or self.swap or self.coarsen > 1 or self.copies > 1:
+        changed = self.swap or self.coarsen > 1 or self.copies != 1 or self.scale != 1.0
+        if changed or self.heights() or self.turn():
             return False
         try:
             written = format_for_output(output, to_format, "boundaries")

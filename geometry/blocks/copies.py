@@ -6,6 +6,8 @@
     |  0   |  1   |  2   |      next one. Copies that fill a whole turn are joined to a ring; otherwise the
     +------+------+------+      outer sides are periodic, by the motion of all copies together.
     first           second
+
+With several periods, shifts in different directions, copies are made along one after the other.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.screw import Screw, screw_of
-from meshonet.geometry.blocks.shared_nodes import node_table
+from meshonet.geometry.blocks.shared_nodes import node_table, with_equal_nodes
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 
@@ -29,24 +31,40 @@ _SAME = 1e-9
 """Relative difference that is rounding: of two motions, and of a whole turn from a number of periods."""
 
 
-def copied(grid: Grid, copies: int) -> Grid:
+def copied(grid: Grid, copies: int | Sequence[int]) -> Grid:
     """Return copies of a periodic grid, each joined to the next; all have patches of the same names.
 
     Parameters
     ----------
     grid : Grid
-        A grid with one period, a rotation or a translation.
-    copies : int
-        How many; at most as many as fill a whole turn.
+        A grid with one period, a rotation or a translation, or with several translations.
+    copies : int or sequence of int
+        How many along each period; at most as many as fill a whole turn.
 
     Raises
     ------
     InputError
-        A grid that is not periodic, or in several ways; a number out of its range.
+        A grid that is not periodic, or in other ways than there are numbers; a number out of its range.
     """
-    if copies == 1:
+    counts = (copies,) if isinstance(copies, int) else tuple(copies)
+    if counts == (1,):
         return grid
-    periodic = _periodic(grid)
+    periods = _periods(grid)
+    if len(periods) != len(counts):
+        raise _unlike(periods, len(counts))
+    if len(counts) > 1 and math.prod(counts) > MOST_COPIES:
+        problem = f"{'x'.join(map(str, counts))} copies"
+        raise InputError(problem, f"use at most {MOST_COPIES} in all", parameter="copies")
+    for count in counts:  # the period of the copies made last becomes the last one
+        grid = _along(grid, _periods(grid)[0], count)
+    if len(counts) > 1:  # shifted in another order, corners differ by rounding
+        grid = replace(grid, blocks=with_equal_nodes(grid.blocks, grid.connections))
+    total = math.prod(counts)
+    return grid.with_provenance(copies=total)
+
+
+def _along(grid: Grid, periodic: Sequence[Connection], copies: int) -> Grid:
+    """Return copies of a grid along the period of its connections `periodic`."""
     screw, turn = _period(periodic[0].transform or Motion())
     most = int(turn) or MOST_COPIES
     if not 1 <= copies <= most:
@@ -65,30 +83,47 @@ def copied(grid: Grid, copies: int) -> Grid:
         table[second] = motions[k + 1](nodes[first])
         blocks += [Block(table[number], finite=True) for number in numbers]
     patches = [replace(each, block=each.block + k * step) for k in range(copies) for each in grid.patches]
-    connections = (*_within(grid, copies), *_between(periodic, step, copies, motions[-1]))
-    facts = {name: fact for name, fact in grid.provenance.items() if name != "zones"} | {"copies": copies}
+    own = [each for each in grid.connections if not _repeats(each, periodic)]
+    connections = (*_within(own, step, copies), *_between(periodic, step, copies, motions[-1]))
+    facts = {name: fact for name, fact in grid.provenance.items() if name != "zones"}
     return replace(
         grid, blocks=tuple(blocks), patches=tuple(patches), connections=connections, provenance=facts
     )
 
 
-def _periodic(grid: Grid) -> list[Connection]:
-    """Return the periodic connections, all with the motion of the first one."""
-    periodic: list[Connection] = []
+def _periods(grid: Grid) -> list[list[Connection]]:
+    """Return the periodic connections by their motions, those of a period all with its first motion."""
+    periods: list[list[Connection]] = []
     for each in grid.connections:
         if each.transform is None:
             continue
-        period = (periodic or [each])[0].transform or Motion()
-        ways = each, each.reversed()
-        way = next((way for way in ways if period.alike(way.transform or Motion(), _SAME)), None)
-        if way is None:
-            remedy = "copy a grid with one period"
-            raise InputError("the grid is periodic in several ways", remedy, parameter="copies")
-        periodic.append(replace(way, transform=period))
-    if not periodic:
+        for group in periods:
+            period = group[0].transform or Motion()
+            ways = each, each.reversed()
+            way = next((way for way in ways if period.alike(way.transform or Motion(), _SAME)), None)
+            if way is not None:
+                group.append(replace(way, transform=period))
+                break
+        else:
+            periods.append([each])
+    if not periods:
         remedy = "copy one with periodic sides, such as a passage between blades"
         raise InputError("the grid is not periodic", remedy, parameter="copies")
-    return periodic
+    if len(periods) > 1 and any(group[0].transform and group[0].transform.turn for group in periods):
+        remedy = "copy a grid with one period, or with shifts only"
+        raise InputError("the grid is periodic in several ways", remedy, parameter="copies")
+    return periods
+
+
+def _unlike(periods: Sequence[Sequence[Connection]], numbers: int) -> InputError:
+    """Return the error for a number of copies that is not one for each period."""
+    if len(periods) == 1:
+        return InputError(f"{numbers} numbers for a grid with one period", "give one", parameter="copies")
+    shifts = [group[0].transform.shift for group in periods if group[0].transform]
+    ways = " and ".join(f"({', '.join(f'{x:.6g}' for x in shift)})" for shift in shifts)
+    problem = f"the grid is periodic by shifts of {ways}"
+    counts = "x".join(["3", *["2"] * (len(shifts) - 1)])
+    return InputError(problem, f"give a number for each, such as {counts}", parameter="copies")
 
 
 def _period(motion: Motion) -> tuple[Screw, float]:
@@ -120,13 +155,16 @@ def _repeated(screw: Screw, times: int, dimension: int) -> Motion:
     return Motion(tuple(shift[:dimension].tolist()) if shift.any() else (), rows)
 
 
-def _within(grid: Grid, copies: int) -> Iterator[Connection]:
-    """Yield the connections inside of each copy."""
-    step = len(grid.blocks)
+def _repeats(each: Connection, periodic: Sequence[Connection]) -> bool:
+    """Return whether a connection is one of those along whose period copies are made."""
+    return any(each.ends in (other.ends, other.reversed().ends) for other in periodic)
+
+
+def _within(connections: Sequence[Connection], step: int, copies: int) -> Iterator[Connection]:
+    """Yield the connections of each copy, of `step` blocks, that it has by itself."""
     for k in range(copies):
-        for each in grid.connections:
-            if each.transform is None:
-                yield replace(each, block=each.block + k * step, donor=each.donor + k * step)
+        for each in connections:
+            yield replace(each, block=each.block + k * step, donor=each.donor + k * step)
 
 
 def _between(periodic: Sequence[Connection], step: int, copies: int, whole: Motion) -> Iterator[Connection]:

@@ -28,6 +28,9 @@ from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.polygon.corners import find_corners
 
 _SIDES: dict[Side, Side] = {"east": "south", "west": "north", "south": "west", "north": "east"}
+_LENGTHS = "wall_spacing", "spacing_"
+"""Beginnings of the names of facts in a grid's provenance that are lengths."""
+_MOST_SCALED = 1e12  # factor beyond which a change of unit is a mistake
 _COUNTED_BACK = ("south", "north")
 """Sides whose nodes are counted from their other end once a grid is turned."""
 
@@ -198,6 +201,29 @@ def _normalised_blocks(grid: Grid) -> Grid:
     # both sides of a periodic connection were moved and scaled, and now differ by rounding
     equal = with_equal_nodes(blocks, connections)
     return replace(grid, blocks=equal, connections=tuple(connections))
+
+
+def scaled(grid: Grid, factor: float) -> Grid:
+    """Return `grid` in another unit: nodes, periods and heights of first cells times `factor`.
+
+    Raises InputError: a factor that is not positive, or beyond 1e-12 to 1e12.
+    """
+    if not 1.0 / _MOST_SCALED <= factor <= _MOST_SCALED:
+        remedy = "give the new unit in old ones, e.g. 0.001 for a grid from mm to m"
+        raise InputError(f"a factor of {factor:g}", remedy, parameter="scale")
+    blocks = [Block(factor * block.nodes) for block in grid.blocks]
+    connections = []
+    for each in grid.connections:
+        motion = each.transform
+        if motion:
+            motion = replace(motion, shift=tuple(factor * x for x in motion.shift))
+        connections.append(replace(each, transform=motion))
+    facts = {
+        name: factor * fact if name.startswith(_LENGTHS) else fact for name, fact in grid.provenance.items()
+    }
+    facts["scaled"] = factor * float(facts.get("scaled", 1.0))
+    equal = with_equal_nodes(blocks, connections)  # periodic sides now differ by rounding
+    return replace(grid, blocks=equal, connections=tuple(connections), provenance=facts)
 
 
 def rotated(grid: Grid, rotation: Motion) -> Grid:

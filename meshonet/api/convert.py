@@ -23,7 +23,8 @@ def convert(
     coarsen: int = 1,
     revolve: float | None = None,
     axis: Sequence[float] | None = None,
-    copies: int = 1,
+    copies: int | Sequence[int] = 1,
+    scale: float = 1.0,
     from_format: str | None = None,
     to_format: str | None = None,
 ) -> None:
@@ -55,9 +56,12 @@ def convert(
         periodic sides, 360 a full revolution.
     axis : sequence of float, optional
         Axis of the revolution in the plane: point and direction (x, y, dx, dy); None is the x axis.
-    copies : int, optional
+    copies : int or sequence of int, optional
         Number of copies of a periodic grid beside each other, each joined to the next: passages of a blade
-        row, up to the whole annulus.
+        row, up to the whole annulus. A grid with several shifts has a number for each.
+    scale : float, optional
+        Factor on all lengths: nodes, shifts of periodic sides, heights of first cells. 0.001 makes metres of
+        millimetres.
     from_format, to_format : str, optional
         Formats of input and output; needed if extensions and content do not determine them.
 
@@ -66,7 +70,7 @@ def convert(
     InputError
         A format that cannot be read or written, or cannot store three-dimensional grids; a height that is not
         positive; an axis that intersects the grid; numbers of cells that are not multiples of `coarsen`;
-        `copies` of a grid that is not periodic.
+        `copies` of a grid that is not periodic, or in other ways; a `scale` that is not positive.
 
     Examples
     --------
@@ -77,8 +81,9 @@ def convert(
     ((41, 17, 2), (21, 9, 2))
     """
     conversion = Conversion(
-        extrude, planes, swap, normalise, coarsen, revolve, None if axis is None else AxisLine(*axis), copies
-    )
+        extrude, planes, swap, normalise, coarsen, revolve, None if axis is None else AxisLine(*axis),
+        copies if isinstance(copies, int) else tuple(copies), scale,
+    )  # fmt: skip
     names = inputs(source)
     first = next(names, None)
     if first is None:

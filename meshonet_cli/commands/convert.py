@@ -16,6 +16,7 @@ EXAMPLES = (
     "meshonet convert grid.vts case/case.foam --extrude 0.1",
     "meshonet convert grid.vts wedge/case.foam --revolve 5 --axis 0,-40,1,0",
     "meshonet convert rotor.cgns annulus.cgns --copies 23",
+    "meshonet convert cell.cgns bank/case.foam --copies 3x2 --scale .001 --extrude .001",
     "meshonet convert grid.vts grid.p3d --plot3d fortran,big,single",
     "meshonet convert --list-formats",
 )
@@ -72,10 +73,16 @@ def convert(
         help="Keep every K-th node along xi and eta. K must divide the number of cells in both directions "
         "and the indices of nodes at corners of walls.",
     )] = None,
-    copies: Annotated[int | None, _option(
-        "--copies", metavar="K", min=1,
+    scale: Annotated[float | None, _option(
+        "--scale", metavar="S",
+        help="Multiply all lengths by S: nodes, periods, heights of first cells. 0.001 makes metres of "
+        "millimetres. --extrude and --axis are in the new unit. [default: 1]",
+    )] = None,
+    copies: Annotated[str | None, _option(
+        "--copies", metavar="K[xL]",
         help="Copy a periodic grid K times, each copy joined to the next: passages of a blade row, up to the "
-        "whole annulus. [default: 1]",
+        "whole annulus. A grid with two periods is copied K times along the first and L times along the "
+        "second, in the order that quality lists them. [default: 1]",
     )] = None,
     revolve: o.Revolve = None,
     axis: o.Axis = None,
@@ -96,7 +103,8 @@ def convert(
         raise InputError("there is no file to write", remedy, source="convert")
     batch = run.batch(run.inputs(sources), replace(files, output=target))
     conversion = Conversion(
-        extrude, planes, swap, normalise, coarsen or 1, revolve, o.axis_of(axis), copies or 1,
+        extrude, planes, swap, normalise, coarsen or 1, revolve, o.axis_of(axis), o.copies_of(copies),
+        1.0 if scale is None else scale,
     )
     return convert_files(batch, conversion, plot3d)
 # fmt: on

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from meshonet_cli.options.groups import VOLUME, numbers, option_of
+from meshonet_cli.options.groups import VOLUME, bad_value, numbers, option_of
 
 if TYPE_CHECKING:
     from meshonet.geometry.blocks.revolve import AxisLine
@@ -40,6 +40,22 @@ def axis_of(text: str | None) -> "AxisLine | None":
     words, remedy = named.get(text or "", text), "use x, y or X,Y,DX,DY, e.g. 0,-2,1,0"
     line = numbers(words, (4,), "an axis", remedy, "axis")
     return None if line is None else AxisLine(*line)
+
+
+def copies_of(text: str | None) -> int | tuple[int, ...]:
+    """Return the numbers of copies along each period in an option, 1 for None.
+
+    Raises InputError: other text than whole numbers with x between them.
+
+    >>> copies_of("3x2"), copies_of("23")
+    ((3, 2), 23)
+    """
+    words = (text or "1").lower().split("x")
+    if not all(word.isascii() and word.isdigit() and len(word) < 10 for word in words):
+        remedy = "use a number, or one for each of two periods, e.g. 3x2"
+        raise bad_value(text or "", "numbers of copies", remedy, "copies")
+    counts = tuple(map(int, words))
+    return counts if len(counts) > 1 else counts[0]
 
 
 @dataclass(frozen=True, kw_only=True)

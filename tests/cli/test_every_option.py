@@ -229,6 +229,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--normalise": (f"grid.h5 {MADE}", "OPTION", "nodes"),
         "--coarsen": (f"grid.h5 {MADE}", "OPTION 2", "nodes"),
         "--copies": (f"passage.h5 {MADE}", "OPTION 3", "nodes"),
+        "--scale": (f"grid.h5 {MADE}", "OPTION .001", "nodes"),
         "--list-formats": ("", "OPTION", "prints"),
     },
     "plot": PICTURE | chosen("@grids.txt -o made-{stem}.png -q", "*oo*") | {

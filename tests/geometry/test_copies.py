@@ -113,12 +113,47 @@ def test_what_has_no_copies_is_refused(grid: Grid, copies: int, words: str) -> N
         copied(grid, copies)
 
 
-def test_a_grid_with_two_periods_is_refused() -> None:
-    x, y = np.meshgrid(np.arange(3.0), np.arange(3.0), indexing="ij")
-    whole = ((0, 2),)
-    both = (
-        Connection(0, "south", whole, 0, "north", whole, (1,), Motion((0.0, 2.0))),
-        Connection(0, "west", whole, 0, "east", whole, (1,), Motion((2.0, 0.0))),
+def cell() -> Grid:
+    """Two blocks side by side, periodic along x and y, with uneven nodes."""
+    x, y = np.meshgrid([0.0, 0.3, 1.1, 1.3], [0.0, 0.9, 1.0, 2.7], indexing="ij")
+    left, right = np.stack([x[:3], y[:3]], axis=-1), np.stack([x[2:], y[2:]], axis=-1)
+    up = Motion((0.0, 2.7))
+    return Grid(
+        (Block(left), Block(right)),
+        (),
+        (
+            Connection(0, "east", ((0, 3),), 1, "west", ((0, 3),), (1,)),
+            Connection(0, "west", ((0, 3),), 1, "east", ((0, 3),), (1,), Motion((1.3, 0.0))),
+            Connection(0, "south", ((0, 2),), 0, "north", ((0, 2),), (1,), up),
+            Connection(1, "north", ((0, 1),), 1, "south", ((0, 1),), (1,), up.inverse()),
+        ),
     )
-    with pytest.raises(InputError, match="periodic in several ways"):
-        copied(Grid((Block(np.stack([x, y], axis=-1)),), (), both), 2)
+
+
+@pytest.mark.parametrize("counts", [(3, 2), (1, 4), (2, 1)])
+def test_a_cell_with_two_periods_is_tiled_both_ways(counts: tuple[int, int]) -> None:
+    grid = copied(cell(), counts)
+    corners = {tuple(block.nodes[0, 0].round(9)) for block in grid.blocks}
+    along, across = (range(count) for count in counts)
+    places = {(round(1.3 * i + x, 9), round(2.7 * j, 9)) for i in along for j in across for x in (0, 1.1)}
+    assert corners == places
+    assert grid.box == pytest.approx(np.array([[0.0, 0.0], [1.3 * counts[0], 2.7 * counts[1]]]))
+    shifts = set()
+    for each in grid.connections:
+        own, donor = (grid.face(*end[:2])[slice(end[2][0][0], end[2][0][1] + 1)] for end in each.ends)
+        motion = each.transform or Motion()
+        assert np.array_equal(motion(own), donor)
+        shifts.add(motion.shift)
+    outer = {tuple(sorted(abs(round(x, 9)) for x in shift)) for shift in shifts if shift}
+    assert outer == {(0.0, round(1.3 * counts[0], 9)), (0.0, round(2.7 * counts[1], 9))}
+    assert measure(grid).folded == 0
+
+
+def test_numbers_of_copies_are_those_of_the_periods() -> None:
+    shifts = r"shifts of \(1\.3, 0\) and \(0, 2\.7\); give a number for each, such as 3x2"
+    with pytest.raises(InputError, match=shifts):
+        copied(cell(), 2)
+    with pytest.raises(InputError, match="2 numbers for a grid with one period; give one"):
+        copied(strip((0.0, 1.0)), (2, 3))
+    with pytest.raises(InputError, match="200x200 copies; use at most 10000 in all"):
+        copied(cell(), (200, 200))
