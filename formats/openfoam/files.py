@@ -48,6 +48,17 @@ def write_mesh(folder: Path, points: Floats, faces: Faces, *, binary: bool) -> N
             put(stream, labels, "%d")
 
 
+def write_zone(path: Path, name: str, cells: int, *, binary: bool) -> None:
+    """Write a list of zones with a single one, of all cells."""
+    with path.open("wb") as stream:
+        stream.write(head("regIOobject", path.name, binary=binary).encode("ascii"))
+        entries = "    type            cellZone;\n    cellLabels      List<label>"
+        stream.write(f"1\n(\n{name}\n{{\n{entries}\n".encode("ascii"))
+        put = _put if binary else _rows
+        put(stream, np.arange(cells, dtype=np.int32), "%d")
+        stream.write(b";\n}\n)\n")
+
+
 @contextmanager
 def _list(path: Path, kind: str, note: str = "", *, binary: bool) -> Iterator[BinaryIO]:
     """Return a context with the stream of a list whose header is written."""

@@ -10,14 +10,16 @@ from pathlib import Path
 
 from meshonet.formats.format import Options, only_one
 from meshonet.formats.mesh.collapsed import with_collapsed
+from meshonet.formats.mesh.names import words
 from meshonet.formats.mesh.periodic import outer_parts
 from meshonet.formats.mesh.unstructured import node_numbers, points_of
 from meshonet.formats.openfoam.faces import all_faces, without_collapsed
-from meshonet.formats.openfoam.files import head, write_mesh
+from meshonet.formats.openfoam.files import head, write_mesh, write_zone
 from meshonet.formats.openfoam.patches import patches_of, with_empty_planes, write_boundary
 from meshonet.formats.output import whole_file, whole_folder
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.screw import screw_of
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent
 from meshonet.geometry.shapes.spatial_shape import in_space
@@ -31,6 +33,8 @@ _DICTIONARIES = {
 """Minimal entries of the dictionaries without which OpenFOAM's tools do not start."""
 _SMALL = 1 << 16
 """Largest number of cells for which a mesh is written as readable text, unless options say otherwise."""
+_ZONE = "passage"
+"""Name of the zone of a grid without one."""
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
@@ -38,7 +42,8 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
 
     The planes of a planar grid, or of one layer of cells between symmetry planes, become a patch of type
     ``empty``. Cells at sides that collapse to a line or point are prisms and pyramids. An existing mesh is
-    replaced when the new one is complete.
+    replaced when the new one is complete. If periodic sides are turned, all cells are a zone with the name of
+    the grid, for a frame that turns with them.
     """
     grid = only_one(grids, "a case")
     low, high = grid.box
@@ -63,6 +68,9 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     with whole_folder(path.parent / "constant" / "polyMesh") as folder:
         write_mesh(folder, points, faces, binary=binary)
         write_boundary(folder / "boundary", patches, len(faces.neighbour))
+        if any(screw_of(pair.motion).angle for pair in pairs):
+            (name,) = words([grid.name or _ZONE], letter=True).values()
+            write_zone(folder / "cellZones", name, int(faces.owner.max()) + 1, binary=binary)
     for name, entries in _DICTIONARIES.items():
         dictionary = path.parent / "system" / name
         if not dictionary.exists():

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from meshonet.formats.openfoam.write import write_grids
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.revolve import Revolution, revolved
 from meshonet.geometry.errors import InputError
 
 MAKES = [channel, ring, c_grid]
@@ -189,3 +191,36 @@ def test_a_grid_of_one_point_is_refused(tmp_path: Path) -> None:
         with pytest.raises(InputError, match="the points have no extent"):
             write_grids(tmp_path / "case.foam", [Grid.from_nodes(nodes)])
     assert file_names(tmp_path) == []
+
+
+def passage() -> Grid:
+    """Return a twelfth of a pipe, whose periodic sides are turned."""
+    return revolved(channel(), Revolution(30.0, 4))
+
+
+@pytest.mark.client("checkMesh")
+@pytest.mark.parametrize("form", ["ascii", "binary"])
+def test_cells_between_turned_sides_are_a_zone_with_the_name_of_the_grid(form: str, tmp_path: Path) -> None:
+    grid = replace(passage(), name="stage 1")
+    write_grids(tmp_path / "case.foam", [grid], options=frozenset({form}))
+    assert b"\nstage_1\n{\n    type            cellZone;" in zones(tmp_path).read_bytes()
+    assert re.search(r"cell zones: +1\n", check_mesh(tmp_path))
+
+
+def test_a_zone_in_text_has_all_cells(tmp_path: Path) -> None:
+    grid = passage()
+    write_grids(tmp_path / "case.foam", [grid], options=frozenset({"ascii"}))
+    labels = re.search(r"List<label>\n(\d+)\n\(\n([\d\n]+)\)\n;", zones(tmp_path).read_text())
+    assert labels is not None
+    cells = int(np.prod([n - 1 for n in grid.blocks[0].counts]))
+    assert labels[1] == str(cells)
+    assert [int(label) for label in labels[2].split()] == list(range(cells))
+
+
+def test_a_grid_whose_sides_are_not_turned_has_no_zones(tmp_path: Path) -> None:
+    write_grids(tmp_path / "case.foam", [channel()])
+    assert not zones(tmp_path).exists()
+
+
+def zones(case: Path) -> Path:
+    return case / "constant" / "polyMesh" / "cellZones"
