@@ -5,7 +5,9 @@ connected, by one-to-one interfaces in the file or by coincident nodes, whatever
 """
 
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -27,7 +29,8 @@ _MOST_NODES = 1 << 40
 """A zone that claims more is damaged: its nodes would take 24 TB."""
 
 
-class _Zone(NamedTuple):
+@dataclass(frozen=True)
+class _Zone:
     """A structured zone: the CGNS node of its base, its own node, and its name."""
 
     base: Node
@@ -38,7 +41,12 @@ class _Zone(NamedTuple):
         """Return the coordinates and metadata of the zone as a block called `name`."""
         place = f"zone {self.title!r}"
         with in_place(place):
-            return FileBlock(_coordinates(self.node), name, place, facts=_facts(self.node))
+            return FileBlock(_coordinates(self.node), name, place, facts=self.facts)
+
+    @cached_property
+    def facts(self) -> Facts:
+        """The metadata of the zone."""
+        return _facts(self.node)
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
@@ -64,12 +72,12 @@ def read_grids(source: Source) -> Iterator[Grid]:
         if not structured:
             problem = "its zones are unstructured" if zones else "holds no CGNS zone"
             raise InputError(problem, "give a CGNS file with a structured zone")
-        if any("topology" not in _facts(zone.node) for zone in structured):
+        if any("topology" not in zone.facts for zone in structured):
             yield from _foreign(structured, source.stem)
             return
         groups: dict[object, list[_Zone]] = {}
         for zone in structured:
-            number = number_of_grid(_facts(zone.node))
+            number = number_of_grid(zone.facts)
             groups.setdefault(zone.title if number is None else number, []).append(zone)
         ordered = (zone for group in groups.values() for zone in group)
         blocks = (zone.block(zone.title if len(structured) > 1 else source.stem) for zone in ordered)

@@ -192,3 +192,15 @@ def test_what_does_not_fit_is_named(
         file[f"{node}/ data"] = value
     with pytest.raises(InputError, match=message):
         list(read_grids(memory(path.read_bytes())))
+
+
+def test_metadata_of_zones_are_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import meshonet.formats.cgns.read as cgns
+
+    grids = [channel(name=f"grid {k}") for k in range(12)]
+    write_grids(tmp_path / "g.cgns", grids)
+    read: list[str] = []
+    text = cgns.text
+    monkeypatch.setattr(cgns, "text", lambda node: read.append(node.name) or text(node))
+    assert len(list(read_grids(open_source(str(tmp_path / "g.cgns"))))) == 12
+    assert len(read) == len(set(read)) > 12  # they take most of the time of a file of many zones
