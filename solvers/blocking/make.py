@@ -163,8 +163,8 @@ def _outside_layers(domain: Domain, request: BlockRequest, height: AtWalls, layo
 
     for name in ("cells", "cell_size", "res", "refine", "count"):
         if getattr(request, name):
-            problem = f"{{{name}}} for a layout with layers"
-            raise InputError(problem, f"drop {{{name}}}: the grid has cells, which follow from the layers")
+            problem = f"{{{name}}} for the blocks outside of layers, which have no cells yet"
+            raise InputError(problem, f"give {{{name}}} when the grid is made, beside {{layout}}")
     loops, stretches = layered_walls(domain, request.layered)
     walls = WallLayers.of(domain, loops, _settings(request, height), stretches)
     if layout is None:

@@ -98,7 +98,12 @@ def block_request(request: GridRequest) -> BlockRequest:
     sampling = request.sampling
     if sampling.nj not in (None, sampling.ni):
         problem = f"{sampling.ni} x {sampling.nj} nodes for many blocks"
-        raise InputError(problem, "give one number: cells along the longest extent", parameter="res")
+        remedy = "give one number: cells along the longest extent"
+        if request.at_walls:
+            remedy += (
+                "; a block of so many nodes has layers at single sides by solve-pde with {spacing_north}"
+            )
+        raise InputError(problem, remedy, parameter="res")
     return BlockRequest(res=sampling.ni, **values)
 
 

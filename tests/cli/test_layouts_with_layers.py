@@ -99,7 +99,7 @@ def test_cells_and_inputs_that_a_layout_outside_layers_cannot_be_are_refused(
     rod(1.5, -0.1, 0.1)
     done = meshonet("layout", *BODIES, *FIRST, "--cells", 900, "-o", "l.json")
     assert (done.code, len(done.err.splitlines())) == (2, 1)
-    assert "--cells for a layout with layers; drop --cells" in done.err
+    assert "--cells for the blocks outside of layers, which have no cells yet; give --cells when" in done.err
     done = meshonet("infer", saved, *FIRST, "-o", "g.h5")
     assert (done.code, len(done.err.splitlines())) == (2, 1)
     assert "is a layout of what layers leave of a domain; give the domain, and this with --layout" in done.err
