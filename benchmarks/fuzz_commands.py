@@ -52,10 +52,18 @@ FILES = {
     "aircraft.toml": 'kind = "aircraft"\n[[bodies]]\nmeridian = "body.csv"\n[[wings]]\n'
     + (2 * SECTION.replace("sections", "wings.sections")).format(1.0, 0.0, 0.5, 2.0)
     .replace("twist", "x = 1.5\ntwist"),
+    "frames.toml": 'kind = "aircraft"\n[[bodies]]\n'
+    + "".join(f"[[bodies.sections]]\n{row}\n" for row in (
+        "x = 0\ny = -0.1", "x = 0.1\nwidth = 0.5\nheight = 0.4",
+        "x = 0.5\nwidth = 0.9\nheight = 0.7\nexponent = 2.5",
+        'x = 2.5\npoints = "frame.csv"', "x = 5\ny = 0.1"))
+    + "[[wings]]\n" + (2 * SECTION.replace("sections", "wings.sections")).format(1.0, 0.0, 0.5, 2.0)
+    .replace("twist", "x = 1.5\ntwist"),
+    "frame.csv": "-0.4,0\n-0.3,0.3\n-0.1,0.42\n0.1,0.42\n0.3,0.3\n0.4,0\n",
     "body.csv": "0,0\n0.1,0.2\n0.5,0.35\n2,0.4\n4,0.3\n5,0\n",
 }  # fmt: skip
 """Files that commands read, good ones."""
-NAMED = {"row.toml": set(blade_row.texts()), "aircraft.toml": {"body.csv"}}
+NAMED = {"row.toml": set(blade_row.texts()), "aircraft.toml": {"body.csv"}, "frames.toml": {"frame.csv"}}
 """Files that a file names."""
 BASES = (
     *((command, *words) for command, words in INPUTS.items()),
@@ -65,6 +73,7 @@ BASES = (
     ("solve-pde", "step.wkt", "--cells", "500", "-o", "made.vtm"),
     ("stack", "row.toml", "--cells", "20000", "--first-cell", "0.01", "-o", "made.h5"),
     ("stack", "aircraft.toml", "--around", "49", "--span", "5", "--first-cell", "0.01", "-o", "made.h5"),
+    ("stack", "frames.toml", "--around", "49", "--span", "5", "--first-cell", "0.01", "-o", "made.h5"),
 )
 """What is made worse."""
 WORDS = (

@@ -10,6 +10,14 @@
     meridian = "fuselage.csv"       # x, r from nose to tail: a file, or a list [[0, 0], [0.1, 0.04], ...]
     y = 0.0                         # height of its axis
 
+    [[bodies.sections]]             # or, in place of meridian and y, sections from nose to tail
+    x = 1.0
+    y = 0.1                         # height of its middle
+    width = 1.4                     # of an ellipse; neither: the point of nose or tail
+    height = 1.2
+    exponent = 2.5                  # of a superellipse
+    points = "frame.csv"            # in place of these: y, z of the half z >= 0, a file or a list
+
     [[wings]]                       # half of it, z >= 0, from the inside of the body
     on = "fuselage"
     file = "wing.toml"              # or [[wings.sections]], as in the file of a wing
@@ -38,6 +46,8 @@ from meshonet.formats.toml_table import Table, toml_table
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.aircraft.axes import FILE_AXES, AircraftAxes
 from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.aircraft.body_section import BodySection
+from meshonet.geometry.aircraft.lofted_body import LoftedBody
 from meshonet.geometry.aircraft.surface_wing import SurfaceWing
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError, in_source
@@ -67,22 +77,41 @@ def read_aircraft(data: Table, source: Source) -> Aircraft:
 
 
 def _body(row: Table, folder: Path) -> Body:
+    if "sections" in row.data:
+        row.only("name", "sections")
+        sections = tuple(_section(each, folder) for each in row.rows("sections", 4))
+        with row.located():
+            return LoftedBody(name=row.text("name", "fuselage"), sections=sections)
     row.only("name", "meridian", "y")
-    value = row.data.get("meridian")
-    if not isinstance(value, list | str):
-        raise row.error(
-            "meridian", "is no file and no list of points", "name a file, or give [[x, r], [x, r]]"
-        )
-    meridian = np.array(row.pairs("meridian", 4)) if isinstance(value, list) else _from_file(row, folder)
+    meridian = _points(row, folder, "meridian", "x, r", 4)
     with row.located():
         return Body(meridian, row.number("y", 0.0), row.text("name", "fuselage"))
 
 
-def _from_file(row: Table, folder: Path) -> Floats:
-    file = str(folder / row.text("meridian"))
-    with row.in_file_of("meridian"):
+def _section(row: Table, folder: Path) -> BodySection:
+    if "points" in row.data:
+        row.only("x", "y", "points")
+        points = _points(row, folder, "points", "y, z", 5)
+        with row.located():
+            return BodySection(row.number("x"), row.number("y", 0.0), points=points)
+    row.only("x", "y", "width", "height", "exponent", "points")
+    width, height = (row.number(key, 0.0) for key in ("width", "height"))
+    with row.located():
+        return BodySection(row.number("x"), row.number("y", 0.0), width, height, row.number("exponent", 2.0))
+
+
+def _points(row: Table, folder: Path, key: str, columns: str, least: int) -> Floats:
+    """Return the points (n, 2) of a key: a list, or the name of a file of two columns."""
+    value = row.data.get(key)
+    if isinstance(value, list):
+        return np.array(row.pairs(key, least, columns))
+    if not isinstance(value, str):
+        remedy = f"name a file, or give [[{columns}], [{columns}]]"
+        raise row.error(key, "is no file and no list of points", remedy)
+    file = str(folder / row.text(key))
+    with row.in_file_of(key):
         source = open_source(file)
-        blocks = point_blocks(source, ("x, r",))
+        blocks = point_blocks(source, (columns,))
         if len(blocks) > 1:
             raise InputError(f"holds {len(blocks)} blocks of points", "give one curve", source=source.name)
     return blocks[0]

@@ -121,11 +121,13 @@ class Table:
         x, y = self._numbers(key, 2)
         return x, y
 
-    def pairs(self, key: str, least: int) -> list[list[float]]:
-        """Return a list of at least `least` pairs of numbers."""
+    def pairs(self, key: str, least: int, columns: str = "x, r") -> list[list[float]]:
+        """Return a list of at least `least` pairs of numbers, whose names are `columns`."""
         rows = self.data.get(key)
         if not isinstance(rows, list) or len(rows) < least:
-            raise self.error(key, f"{_shown(rows)} is not {least} pairs or more", "give [[x, r], [x, r]]")
+            raise self.error(
+                key, f"{_shown(rows)} is not {least} pairs or more", f"give [[{columns}], [{columns}]]"
+            )
         named = {f"{key}[{k}]": row for k, row in enumerate(rows)}
         return [Table(named, self.place)._numbers(name, 2) for name in named]
 

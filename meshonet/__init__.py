@@ -43,6 +43,8 @@ if TYPE_CHECKING:
     from meshonet.api.train import train as train
     from meshonet.geometry.aircraft.aircraft import Aircraft as Aircraft
     from meshonet.geometry.aircraft.body import Body as Body
+    from meshonet.geometry.aircraft.body_section import BodySection as BodySection
+    from meshonet.geometry.aircraft.lofted_body import LoftedBody as LoftedBody
     from meshonet.geometry.blocks.boundary import Boundary as Boundary
     from meshonet.geometry.blocks.connection import Motion as Motion
     from meshonet.geometry.blocks.grid import Grid as Grid
@@ -87,6 +89,8 @@ _MODULES = {
     "meshonet.api.train": ("train",),
     "meshonet.geometry.aircraft.aircraft": ("Aircraft",),
     "meshonet.geometry.aircraft.body": ("Body",),
+    "meshonet.geometry.aircraft.body_section": ("BodySection",),
+    "meshonet.geometry.aircraft.lofted_body": ("LoftedBody",),
     "meshonet.geometry.blocks.boundary": ("Boundary",),
     "meshonet.geometry.blocks.connection": ("Motion",),
     "meshonet.geometry.blocks.grid": ("Grid",),

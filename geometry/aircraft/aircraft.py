@@ -17,12 +17,12 @@ _TAPER = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Aircraft:
-    """A body of revolution and wings that begin inside of it: the half z >= 0, or both halves.
+    """A body and wings that begin inside of it: the half z >= 0, or both halves.
 
     Parameters
     ----------
     body : Body
-        The fuselage.
+        The fuselage: a body of revolution, or a `LoftedBody`.
     wing : Stack or SurfaceWing
         Sections from the inside of the body to the tip, or its surface. Its longest chord is the unit of
         the grid's lengths.

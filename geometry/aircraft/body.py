@@ -82,9 +82,13 @@ class Body:
         back = np.maximum(low - x, x - high).max(axis=1) > _TURNED * self.extent
         wild = np.flatnonzero(back | (r.max(axis=1) > _BULGED * self.radius) | (r.min(axis=1) <= 0.0))
         if len(wild):
-            problem = "the spline through the meridian turns back, bulges or reaches the axis"
-            place = f"meridian: points {wild[0] + 1} and {wild[0] + 2}"
-            raise InputError(problem, "give more points between them", place=place)
+            raise self._wild(int(wild[0]))
+
+    def _wild(self, at: int) -> InputError:
+        """Return the error for a spline that turns back, bulges or closes behind point `at`."""
+        problem = "the spline through the meridian turns back, bulges or reaches the axis"
+        place = f"meridian: points {at + 1} and {at + 2}"
+        return InputError(problem, "give more points between them", place=place)
 
     @cached_property
     def arc(self) -> Floats:
@@ -110,6 +114,16 @@ class Body:
     def radius(self) -> float:
         """The greatest radius."""
         return float(self.meridian[:, 1].max())
+
+    @property
+    def width(self) -> float:
+        """The greatest width of a section."""
+        return 2.0 * self.radius
+
+    @property
+    def height(self) -> float:
+        """The greatest height of a section."""
+        return 2.0 * self.radius
 
     def meridional(self, s: Floats) -> Floats:
         """Return x and radius (n, 2) at arc lengths (n,)."""
@@ -138,6 +152,11 @@ class Body:
         """Return how far points (n, 3) are from the surface along the radius, negative inside."""
         r = self._spline(self.arc_at(points[:, 0]))[:, 1]
         return np.asarray(np.hypot(points[:, 1] - self.y, points[:, 2]) - r)
+
+    def beside(self, point: Floats) -> str:
+        """Return where a point (3,) is in relation to the section of the body at its x."""
+        away, radius = np.hypot(point[1] - self.y, point[2]), float(np.interp(point[0], *self.meridian.T))
+        return f"{away:.4g} from its axis, where its radius is {radius:.4g}"
 
 
 def _refuse_open(points: Floats) -> None:

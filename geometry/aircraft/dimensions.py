@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from meshonet.geometry.aircraft.aircraft import Aircraft
 
 
@@ -16,7 +14,8 @@ class AircraftDimensions:
 
     Parameters
     ----------
-    length, diameter : of the body, along and across its axis.
+    length, width, height : of the body.
+    diameter : the larger of width and height, which are the same for a body of revolution.
     spans : distance from tip to tip of each wing, both halves together, by the name of its patch.
     chord : the longest of the first wing, in which heights of cells and distances are given.
     first_cell : height of the cells at the walls.
@@ -24,6 +23,8 @@ class AircraftDimensions:
     """
 
     length: float
+    width: float
+    height: float
     diameter: float
     spans: dict[str, float]
     chord: float
@@ -36,7 +37,10 @@ class AircraftDimensions:
     def lines(self) -> dict[str, str]:
         """Lines of text by their headings."""
         spans = "".join(f"; {name} {span:.4g} from tip to tip" for name, span in self.spans.items())
-        body = f"body {self.length:.4g} long and {self.diameter:.4g} in diameter"
+        across = f"{self.width:.4g} wide and {self.height:.4g} high"
+        if self.width == self.height:
+            across = f"{self.diameter:.4g} in diameter"
+        body = f"body {self.length:.4g} long and {across}"
         walls = (
             f"first cells {self.first_cell:.4g}, far field {self.far_field:.4g} from the middle of the body"
         )
@@ -45,13 +49,15 @@ class AircraftDimensions:
 
 def aircraft_dimensions(aircraft: Aircraft, first_cell: float, far_field: float) -> AircraftDimensions:
     """Return the dimensions of an aircraft and of its grid, both lengths in longest chords of the wing."""
-    chord, radii = aircraft.wing.chord, aircraft.body.meridian[:, 1]
+    chord, body = aircraft.wing.chord, aircraft.body
     names = (name for name, _ in aircraft.patches)
     return AircraftDimensions(
-        length=aircraft.body.extent,
-        diameter=2.0 * float(np.max(radii)),
+        length=body.extent,
+        width=body.width,
+        height=body.height,
+        diameter=max(body.width, body.height),
         spans={name: 2.0 * wing.end[2] for name, wing in zip(names, aircraft.wings, strict=True)},
         chord=chord,
         first_cell=first_cell * chord,
-        far_field=far_field * chord + 0.5 * aircraft.body.extent,
+        far_field=far_field * chord + 0.5 * body.extent,
     )

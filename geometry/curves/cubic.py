@@ -20,10 +20,7 @@ class CubicTable:
 
     def __call__(self, places: Floats) -> Floats:
         """Return all columns (p, ...) at the same places (p,)."""
-        h, t, start, stop, begin, end = self._parts(places)
-        bend = (2.0 - t) * begin + (1.0 + t) * end
-        inner = start + t * (stop - start) - t * (1.0 - t) * h**2 / 6.0 * bend
-        return np.asarray(np.where(t == 1.0, stop, inner))
+        return cubic_piece(*self._parts(places))
 
     def slope(self, places: Floats) -> Floats:
         """Return the derivatives (p, ...) of all columns at the same places (p,)."""
@@ -55,6 +52,13 @@ class CubicTable:
         t = ((places - self.knots[first]) / h).reshape(shape)
         tables = self.values[first], self.values[first + 1], self.bends[first], self.bends[first + 1]
         return (h.reshape(shape), t, *tables)
+
+
+def cubic_piece(h: Floats, t: Floats, start: Floats, stop: Floats, begin: Floats, end: Floats) -> Floats:
+    """Return values at the parts t of pieces h long, from values and second derivatives at both ends."""
+    bend = (2.0 - t) * begin + (1.0 + t) * end
+    inner = start + t * (stop - start) - t * (1.0 - t) * h**2 / 6.0 * bend
+    return np.asarray(np.where(t == 1.0, stop, inner))
 
 
 def cubic_spline(values: Floats, knots: Floats, places: Floats) -> Floats:

@@ -24,6 +24,7 @@ from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.body_plane import WING_PATCHES, level_patches
 from meshonet.solvers.aircraft.exact_cells import at_height, between_walls
+from meshonet.solvers.aircraft.lofted_map import map_around, points_above
 from meshonet.solvers.aircraft.plan import AircraftPlan, plan_of
 from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.aircraft.tip_cells import last_cells
@@ -44,8 +45,6 @@ _UNBOUNDED = 1e9
 """Length of the last cells of lines, which nothing limits but their growth."""
 _FLAT = 1e-13
 """Distance from the plane of symmetry in lengths of the body, within which nodes are in it."""
-_ABOVE = 1e-3
-"""Step in zeta of the point by which the normal of the body is known."""
 _UNEVEN = 0.08
 """Error of the first cell of a line, over its height, above which the line is measured in all its nodes: at a
 pointed nose or tail distances from the body are no smooth function of zeta."""
@@ -71,7 +70,7 @@ def planned_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, fl
     close to each other.
     """
     sizes = aircraft_dimensions(aircraft, request.height(), request.far_field)
-    space = BodyMap(aircraft.body, sizes.far_field)
+    space = map_around(aircraft.body, sizes.far_field)
     plan, notes = plan_of(aircraft, request, space)
     first, growth = sizes.first_cell, plan.growth
     levels = [_level(space, plan, k, first) for k in range(SAMPLES)]
@@ -88,9 +87,8 @@ def planned_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, fl
     on_tip = np.append(walls, np.arange(len(last), len(tip)))
     ends = np.append(last, np.full(len(tip) - len(last), first))
     beyond = _beyond_tip(space, tip, on_tip, ends, growth)
-    normal = at_height(space, beside[0], beside[0] + [0.0, 0.0, _ABOVE], first)
     low = _flat(space.points(beside), aircraft)
-    low = off_body(low, space.points(normal), rings, first)
+    low = off_body(low, points_above(space, beside[0], first), rings, first)
     for ring in rings:
         low = off_wing(low, ring, first)
         wall, near = ring[:, 0], ring[:, 1]

@@ -67,10 +67,23 @@ class BodyMap:
     def meridional(self, s: Floats, zeta: Floats) -> Floats:
         """Return x and r (n, 2) at places s and zeta (n,)."""
         along, across = s * ((_LINES - 1) / self.body.length), zeta * (_LEVELS - 1)
-        arcs = np.clip(_between(self._arcs, along, across)[:, 0], 0.0, self.body.length)
-        at_body = self.body.meridional(arcs) - _between(self.table[:, :4], along, np.zeros_like(s))
+        at_body = self.body.meridional(self.arcs(s)) - _between(self.table[:, :4], along, np.zeros_like(s))
         away = 1.0 - zeta
         return _between(self.table, along, across) + at_body * (away * away)[:, None]
+
+    def arcs(self, s: Floats) -> Floats:
+        """Return the arc lengths (n,) of the meridian at places s (n,)."""
+        along = s * ((_LINES - 1) / self.body.length)
+        return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
+
+    def around(self, places: Floats) -> Floats:
+        """Return the lengths in space (...) of a unit of theta at places (..., 3)."""
+        points = self.points(places)
+        return np.hypot(points[..., 1] - self.body.y, points[..., 2])
+
+    def steepness(self, places: Floats) -> Floats:
+        """Return the angles (...) between z and the body's sections at places (..., 3) on it."""
+        return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
         """Return places (..., 3) of s, theta, zeta of points (..., 3), by Newton's method.

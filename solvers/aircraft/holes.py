@@ -69,8 +69,7 @@ def _refuse_close(before: str, after: str, gaps: Floats, needed: Floats) -> None
 
 def _scales(space: BodyMap, sections: Floats) -> Floats:
     """Return the lengths in space (k, 2) of units of s and theta, the means over sections (k, n, 3)."""
-    points = space.points(sections)
-    radius = np.hypot(points[..., 1] - space.body.y, points[..., 2]).mean(axis=1)
+    points, radius = space.points(sections), space.around(sections).mean(axis=1)
     half = (sections.shape[1] - 1) // 2
     chord = norms(points[:, 0] - points[:, half])
     return np.stack([chord / np.abs(sections[:, 0, 0] - sections[:, half, 0]), radius], axis=1)

@@ -186,7 +186,7 @@ def _unit(vectors: Floats) -> Floats:
 
 def _refuse_acute(space: BodyMap, name: str, root: Floats) -> None:
     """Raise InputError for a wing whose `root` (n, 3) is so near to keel or crown that collars fold there."""
-    angles = np.minimum(root[:, 1], np.pi - root[:, 1])
+    angles = space.steepness(root)
     least = int(angles.argmin())
     if angles[least] < _ACUTE:
         x, y, z = space.points(root[least])

@@ -42,11 +42,10 @@ def root_heights(loft: Loft, name: str, body: Body) -> Floats:
 
 def _error(loft: Loft, name: str, line: int, z: float, body: Body, what: str) -> InputError:
     """Return the error for a line at the height z, with its place in relation to the body."""
-    x, y, z = loft.line(line, np.array([z]))[0]
+    x, y, z = point = loft.line(line, np.array([z]))[0]
     nose, tail = body.meridian[0, 0], body.meridian[-1, 0]
     if nose < x < tail:
-        radius = float(np.interp(x, *body.meridian.T))
-        where = f"{np.hypot(y - body.y, z):.4g} from its axis, where its radius is {radius:.4g}"
+        where = body.beside(point)
     else:
         where = (
             f"{'ahead of its nose' if x <= nose else 'behind its tail'}: it is from x={nose:g} to {tail:g}"

@@ -3,9 +3,11 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from meshonet.formats.stack import stack_of
 from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.aircraft.lofted_body import LoftedBody
 
 BODY = "[[bodies]]\nmeridian = [[0, 0], [1, 0.5], [4, 0.5], [6, 0]]\n"
 SECTIONS = "".join(
@@ -44,6 +46,26 @@ def test_meridian_and_wing_may_be_files_beside_it(tmp_path: Path) -> None:
     assert np.array_equal(jet.body.meridian, same.body.meridian)
     assert (jet.body.name, jet.body.y) == ("hull", 0.2)
     assert np.array_equal(jet.wing.z, same.wing.z)
+
+
+def test_bodies_may_be_sections_from_nose_to_tail(tmp_path: Path) -> None:
+    t = np.linspace(0.0, np.pi, 21)
+    half = np.stack([-0.5 * np.cos(t), 0.6 * np.sin(t) * [*np.ones(20), 0.0]], axis=1)
+    np.savetxt(tmp_path / "frame.csv", half, delimiter=",")
+    oval = "width = 1.4\nheight = 1.2\nexponent = 2.5\n"
+    rows = "x = 0\ny = -0.1", f"x = 1\n{oval}", 'x = 4\ny = 0.1\npoints = "frame.csv"', "x = 6\ny = 0.3"
+    text = '[[bodies]]\nname = "hull"\n' + "".join(f"[[bodies.sections]]\n{row}\n" for row in rows)
+    body = read(tmp_path, text + WING.replace("fuselage", "hull")).body
+    assert isinstance(body, LoftedBody)
+    nose, cabin, file, tail = body.sections
+    assert (nose.is_point, nose.y, tail.is_point, tail.y) == (True, -0.1, True, 0.3)
+    assert (cabin.halves, cabin.exponent) == ((0.7, 0.6), 2.5)
+    assert file.middle == pytest.approx(0.1)
+    assert file.halves == pytest.approx((0.6, 0.5))
+    listed = text.replace('"frame.csv"', str(half.tolist()))
+    same = read(tmp_path, listed + WING.replace("fuselage", "hull")).body
+    assert isinstance(same, LoftedBody)
+    assert np.array_equal(same.sections[2].shape, file.shape)
 
 
 def test_further_wings_have_names_of_their_own(tmp_path: Path) -> None:

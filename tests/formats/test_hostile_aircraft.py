@@ -32,12 +32,25 @@ def tip(**values: object) -> dict[str, str]:
     return texts(wing=f"{ROOT}[[wings.sections]]\n{lines}")
 
 
+def frames(*rows: str, more: str = "") -> dict[str, str]:
+    """The aircraft with a body of sections: a nose, these, and a tail."""
+    tables = "".join(f"[[bodies.sections]]\n{row}\n" for row in ("x = 0", *rows, "x = 6"))
+    return texts(body=more + tables)
+
+
+def frame(points: object) -> dict[str, str]:
+    """The same with a section through points."""
+    return frames(OVAL.format(1), f"x = 2\npoints = {points}")
+
+
 def two_wings(more: str) -> dict[str, str]:
     return {"jet.toml": texts()["jet.toml"] + f"[[wings]]\n{more}\n{ROOT}{TIP}"}
 
 
+OVAL = "x = {}\nwidth = 1.4\nheight = 1.2"
 JET = "jet.toml: "
 LINE = JET + r"bodies\[0\].meridian"
+FRAME = r"bodies\[0\].sections\[2\]."
 WING = JET + r"wings\[0\]."
 LAST = WING + r"sections\[1\]."
 REFUSED = {
@@ -96,6 +109,38 @@ REFUSED = {
         JET + r"bodies\[0\].name: 'a\\x1b\[31m' has control characters; leave them out"),
     "two lines in a name": (texts(body=MERIDIAN + 'name = "a\\nb"'), JET + r"bodies\[0\].name: 'a\\nb' has"),
     "two bodies": ({"jet.toml": texts()["jet.toml"] + f"[[bodies]]\n{MERIDIAN}"}, JET + r"bodies\[1\]"),
+    # the sections of a body
+    "a section and a meridian": (
+        frames(OVAL.format(1), OVAL.format(2), more=MERIDIAN), r"0\].meridian: is not known; use"),
+    "three sections": (frames(OVAL.format(1)), r"0\].sections: are not 4 or more tables"),
+    "sections a number": (texts(body="sections = 3"), r"0\].sections: are not 4 or more tables"),
+    "a misspelt key of a section": (frames(OVAL.format(1), "x = 2\nwidht = 3"), FRAME + "widht: is not"),
+    "a section without x": (frames(OVAL.format(1), "width = 3"), FRAME + "x: is missing"),
+    "a width alone": (frames(OVAL.format(1), "x = 2\nwidth = 3"), FRAME + "height: 0; give width and height"),
+    "a negative height": (
+        frames(OVAL.format(1), "x = 2\nwidth = 3\nheight = -1"), FRAME + "height: -1 is negative"),
+    "an exponent of nothing": (
+        frames(OVAL.format(1), OVAL.format(2) + "\nexponent = 0"), FRAME + "exponent: 0 is out of range"),
+    "a point within": (frames(OVAL.format(1), "x = 2"), FRAME + "width: a point within the body; give"),
+    "sections in one place": (frames(OVAL.format(1), OVAL.format(1)), FRAME + "x: 1 is not behind 1; give"),
+    "a section behind the tail": (frames(OVAL.format(1), OVAL.format(7)), r"3\].x: 6 is not behind 7"),
+    "an open nose": (
+        texts(body="".join(f"[[bodies.sections]]\n{OVAL.format(x)}\n" for x in range(5))),
+        r"bodies\[0\].sections\[0\]: the nose is no point; leave out"),
+    "a flat section": (
+        frames(OVAL.format(1), "x = 2\nwidth = 9\nheight = 1"), FRAME[:-1] + ": a section 9 wide"),
+    "sections far apart": (
+        frames(*(OVAL.format(x) for x in (1e-4, 2e-4, 0.0005))), r"bodies\[0\].sections\[0\]: the surface"),
+    "points that are a number": (frame(3), FRAME + r"points: is no file and no list of points; .*\[\[y, z\]"),
+    "points and a width": (frames(OVAL.format(1), "x = 2\npoints = []\nwidth = 1"), FRAME + "width: is"),
+    "few points": (frame("[[0, 0], [1, 1], [2, 0]]"), FRAME + r"points: .* is not 5 pairs .* \[\[y, z\]"),
+    "points of both halves": (
+        frame("[[-1, 0], [0, 1], [1, 0], [0, -1], [-1, 0]]"), FRAME + "points: .*give the half z >= 0"),
+    "points that are open": (
+        frame("[[-1, 0], [-0.7, 0.7], [0, 1], [0.3, 1], [0.7, 0.7]]"), FRAME + "points: ends at z=0"),
+    "a box": (
+        frame("[[-1, 0], [-1, 0.5], [-1, 1], [0, 1], [1, 1], [1, 0]]"), FRAME + "points: turns by 90 deg"),
+    "points in a file that is not there": (frame('"frame.csv"'), FRAME + "points: .*frame.csv: no such file"),
     # the wing
     "two wings of one name": (two_wings(""), JET + r"wings\[1\].name: wing is the name of another patch"),
     "a wing called as the body": (two_wings('name = "fuselage"'), JET + r"bodies\[0\].name: fuselage is the"),

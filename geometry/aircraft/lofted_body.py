@@ -1,0 +1,184 @@
+"""A body through cross-sections, such as a fuselage with an oval cabin and a raised tail."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.aircraft.body_section import ANGLES, BodySection
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.cubic import CubicTable, cubic_piece
+from meshonet.geometry.elementary import arctan2, cos, sin
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.ties import first_least
+from meshonet.kernels._native import lattice_values
+
+_BETWEEN = 8
+"""Parts of an interval between sections in which the surface is checked."""
+_BULGED = 1.5
+"""Largest width, height or shape over that of the sections."""
+_FLATTEST = 3.5
+"""Largest width of a section over its height, or the reverse."""
+_FEWEST = 4
+
+
+@dataclass(frozen=True, eq=False)
+class LoftedBody(Body):
+    """A body whose surface is splined through cross-sections, from the point of a nose to that of a tail.
+
+    ``meridian`` and ``y`` are those of a body of revolution like it: radii are the means of half the width
+    and half the height, and its axis is in the middle of the largest section. At the arc length s of that
+    meridian and the angle theta a point of the surface is
+    (x, middle - up * shape * cos(theta), across * shape * sin(theta)). Nose and tail are round like ellipses.
+
+    Parameters
+    ----------
+    name : str, optional
+        Of the body, and of its patches.
+    sections : tuple of BodySection
+        From nose to tail; the first and the last are points.
+
+    Raises
+    ------
+    InputError
+        Fewer than 4 sections; x that does not increase; a first or last section that is no point, or another
+        that is; very flat ones; sections so different and far apart that the surface bulges between them.
+
+    Examples
+    --------
+    >>> from meshonet import BodySection, LoftedBody
+    >>> oval = [BodySection(x, width=1.4, height=1.2) for x in (1.0, 3.0, 5.0)]
+    >>> body = LoftedBody(sections=(BodySection(0.0), *oval, BodySection(8.0, y=0.3)))
+    >>> round(body.width, 6), round(body.height, 6)
+    (1.4, 1.2)
+    """
+
+    meridian: Floats = field(init=False)
+    y: float = field(init=False)
+    sections: tuple[BodySection, ...] = ()
+
+    def __post_init__(self) -> None:
+        if len(self.sections) < _FEWEST:
+            problem = f"{len(self.sections)} sections"
+            raise InputError(problem, f"give {_FEWEST} or more, nose and tail too", place="sections")
+        for number, section in enumerate(self.sections):
+            self._refuse_misplaced(number, section)
+        radii = [0.5 * sum(section.halves) for section in self.sections]
+        largest = first_least(range(len(radii)), lambda k: -radii[k])
+        object.__setattr__(self, "y", self.sections[largest].middle)
+        x = [section.x for section in self.sections]
+        object.__setattr__(self, "meridian", np.stack([x, radii], axis=1))
+        super().__post_init__()
+        self._refuse_bulges()
+
+    def _refuse_misplaced(self, number: int, section: BodySection) -> None:
+        """Raise InputError for a section that is not behind the one before it, or should (not) be a point."""
+        at, before = f"sections[{number}]", self.sections[number - 1]
+        if number and section.x <= before.x:
+            problem = f"{section.x:g} is not behind {before.x:g}"
+            raise InputError(problem, "give the sections from nose to tail", place=f"{at}.x")
+        end = number in (0, len(self.sections) - 1)
+        if end and not section.is_point:
+            problem = "the nose is no point" if number == 0 else "the tail is no point"
+            raise InputError(problem, "leave out its width, height and points", place=at)
+        if not end and section.is_point:
+            raise InputError("a point within the body", "give its width and height", place=f"{at}.width")
+        if not end and not 1.0 / _FLATTEST <= section.halves[0] / section.halves[1] <= _FLATTEST:
+            across, up = section.halves
+            problem = f"a section {2.0 * across:g} wide and {2.0 * up:g} high"
+            raise InputError(problem, f"use at most {_FLATTEST:g} times as much of one", place=at)
+
+    def _refuse_bulges(self) -> None:
+        """Raise InputError where the surface between two sections is much larger than they, or closes."""
+        parts = np.arange(len(self.arc) - 1)[:, None] + np.arange(1, _BETWEEN) / _BETWEEN
+        s = np.interp(parts.ravel(), np.arange(len(self.arc)), self.arc)
+        halves, given = self._halves(s), self._halves.values
+        shape = self._shapes_at(s)
+        wild = (halves <= 0.0).any(axis=1) | (halves > _BULGED * given.max(axis=0)).any(axis=1)
+        wild |= (shape.min(axis=1) <= 0.0) | (shape.max(axis=1) > _BULGED * self._shapes_at(self.arc).max())
+        middle, heights = self._middle(self.arc_position(s)), [section.middle for section in self.sections]
+        tallest = given[:, 1].max()
+        wild |= (middle > max(heights) + tallest) | (middle < min(heights) - tallest)
+        if wild.any():
+            raise self._wild(int(wild.argmax()) // (_BETWEEN - 1))
+
+    def _wild(self, at: int) -> InputError:
+        """Return the error for a surface that turns back, bulges or closes behind section `at`."""
+        problem = "the surface between it and the next one turns back, bulges or closes"
+        return InputError(problem, "give more sections between them", place=f"sections[{at}]")
+
+    @property
+    def width(self) -> float:
+        """Largest width of a section."""
+        return 2.0 * float(self._halves.values[:, 0].max())
+
+    @property
+    def height(self) -> float:
+        """Largest height of a section."""
+        return 2.0 * float(self._halves.values[:, 1].max())
+
+    @cached_property
+    def _halves(self) -> CubicTable:
+        return CubicTable(np.array([section.halves for section in self.sections]), self.arc)
+
+    @cached_property
+    def _middle(self) -> CubicTable:
+        return CubicTable(np.array([section.middle for section in self.sections]), self.meridian[:, 0])
+
+    @cached_property
+    def _shapes_at(self) -> CubicTable:
+        return CubicTable(np.array([section.shape for section in self.sections]), self.arc)
+
+    @cached_property
+    def _shapes(self) -> Floats:
+        """Shapes (n, ANGLES, 2) of the sections, and their second derivatives along the meridian."""
+        spline = self._shapes_at
+        return np.ascontiguousarray(np.stack([spline.values, spline.bends], axis=-1))
+
+    def arc_position(self, s: Floats) -> Floats:
+        """Return x (n,) at arc lengths of the meridian (n,)."""
+        return self.meridional(s)[:, 0]
+
+    def sizes(self, s: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return half the width, half the height and the middle's y (n,) at arc lengths (n,)."""
+        across, up = np.maximum(self._halves(s), 0.0).T
+        return across, up, self._middle(self.arc_position(s))
+
+    def shape(self, s: Floats, theta: Floats) -> Floats:
+        """Return distances from the middle (n,) at arc lengths and angles (n,); see `BodySection.shape`."""
+        before = np.clip(np.searchsorted(self.arc, s, side="right") - 1, 0, len(self.arc) - 2)
+        h = self.arc[before + 1] - self.arc[before]
+        theta = np.abs(theta)
+        across: Floats = np.where(theta > np.pi, 2.0 * np.pi - theta, theta) * ((ANGLES - 1) / np.pi)
+        ends = np.empty((2, len(s), 2))
+        for number, values in enumerate(ends):
+            lattice_values(self._shapes, (before + number).astype(np.float64), across, values)
+        (start, begin), (stop, end) = np.moveaxis(ends, -1, 1)
+        return cubic_piece(h, (s - self.arc[before]) / h, start, stop, begin, end)
+
+    def points(self, s: Floats, theta: Floats) -> Floats:
+        """Return points (..., 3) at arc lengths and angles (...)."""
+        s, theta = np.broadcast_arrays(s, theta)
+        arcs, angles = s.ravel(), theta.ravel()
+        across, up, middle = self.sizes(arcs)
+        shape = self.shape(arcs, angles)
+        y, z = middle - up * shape * cos(angles), across * shape * sin(angles)
+        return np.stack([self.arc_position(arcs), y, z], axis=-1).reshape(*s.shape, 3)
+
+    def outside(self, points: Floats) -> Floats:
+        """Return how far points (n, 3) are from the surface, as seen from the middle; negative inside."""
+        s = self.arc_at(points[:, 0])
+        across, up, middle = self.sizes(s)
+        y, z = points[:, 1] - middle, np.abs(points[:, 2])
+        angles = arctan2(z * up, -y * across)
+        shape = self.shape(s, angles)
+        return np.asarray(np.hypot(y, z) - shape * np.hypot(up * cos(angles), across * sin(angles)))
+
+    def beside(self, point: Floats) -> str:
+        """Return where a point (3,) is in relation to its section."""
+        across, up, middle = (float(each[0]) for each in self.sizes(self.arc_at(point[:1])))
+        low, high = middle - up, middle + up
+        return f"where its section is from y={low:.4g} to {high:.4g} and {2.0 * across:.4g} wide"

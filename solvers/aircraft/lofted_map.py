@@ -1,0 +1,144 @@
+"""The space around a body through cross-sections: that around a like body of revolution, moved.
+
+On the body points are moved to its sections. Away from it the shape fades as one over the distance from the
+axis, so that lines leave an ellipse at right angles; that sections are higher or lower than others fades
+towards the far field.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.aircraft.lofted_body import LoftedBody
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.elementary import arctan2, cos, sin
+from meshonet.solvers.aircraft.body_map import BodyMap
+from meshonet.solvers.aircraft.exact_cells import at_height
+
+_NEWTON = 16
+_STEP = 1e-5
+"""Step of differences in s / length, theta and zeta."""
+_FADING = 0.6
+"""Largest decrease of the distance from the axis, by its fading, over that distance's increase."""
+_ABOVE = np.array([0.0, 0.0, 1e-3])
+"""Step to the place by which the normal of a body of revolution is known."""
+_AROUND = 33
+"""Angles around a pole of which normals are taken."""
+_POLE = 1e-4
+"""Arc length over the body's, beside a nose or tail, where normals are those of the surface around it."""
+
+
+class LoftedMap(BodyMap):
+    """The map from (s, theta, zeta) to space around a lofted `body`, to a distance `far`."""
+
+    body: LoftedBody
+
+    def __init__(self, body: LoftedBody, far: float) -> None:
+        super().__init__(body, far)
+        across, up, _ = body.sizes(body.arc[1:-1])
+        theta = np.linspace(0.0, np.pi, 65)
+        s = np.repeat(body.arc[1:-1], len(theta))
+        shape = body.shape(s, np.tile(theta, len(across))).reshape(len(across), -1)
+        widest = (np.maximum(across, up)[:, None] * shape).max(axis=1)
+        more = float((widest / body.meridian[1:-1, 1] - 1.0).max())
+        self._fading = min(1.0, _FADING / more) if more > 0.0 else 1.0
+
+    def points(self, places: Floats) -> Floats:
+        """Return points (..., 3) at places (..., 3) of s, theta, zeta."""
+        s, theta, zeta = np.moveaxis(places, -1, 0).reshape(3, -1)
+        x, r = self.meridional(s, zeta).T
+        r = np.maximum(r, 0.0)
+        arcs = self.arcs(s)
+        radius = np.maximum(self.body.meridional(arcs)[:, 1], 0.0)
+        across, up, middle = self.body.sizes(arcs)
+        shape = self.body.shape(arcs, theta)
+        away, beyond = 1.0 - zeta, radius + self._fading * (r - radius)
+        near = radius / np.where(beyond > 0.0, beyond, 1.0)
+        y = (
+            self.body.y
+            + (middle - self.body.y) * (away * away)
+            - (r + (up * shape - radius) * near) * cos(theta)
+        )
+        z = (r + (across * shape - radius) * near) * sin(theta)
+        return np.stack([x, y, z], axis=-1).reshape(places.shape)
+
+    def places(self, points: Floats, near: Floats | None = None) -> Floats:
+        """Return places (..., 3) of s, theta, zeta of points (..., 3), by Newton's method."""
+        wanted = points.reshape(-1, 3)
+        at = (self._first_places(wanted) if near is None else near.reshape(-1, 3)).copy()
+        steps = np.diag([_STEP * self.body.length, _STEP, _STEP])
+        for _ in range(_NEWTON):
+            by = [(self.points(at + step) - self.points(at - step)) / (2.0 * step.sum()) for step in steps]
+            at = at + _solved(by, wanted - self.points(at))
+            at[:, 0] = np.clip(at[:, 0], 0.0, self.body.length)
+            at[:, 1:] = np.clip(at[:, 1:], 0.0, [np.pi, 1.0])
+        return at.reshape(points.shape)
+
+    def _first_places(self, points: Floats) -> Floats:
+        """Return places (n, 3) near points (n, 3): those around the body of revolution, at its own height."""
+        _, _, middle = self.body.sizes(self.body.arc_at(points[:, 0]))
+        lowered = points.copy()
+        lowered[:, 1] -= middle - self.body.y
+        return super().places(lowered)
+
+    def around(self, places: Floats) -> Floats:
+        """Return the lengths in space (...) of a unit of theta at places (..., 3)."""
+        return np.asarray(norms(self._around(places)))
+
+    def steepness(self, places: Floats) -> Floats:
+        """Return the angles (...) between z and the body's sections at places (..., 3) on it."""
+        around = np.abs(self._around(places))
+        return np.asarray(arctan2(around[..., 1], around[..., 2]))
+
+    def _around(self, places: Floats) -> Floats:
+        """Return the derivatives (..., 3) of points by theta at places (..., 3)."""
+        step = np.array([0.0, _STEP, 0.0])
+        return (self.points(places + step) - self.points(places - step)) / (2.0 * _STEP)
+
+    def normals(self, foot: Floats) -> Floats:
+        """Return unit normals (n, 3) of the body at places (n, 3) on it; at poles the mean around them."""
+        length, normals = self.body.length, self._normals(_off_poles(foot, self.body.length))
+        theta = np.linspace(0.0, np.pi, _AROUND)
+        for end in (0.0, length):
+            ring = np.stack([np.full(_AROUND, end), theta, np.zeros(_AROUND)], axis=1)
+            mean = self._normals(_off_poles(ring, length)).mean(axis=0, keepdims=True) * [1.0, 1.0, 0.0]
+            normals[foot[:, 0] == end] = mean / norms(mean)
+        return normals
+
+    def _normals(self, places: Floats) -> Floats:
+        """Return unit normals (n, 3) of the body at places (n, 3) on it."""
+        ds, dt = np.diag([_STEP * self.body.length, _STEP, 0.0])[:2]
+        along, around = (self.points(places + step) - self.points(places - step) for step in (ds, dt))
+        normal = np.cross(along, around)
+        return np.asarray(normal / norms(normal)[:, None])
+
+
+def _off_poles(places: Floats, length: float) -> Floats:
+    """Return places (n, 3) a little away from nose and tail."""
+    out = places.copy()
+    out[:, 0] = np.clip(out[:, 0], _POLE * length, (1.0 - _POLE) * length)
+    return out
+
+
+def _solved(columns: list[Floats], right: Floats) -> Floats:
+    """Return the solutions (n, 3) of systems with three `columns` (n, 3), by Cramer's rule."""
+    a, b, c = columns
+    det = (a * np.cross(b, c)).sum(axis=1)
+    parts = [(right * np.cross(b, c)), (right * np.cross(c, a)), (right * np.cross(a, b))]
+    return np.stack([part.sum(axis=1) / det for part in parts], axis=1)
+
+
+def map_around(body: Body, far: float) -> BodyMap:
+    """Return the map around a body to a distance `far`."""
+    return LoftedMap(body, far) if isinstance(body, LoftedBody) else BodyMap(body, far)
+
+
+def points_above(space: BodyMap, foot: Floats, first: float) -> Floats:
+    """Return points (n, 3) on normals of the body at the height `first` above places (n, 3) on it.
+
+    Around a body of revolution lines of constant s and theta are its normals.
+    """
+    if isinstance(space, LoftedMap):
+        return np.asarray(space.points(foot) + first * space.normals(foot))
+    return space.points(at_height(space, foot, foot + _ABOVE, first))
