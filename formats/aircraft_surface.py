@@ -13,11 +13,13 @@ from meshonet.formats.source import printable
 from meshonet.formats.toml_table import Table
 from meshonet.geometry.aircraft.axes import AircraftAxes, axes_of
 from meshonet.geometry.aircraft.body import Body
-from meshonet.geometry.aircraft.body_cuts import FLAT, body_cuts
+from meshonet.geometry.aircraft.body_cuts import FLAT, BodyCuts, body_cuts
+from meshonet.geometry.aircraft.body_section import BodySection
+from meshonet.geometry.aircraft.lofted_body import LoftedBody
 from meshonet.geometry.aircraft.surface_wing import SurfaceWing
 from meshonet.geometry.aircraft.wing_strips import wing_strips
 from meshonet.geometry.arrays import Floats, extent_of
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.notes import Change
 
 KEYS = "surface", "patches"
@@ -72,12 +74,21 @@ def surface_body(row: Table, folder: Path) -> tuple[Body, AircraftAxes, tuple[st
             raise InputError("no patch has a side in the plane of symmetry", "give the half of a body")
         cuts = body_cuts(list(patches.values()), name)
         meridian = cuts.meridian
-        if meridian is None:
-            raise InputError(f"the {name} is no body of revolution", "give its meridian")
-        body = Body(meridian, cuts.nose[1], name)
+        body = _lofted(cuts, name) if meridian is None else Body(meridian, cuts.nose[1], name)
     used = ", ".join(map(str, patches))
     notes = [f"the {name} is patch {used} of {printable(row.text('surface'))}; {axes.description}"]
     return body, axes, (*notes, *cuts.notes)
+
+
+def _lofted(cuts: BodyCuts, name: str) -> LoftedBody:
+    """Return the body through cuts; errors have the place x of a cut."""
+    inner = []
+    for x, points in zip(cuts.x.tolist(), cuts.points, strict=True):
+        with in_place(f"x={x:.6g}"):
+            inner.append(BodySection(x, points=points))
+    (nose, low), (tail, high) = cuts.nose, cuts.tail
+    sections = (BodySection(nose, low), *inner, BodySection(tail, high))
+    return LoftedBody(name=name, sections=sections)
 
 
 def surface_wing(row: Table, folder: Path, axes: AircraftAxes) -> SurfaceWing:
