@@ -10,8 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.errors import InputError, NoValidGridError
+from meshonet.geometry.rows.frame import UNITS
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import in_threads
+from meshonet.solvers.blocking.cascade.cascade import SHORTEST
 from meshonet.solvers.blocking.cascade.passage import INLET, NEAR, OUTLET
 from meshonet.solvers.rows.behind import even_behind
 from meshonet.solvers.rows.key_sections import KeySection, LayerColumns, NextSections, SectionPlan, planned
@@ -22,6 +24,7 @@ KEYS = 9
 """Sections that are made as plane cascades."""
 _PART = 0.6  # of the least room before or behind the blade that is left to blocks
 _HALVINGS = 3
+_SOME_MORE = 1.05  # than is missing, since m' is a length over the radius, which changes
 LEAN = 12.0
 """Degrees by which lines along the span lean at the outlet at most, so that all wakes are followed."""
 
@@ -65,14 +68,32 @@ def _planes(row: Row, first: float, growth: float) -> list[SectionPlane]:
     def plane_at(height: float) -> SectionPlane:
         plane = SectionPlane.of(row, height, first, growth)
         with _of_section(height):
-            _ = plane.room, plane.across  # marches the layers
+            _ = plane.cascade.reach, plane.across  # marches the layers
         return plane
 
     planes = in_threads(plane_at, key_heights(KEYS).tolist())
+    _check_room(row, planes)
     before, behind = (min(NEAR, _PART * min(plane.room[k] for plane in planes)) for k in (0, 1))
     half = KEYS // 2
     planes[half] = planes[half].ending((before, behind), planes[half].thickest)
     return planes
+
+
+def _check_room(row: Row, planes: Sequence[SectionPlane]) -> None:
+    """Raise InputError where hub and shroud begin or end too near to the blades for blocks in between."""
+    least = SHORTEST * planes[0].cascade.pitch[1]
+    heights = np.array([plane.height for plane in planes])
+    words = ("begin", "before", "upstream"), ("end", "behind", "downstream")
+    for k, (end, side, way) in enumerate(words):
+        radii = row.channel.at(np.full(len(planes), float(k)), heights)[:, 1]
+        missing = (least - np.array([plane.cascade.reach[k] for plane in planes])) * radii
+        worst = int(missing.argmax())
+        if missing[worst] > 0.0:
+            more, unit = _SOME_MORE * float(missing[worst]) / UNITS.get(row.unit, 1.0), row.unit
+            section = f"at {100.0 * heights[worst]:.3g} % of the span"
+            problem = f"hub and shroud {end} so near to the blades that {section} no blocks fit {side} them"
+            remedy = f"let both {end} {more:.2g}{unit and ' '}{unit} further {way}"
+            raise InputError(problem, remedy if unit else f"{remedy}, in the unit of the profiles")
 
 
 @contextmanager

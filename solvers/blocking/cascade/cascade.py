@@ -145,12 +145,16 @@ class Cascade:
         return np.interp(arcs, self.blade.curve.knots, self.factors, period=self.blade.length)
 
     @cached_property
+    def reach(self) -> tuple[float, float]:
+        """Lengths from the front to inlet and outlet, of which `ends` are long enough."""
+        axial, around = self._axial(self.blade), self._axial(self.ring.front)
+        before = self.inlet * self.chord - float(axial.min() - around.min())
+        return before, self.outlet * self.chord - float(around.max() - axial.max())
+
+    @cached_property
     def ends(self) -> tuple[float, float]:
         """Lengths from the front to inlet and outlet."""
-        chord, axial = self.chord, self._axial(self.blade)
-        around = self._axial(self.ring.front)
-        before = self.inlet * chord - float(axial.min() - around.min())
-        behind = self.outlet * chord - float(around.max() - axial.max())
+        chord, (before, behind) = self.chord, self.reach
         for length, name, chords in ((before, "inlet", self.inlet), (behind, "outlet", self.outlet)):
             least = SHORTEST * abs(self.left)
             if length < least:

@@ -1,5 +1,7 @@
 """Passages of rows whose flow turns outwards or inwards: impellers, radial turbines, vaned diffusers."""
 
+import re
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,6 +11,7 @@ import radial_rows
 from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.pipeline.rows import make_row
 from meshonet.solvers.rows.request import RowRequest
@@ -158,3 +161,21 @@ def test_layers_around_corners_grow_along_the_blade_as_at_wall_or_front(name: st
             ends.append(growth[:, [0, -1]].max())
             all_rows.append(growth.max())
     assert max(all_rows) < 1.02 * max(ends)
+
+
+@pytest.mark.parametrize("unit", ["", "mm"])
+def test_a_short_inlet_is_refused_with_the_length_that_it_lacks(unit: str) -> None:
+    """A row whose hub and shroud are longer by what the message says is made."""
+    row, request = replace(radial_rows.turbine(201), unit=unit), RowRequest(cells=20_000)
+    words = r"begin so near .* no blocks fit before them; let both begin ([0-9.]+) ?(mm|) ?further upstream"
+    with pytest.raises(InputError, match=words) as caught:
+        make_row(row, request)
+    length, named = re.search(words, str(caught.value)).groups()
+    assert named == unit
+    more = float(length) * (0.001 if unit else 1.0)
+    walls = []
+    for line in (row.hub, row.shroud):
+        way = line[0] - line[1]
+        walls.append(np.concatenate([[line[0] + more * way / np.hypot(*way)], line]))
+    longer = make_row(replace(row, hub=walls[0], shroud=walls[1]), request)
+    assert longer.quality.folded == 0
