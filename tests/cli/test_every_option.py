@@ -461,7 +461,10 @@ def observed(
 ) -> dict[str, Any]:
     """What a run leaves behind."""
     for path in inputs.iterdir():
-        shutil.copy(path, folder)
+        if path.name in THERE:
+            shutil.copy(path, folder)
+        else:  # only read: a link is made ten times as fast as a copy
+            (folder / path.name).hardlink_to(path)
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     done = meshonet(command, *words)
     after = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime

@@ -11,6 +11,7 @@ import pytest
 from meshonet.formats.cad import read
 from meshonet.formats.registry import read_shapes
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.cad.model import CadModel
 from meshonet.geometry.errors import InputError
@@ -95,7 +96,12 @@ def model_in(path: Path) -> CadModel:
 
 
 def patched(shape: Any, folder: Path, **sampling: Any) -> Solution:
-    return patches_on(model_in(step_file(shape, folder / "part.step")), Sampling(**sampling))
+    return patches_on(model_of(shape, folder), Sampling(**sampling))
+
+
+def model_of(shape: Any, folder: Path) -> CadModel:
+    """What a STEP file of the shape has; reading takes more than a second, most of it to begin a process."""
+    return model_in(step_file(shape, folder / "part.step"))
 
 
 def enclosed(grid: Grid) -> float:
@@ -152,7 +158,8 @@ def test_patches_lie_on_the_faces_match_and_face_outwards(name: str, tmp_path: P
 
 def test_the_volume_converges_with_the_square_of_the_cells(tmp_path: Path) -> None:
     shape = BRepPrimAPI_MakeTorus(2.0, 0.5).Shape()
-    volumes = [enclosed(patched(shape, tmp_path, ni=n, spacing="uniform").grid) for n in (20, 80)]
+    model = model_of(shape, tmp_path)
+    volumes = [enclosed(patches_on(model, Sampling(ni=n, spacing="uniform")).grid) for n in (20, 80)]
     coarse, fine = np.pi**2 - np.array(volumes)
     assert 0.5 * np.log2(coarse / fine) == pytest.approx(2.0, abs=0.1)
 
@@ -211,19 +218,23 @@ def test_holes_and_triangles_are_refused_with_number_and_place(tmp_path: Path) -
 
 
 def test_cells_follow_number_and_spacing(tmp_path: Path) -> None:
-    box = BRepPrimAPI_MakeBox(1.0, 2.0, 4.0).Shape()
-    counts = {n: sorted(patched(box, tmp_path, ni=n).grid.blocks[0].counts) for n in (20, 40)}
+    box, loft = (model_of(each, tmp_path) for each in (BRepPrimAPI_MakeBox(1.0, 2.0, 4.0).Shape(), wing()))
+
+    def made(model: CadModel, **sampling: Any) -> tuple[Block, ...]:
+        return patches_on(model, Sampling(**sampling)).grid.blocks
+
+    counts = {n: sorted(made(box, ni=n)[0].counts) for n in (20, 40)}
     assert counts == {20: [11, 21], 40: [21, 41]}
     ends = {}
     for spacing in ("uniform", "cosine", "curvature"):
-        line = patched(box, tmp_path, ni=40, spacing=spacing).grid.blocks[0].nodes[0]
+        line = made(box, ni=40, spacing=spacing)[0].nodes[0]
         steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
         ends[spacing] = steps.max() / steps[0]
     assert ends["uniform"] == pytest.approx(1.0)
     assert ends["cosine"] > 10.0
     assert ends["curvature"] == pytest.approx(1.0)
     noses = {
-        spacing: max(max(block.counts) for block in patched(wing(), tmp_path, spacing=spacing).grid.blocks)
+        spacing: max(max(block.counts) for block in made(loft, spacing=spacing))
         for spacing in ("uniform", "curvature")
     }
     assert noses["curvature"] > 1.3 * noses["uniform"]

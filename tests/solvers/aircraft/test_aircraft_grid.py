@@ -22,6 +22,8 @@ from meshonet.solvers.aircraft.request import AircraftRequest, aircraft_request
 
 FIRST = 1e-3
 SMALL = AircraftRequest(around=65, span=9, first_cell=FIRST, far_field=8.0)
+COARSE = AircraftRequest(around=49, span=9, first_cell=2e-3, growth=1.3, far_field=8.0)
+"""What shows that a shape is made or refused."""
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +84,7 @@ def test_the_far_field_is_as_far_as_it_should_be(grid: Grid) -> None:
     ("y", "sweep", "section"), [(0.35, 0.0, "0012"), (-0.15, 3.0, "4418"), (0.1, -1.0, "2412")]
 )
 def test_wings_high_low_and_swept_are_made(y: float, sweep: float, section: str) -> None:
-    made, _ = aircraft_grid(aircraft(y, sweep, section), SMALL)
+    made, _ = aircraft_grid(aircraft(y, sweep, section), COARSE)
     assert sum(count_folded_solids(block.nodes, BEZIER) for block in made.blocks) == 0
 
 
@@ -100,8 +102,8 @@ def test_a_wing_that_meets_the_body_at_a_sharp_angle_is_refused_with_place_and_a
     """Its upper side is 0.592 above the axis of a body of radius 0.6: arccos(0.592 / 0.6) is 9 degrees."""
     near = aircraft(0.5, 1.0)
     with pytest.raises(InputError, match=r"wing meets the fuselage at 9 degrees, at x=.*, y=0\.692.*, z="):
-        aircraft_grid(near, SMALL)
-    folded, _ = aircraft_grid(near, replace(SMALL, allow_invalid=True))
+        aircraft_grid(near, COARSE)
+    folded, _ = aircraft_grid(near, replace(COARSE, allow_invalid=True))
     assert sum(count_folded_solids(block.nodes, BEZIER) for block in folded.blocks) > 0
 
 
@@ -264,7 +266,7 @@ def test_a_drooped_wing_with_a_thin_edge_is_made() -> None:
 def test_a_tail_that_ends_in_a_cone_has_growing_rows() -> None:
     """Beside a point of the body distances from it are no smooth function of the levels of the map."""
     half = np.array([[0, 0], [0.1, 0.3], [1, 0.6], [6, 0.6], [9, 0.4], [10.5, 0.1], [11, 0]])
-    made, _ = aircraft_grid(Aircraft(Body(half), aircraft().wing), SMALL)
+    made, _ = aircraft_grid(Aircraft(Body(half), aircraft().wing), COARSE)
     rows = np.linalg.norm(np.diff(np.asarray(made.blocks[6].nodes)[:, :, :6], axis=2), axis=-1)
     assert (rows[:, :, 1:] / rows[:, :, :-1]).min() > 1.0
     assert sum(count_folded_solids(block.nodes, BEZIER) for block in made.blocks) == 0

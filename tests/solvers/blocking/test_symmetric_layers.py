@@ -27,7 +27,7 @@ def test_layers_of_symmetric_domains_are_symmetric(name):
     assert amiss(name, nodes_of(blocks)) < 1e-9
 
 
-SOME = ("disc", "cross", "plate with four holes", "row of tubes", "wing", "star")
+SOME = ("cross", "plate with four holes", "wing")
 WANTED = {
     "by y+": {"y_plus": 3.0, "reynolds": 1e5, "cells": 10_000},
     "by their size": {"first_cell": 1e-3, "cell_size": 0.12},
@@ -45,8 +45,9 @@ def test_so_are_layers_of_cells(name, wanted):
         assert amiss(name, coarse) < 1e-9
 
 
-@pytest.mark.parametrize("degrees", [13.0, 100.0])
-@pytest.mark.parametrize("name", ["plate with four holes", "wing", "tube bank"])
+@pytest.mark.parametrize(
+    ("name", "degrees"), [("plate with four holes", 13.0), ("wing", 100.0), ("tube bank", 13.0)]
+)
 def test_mirrors_of_layers_may_have_any_direction(name, degrees):
     blocks = blocks_of(name, degrees, first_cell=1e-3, cells=12_000)
     assert amiss(name, nodes_of(blocks), degrees) < 1e-9
