@@ -33,3 +33,23 @@ def _in_shell(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         words, cwd=folder, env=tutorials.environment(folder), capture_output=True, text=True, timeout=120
     )
+
+
+SIZES, FEW = {"--cells": 3000, "--around": 65, "--span": 17}, "--around 65 --span 17"
+"""The most that a command that makes layers or volumes gets here; tutorials are run with their own sizes."""
+
+
+def smaller(line: str) -> str:
+    """Return a command with sizes of at most `SIZES`, or as it is if it is fast.
+
+    Wings and aircraft whose numbers of cells a page leaves to the command get those of `FEW`.
+    """
+    if re.match(r"meshonet stack (wing|aircraft)\.toml ", line) and not re.search("--(around|cells) ", line):
+        return line.replace(".toml ", f".toml {FEW} ", 1)
+    if not re.search("--(first-cell|y-plus|around) ", line):
+        return line
+
+    def size(hit: re.Match[str]) -> str:
+        return f"{hit[1]} {min(int(hit[2]), SIZES[hit[1]])}"
+
+    return re.sub(rf"({'|'.join(SIZES)}) (\d+)(?= |$)", size, line)

@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 from aircraft_surfaces import body_patch, wing_patches, written
-from command_lines import run_line
+from command_lines import run_line, smaller
 from periodic_domains import write_bank
 from printed import differences
 from spatial_shapes import box, cubed_sphere, half_sphere
@@ -187,26 +187,6 @@ def run(line: str, folder: Path) -> None:
     done = run_line(line, folder)
     gate = done.returncode == 1 and ("--fail-on" in line or "--profile" in line)
     assert done.returncode == 0 or gate, f"{line}\n{done.stderr}"
-
-
-SIZES, FEW = {"--cells": 3000, "--around": 65, "--span": 17}, "--around 65 --span 17"
-"""The most that a command that makes layers or volumes gets here; tutorials are run with their own sizes."""
-
-
-def smaller(line: str) -> str:
-    """Return a command with sizes of at most `SIZES`, or as it is if it is fast.
-
-    Wings and aircraft whose numbers of cells a page leaves to the command get those of `FEW`.
-    """
-    if re.match(r"meshonet stack (wing|aircraft)\.toml ", line) and not re.search("--(around|cells) ", line):
-        return line.replace(".toml ", f".toml {FEW} ", 1)
-    if not re.search("--(first-cell|y-plus|around) ", line):
-        return line
-
-    def size(hit: re.Match[str]) -> str:
-        return f"{hit[1]} {min(int(hit[2]), SIZES[hit[1]])}"
-
-    return re.sub(rf"({'|'.join(SIZES)}) (\d+)(?= |$)", size, line)
 
 
 @pytest.mark.parametrize("page", [page for page in GUIDES if commands(page)], ids=path_of)

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from blade_row import BLADES, write_row
-from command_lines import run_line
+from command_lines import run_line, smaller
 from spatial_shapes import box
 
 from meshonet.formats.registry import read_grids
@@ -83,7 +83,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize(("command", "example"), EXAMPLES, ids=[example for _, example in EXAMPLES])
 def test_the_examples_of_the_help_work(folder: Path, command: str, example: str) -> None:
-    done = run_line(example, folder)
+    done = run_line(smaller(example), folder)
     if command in SLOW:
         assert done.returncode == 2
         assert done.stderr.startswith("error: ")

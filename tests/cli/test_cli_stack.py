@@ -24,7 +24,8 @@ chord = 1.0
 z = 3.0
 sweep = 20
 """
-SMALL = ("--around", "49", "--span", "13", "--first-cell", "0.002")
+SMALL = ("--around", "33", "--span", "9", "--first-cell", "0.004")
+FINER = ("--around", "49", "--span", "13", "--first-cell", "0.002")
 
 
 @pytest.fixture
@@ -42,7 +43,7 @@ def test_a_wing_is_valid_with_its_names_first_cells_and_far_field(meshonet: Mesh
     (grid,) = read_grids("wing.h5")
     assert {patch.name for patch in grid.patches} == {"wing", "tip", "symmetry", "farfield"}
     first = [np.linalg.norm(block.nodes[:, :, 1] - block.nodes[:, :, 0], axis=-1) for block in grid.blocks]
-    assert np.concatenate([each.ravel() for each in first]) == pytest.approx(0.004, rel=1e-9)
+    assert np.concatenate([each.ravel() for each in first]) == pytest.approx(0.008, rel=1e-9)
     far = grid.blocks[0].nodes[:, :, -1]
     assert np.linalg.norm(far - [1.0, 0.0, 1.5], axis=-1).min() > 20.0
 
@@ -122,12 +123,12 @@ def test_z_of_a_duct_can_be_an_angle_and_that_of_a_wing_cannot(meshonet: Meshone
 
 
 def test_the_surface_alone_is_what_solve_pde_marches_from(meshonet: Meshonet, wing: Path) -> None:
-    assert meshonet("stack", str(wing), *SMALL[:4], "--surface", "-o", "surface.h5", "-q").code == 0
+    assert meshonet("stack", str(wing), *FINER[:4], "--surface", "-o", "surface.h5", "-q").code == 0
     (surface,) = read_grids("surface.h5")
     assert [block.counts for block in surface.blocks] == [(49, 13), (49, 7), (17, 9)]
     words = "solve-pde surface.h5 --method hyperbolic --wall-spacing 0.004 --far-field 30 -o volume.h5 -q"
     assert meshonet(*words.split()).code == 0
-    assert meshonet("stack", str(wing), *SMALL, "-o", "wing.h5", "-q").code == 0
+    assert meshonet("stack", str(wing), *FINER, "-o", "wing.h5", "-q").code == 0
     (volume,), (made,) = read_grids("volume.h5"), read_grids("wing.h5")
     assert [block.counts for block in volume.blocks] == [block.counts for block in made.blocks]
 
@@ -135,7 +136,7 @@ def test_the_surface_alone_is_what_solve_pde_marches_from(meshonet: Meshonet, wi
 def test_the_function_makes_what_the_command_writes(meshonet: Meshonet, wing: Path) -> None:
     assert meshonet("stack", str(wing), *SMALL, "-o", "wing.h5", "-q").code == 0
     (written,) = read_grids("wing.h5")
-    made = library.stack(wing, around=49, span=13, first_cell=0.002)
+    made = library.stack(wing, around=33, span=9, first_cell=0.004)
     for one, two in zip(written.blocks, made.blocks, strict=True):
         assert np.array_equal(one.nodes, two.nodes)
 

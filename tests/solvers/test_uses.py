@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import inspect
 from collections.abc import Iterator
 from dataclasses import fields
@@ -55,8 +56,14 @@ OTHERS = {
 MAKERS = ("tfi", "solve-pde", "infer", "layout", "stack", "sweep", "deform")
 
 
-def names_read() -> Iterator[str]:
+@functools.cache
+def names_read() -> frozenset[str]:
     """Attributes that code in `solvers` and `geometry` reads, and beginnings of those put together."""
+    return frozenset(names_in_code())
+
+
+def names_in_code() -> Iterator[str]:
+    """Yield them, one by one."""
     for room in ("solvers", "geometry"):
         for path in (ROOT / room).rglob("*.py"):
             if path.name in ONLY_CHECKED:
@@ -80,7 +87,7 @@ def settings() -> set[str]:
 
 @pytest.mark.parametrize("kind", [Sampling, GridRequest, BlockRequest, StackRequest, DeformRequest, Sweep])
 def test_every_field_of_a_request_is_read(kind: type) -> None:
-    read = set(names_read())
+    read = names_read()
     unread = {each.name for each in fields(kind)} - read  # type: ignore[arg-type]
     assert {name for name in unread if name.rpartition("_")[0] + "_" not in read} == set()
 

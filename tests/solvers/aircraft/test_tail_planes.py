@@ -16,7 +16,7 @@ from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.plan import AircraftPlan
 from meshonet.solvers.aircraft.request import AircraftRequest
 
-SMALL = AircraftRequest(around=49, span=9, first_cell=2e-3, growth=1.3, far_field=8.0)
+SMALL = AircraftRequest(around=49, span=9, first_cell=2e-3, growth=1.4, far_field=8.0)
 NAMES = {"fuselage", "wing", "tip", "tail", "tail-tip", "symmetry", "farfield"}
 
 
