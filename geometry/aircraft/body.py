@@ -80,7 +80,10 @@ class Body:
         x, r = self._spline(s).reshape(len(self.arc) - 1, _BETWEEN - 1, 2).transpose(2, 0, 1)
         low, high = self.meridian[:-1, :1], self.meridian[1:, :1]
         back = np.maximum(low - x, x - high).max(axis=1) > _TURNED * self.extent
-        wild = np.flatnonzero(back | (r.max(axis=1) > _BULGED * self.radius) | (r.min(axis=1) <= 0.0))
+        wild = back | (r.max(axis=1) > _BULGED * self.radius) | (r.min(axis=1) <= 0.0)
+        leaving = self._spline.slope(self.arc[[0, -1]])[:, 1] * [1.0, -1.0]
+        wild[[0, -1]] |= leaving <= 0.0
+        wild = np.flatnonzero(wild)
         if len(wild):
             raise self._wild(int(wild[0]))
 

@@ -9,20 +9,18 @@ import numpy as np
 
 from meshonet.geometry.aircraft.body import Body
 from meshonet.geometry.aircraft.body_section import ANGLES, BodySection
-from meshonet.geometry.arrays import Floats
-from meshonet.geometry.curves.cubic import CubicTable, cubic_piece
+from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.curves.limited import LimitedSpline, hermite_piece
 from meshonet.geometry.elementary import arctan2, cos, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.ties import first_least
 from meshonet.kernels._native import lattice_values
 
-_BETWEEN = 8
-"""Parts of an interval between sections in which the surface is checked."""
-_BULGED = 1.5
-"""Largest width, height or shape over that of the sections."""
 _FLATTEST = 3.5
 """Largest width of a section over its height, or the reverse."""
 _FEWEST = 4
+_LONGEST = 0.1
+"""Longest distance of sections, over the body's, without further points of the meridian between them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +28,9 @@ class LoftedBody(Body):
     """A body whose surface is splined through cross-sections, from the point of a nose to that of a tail.
 
     ``meridian`` and ``y`` are those of a body of revolution like it: radii are the means of half the width
-    and half the height, and its axis is in the middle of the largest section. At the arc length s of that
-    meridian and the angle theta a point of the surface is
+    and half the height, and its axis is in the middle of the largest section. It has further points between
+    sections that are far apart: sizes between two sections are about between theirs. At the arc length s of
+    that meridian and the angle theta a point of the surface is
     (x, middle - up * shape * cos(theta), across * shape * sin(theta)). Nose and tail are round like ellipses.
 
     Parameters
@@ -45,7 +44,7 @@ class LoftedBody(Body):
     ------
     InputError
         Fewer than 4 sections; x that does not increase; a first or last section that is no point, or another
-        that is; very flat ones; sections so different and far apart that the surface bulges between them.
+        that is; very flat ones; sections so different and far apart that the meridian bulges between them.
 
     Examples
     --------
@@ -69,10 +68,9 @@ class LoftedBody(Body):
         radii = [0.5 * sum(section.halves) for section in self.sections]
         largest = first_least(range(len(radii)), lambda k: -radii[k])
         object.__setattr__(self, "y", self.sections[largest].middle)
-        x = [section.x for section in self.sections]
-        object.__setattr__(self, "meridian", np.stack([x, radii], axis=1))
+        x, across, up = self._sizes
+        object.__setattr__(self, "meridian", np.stack([x, 0.5 * (across + up)], axis=1))
         super().__post_init__()
-        self._refuse_bulges()
 
     def _refuse_misplaced(self, number: int, section: BodySection) -> None:
         """Raise InputError for a section that is not behind the one before it, or should (not) be a point."""
@@ -91,52 +89,61 @@ class LoftedBody(Body):
             problem = f"a section {2.0 * across:g} wide and {2.0 * up:g} high"
             raise InputError(problem, f"use at most {_FLATTEST:g} times as much of one", place=at)
 
-    def _refuse_bulges(self) -> None:
-        """Raise InputError where the surface between two sections is much larger than they, or closes."""
-        parts = np.arange(len(self.arc) - 1)[:, None] + np.arange(1, _BETWEEN) / _BETWEEN
-        s = np.interp(parts.ravel(), np.arange(len(self.arc)), self.arc)
-        halves, given = self._halves(s), self._halves.values
-        shape = self._shapes_at(s)
-        wild = (halves <= 0.0).any(axis=1) | (halves > _BULGED * given.max(axis=0)).any(axis=1)
-        wild |= (shape.min(axis=1) <= 0.0) | (shape.max(axis=1) > _BULGED * self._shapes_at(self.arc).max())
-        middle, heights = self._middle(self.arc_position(s)), [section.middle for section in self.sections]
-        tallest = given[:, 1].max()
-        wild |= (middle > max(heights) + tallest) | (middle < min(heights) - tallest)
-        if wild.any():
-            raise self._wild(int(wild.argmax()) // (_BETWEEN - 1))
-
     def _wild(self, at: int) -> InputError:
-        """Return the error for a surface that turns back, bulges or closes behind section `at`."""
+        """Return the error for a surface that turns back, bulges or closes behind `at` in the meridian."""
         problem = "the surface between it and the next one turns back, bulges or closes"
-        return InputError(problem, "give more sections between them", place=f"sections[{at}]")
+        number = int(np.searchsorted(self._at, at, side="right")) - 1
+        return InputError(problem, "give more sections between them", place=f"sections[{number}]")
+
+    @cached_property
+    def _at(self) -> Indices:
+        """(n,) numbers of the points of the meridian that are at sections."""
+        return np.searchsorted(self.meridian[:, 0], self._given[:, 0])
+
+    @property
+    def arcs(self) -> Floats:
+        """(n,) arc length of the meridian at sections."""
+        return self.arc[self._at]
 
     @property
     def width(self) -> float:
         """Largest width of a section."""
-        return 2.0 * float(self._halves.values[:, 0].max())
+        return 2.0 * float(self._given[:, 1].max())
 
     @property
     def height(self) -> float:
         """Largest height of a section."""
-        return 2.0 * float(self._halves.values[:, 1].max())
+        return 2.0 * float(self._given[:, 2].max())
 
     @cached_property
-    def _halves(self) -> CubicTable:
-        return CubicTable(np.array([section.halves for section in self.sections]), self.arc)
+    def _given(self) -> Floats:
+        """x, half the width and half the height (n, 3) of sections."""
+        return np.array([(section.x, *section.halves) for section in self.sections])
 
     @cached_property
-    def _middle(self) -> CubicTable:
-        return CubicTable(np.array([section.middle for section in self.sections]), self.meridian[:, 0])
+    def _sizes(self) -> Floats:
+        """x, half the width and half the height (3, m) at points of the meridian."""
+        return _denser(self._given).T
 
     @cached_property
-    def _shapes_at(self) -> CubicTable:
-        return CubicTable(np.array([section.shape for section in self.sections]), self.arc)
+    def _flatness(self) -> LimitedSpline:
+        """Half the width over the radius, their mean; at a nose and tail that of the section beside it."""
+        inner = self._sizes[1, 1:-1] / self.meridian[1:-1, 1]
+        return LimitedSpline(np.concatenate([inner[:1], inner, inner[-1:]]), self.arc)
+
+    @cached_property
+    def _middle(self) -> LimitedSpline:
+        return LimitedSpline(np.array([section.middle for section in self.sections]), self._given[:, 0])
+
+    @cached_property
+    def _shapes_at(self) -> LimitedSpline:
+        return LimitedSpline(np.array([section.shape for section in self.sections]), self.arcs)
 
     @cached_property
     def _shapes(self) -> Floats:
-        """Shapes (n, ANGLES, 2) of the sections, and their second derivatives along the meridian."""
+        """Shapes (n, ANGLES, 2) of the sections, and their derivatives along the meridian."""
         spline = self._shapes_at
-        return np.ascontiguousarray(np.stack([spline.values, spline.bends], axis=-1))
+        return np.ascontiguousarray(np.stack([spline.values, spline.slopes], axis=-1))
 
     def arc_position(self, s: Floats) -> Floats:
         """Return x (n,) at arc lengths of the meridian (n,)."""
@@ -144,20 +151,22 @@ class LoftedBody(Body):
 
     def sizes(self, s: Floats) -> tuple[Floats, Floats, Floats]:
         """Return half the width, half the height and the middle's y (n,) at arc lengths (n,)."""
-        across, up = np.maximum(self._halves(s), 0.0).T
-        return across, up, self._middle(self.arc_position(s))
+        x, radius = self.meridional(s).T
+        flatness = self._flatness(s)
+        return radius * flatness, radius * (2.0 - flatness), self._middle(x)
 
     def shape(self, s: Floats, theta: Floats) -> Floats:
         """Return distances from the middle (n,) at arc lengths and angles (n,); see `BodySection.shape`."""
-        before = np.clip(np.searchsorted(self.arc, s, side="right") - 1, 0, len(self.arc) - 2)
-        h = self.arc[before + 1] - self.arc[before]
+        arcs = self.arcs
+        before = np.clip(np.searchsorted(arcs, s, side="right") - 1, 0, len(arcs) - 2)
+        h = arcs[before + 1] - arcs[before]
         theta = np.abs(theta)
         across: Floats = np.where(theta > np.pi, 2.0 * np.pi - theta, theta) * ((ANGLES - 1) / np.pi)
         ends = np.empty((2, len(s), 2))
         for number, values in enumerate(ends):
             lattice_values(self._shapes, (before + number).astype(np.float64), across, values)
         (start, begin), (stop, end) = np.moveaxis(ends, -1, 1)
-        return cubic_piece(h, (s - self.arc[before]) / h, start, stop, begin, end)
+        return hermite_piece((s - arcs[before]) / h, start, stop, h * begin, h * end)
 
     def points(self, s: Floats, theta: Floats) -> Floats:
         """Return points (..., 3) at arc lengths and angles (...)."""
@@ -182,3 +191,24 @@ class LoftedBody(Body):
         across, up, middle = (float(each[0]) for each in self.sizes(self.arc_at(point[:1])))
         low, high = middle - up, middle + up
         return f"where its section is from y={low:.4g} to {high:.4g} and {2.0 * across:.4g} wide"
+
+
+def _denser(given: Floats) -> Floats:
+    """Return x, half the width and half the height (m, 3): `given` ones (n, 3), and more in long intervals.
+
+    They are on limited splines for squares of sizes, in which round noses and tails are straight lines; steps
+    shrink to nose and tail, as x there is a parabola in the sizes.
+    """
+    x, halves = given[:, 0], given[:, 1:]
+    squares = LimitedSpline(halves * halves, x)
+    counts = np.ceil(np.diff(x) / (_LONGEST * np.ptp(x))).astype(int).tolist()
+    rows = []
+    for number, count in enumerate(counts):
+        part = np.arange(1, count) / count
+        if number == 0:
+            part = part * part
+        elif number == len(counts) - 1:
+            part = part * (2.0 - part)
+        within = x[number] + part * (x[number + 1] - x[number])
+        rows += [given[number : number + 1], np.column_stack([within, np.sqrt(squares(within))])]
+    return np.concatenate([*rows, given[-1:]])

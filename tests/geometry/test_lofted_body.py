@@ -8,6 +8,7 @@ from meshonet.geometry.aircraft.body_section import BodySection
 from meshonet.geometry.aircraft.lofted_body import LoftedBody
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.aircraft.lofted_map import map_around
 
 X = np.array([0.0, 0.1, 0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 9.0, 10.0])
 R = np.array([0.0, 0.2, 0.4, 0.5, 0.55, 0.55, 0.5, 0.3, 0.15, 0.0])
@@ -26,7 +27,8 @@ def lofted(width: float = 1.0, height: float = 1.0, exponent: float = 2.0, raise
 
 def test_circles_make_a_body_of_revolution() -> None:
     s, theta = np.meshgrid(np.linspace(0.0, 10.0, 41), THETA)
-    own, round_one = lofted(), Body(np.stack([X, R], axis=1))
+    own = lofted()
+    round_one = Body(own.meridian)
     assert own.points(s, theta) == pytest.approx(round_one.points(s, theta), abs=1e-14)
     draw = np.random.default_rng(0).uniform([0, -1, 0], [10, 1, 1], (99, 3))
     assert own.outside(draw) == pytest.approx(round_one.outside(draw), abs=1e-12)
@@ -35,7 +37,7 @@ def test_circles_make_a_body_of_revolution() -> None:
 @pytest.mark.parametrize("exponent", [1.5, 2.0, 3.0, 5.0])
 def test_the_surface_goes_through_superellipses(exponent: float) -> None:
     body = lofted(1.2, 0.9, exponent, 0.4)
-    for arc, section in list(zip(body.arc, body.sections, strict=True))[1:-1]:
+    for arc, section in list(zip(body.arcs, body.sections, strict=True))[1:-1]:
         x, y, z = body.points(np.full(len(THETA), arc), THETA).T
         across, up = section.halves
         assert x == pytest.approx(section.x, abs=1e-12)
@@ -95,11 +97,61 @@ def test_what_is_no_body_is_refused_with_its_place(name: str) -> None:
     assert place in error.value.place
 
 
-def test_a_surface_that_bulges_between_sections_is_refused() -> None:
-    thin = [BodySection(x, width=0.02, height=0.02) for x in (3.0, 3.02)]
-    wide = [BodySection(x, width=2.0, height=2.0) for x in (1.0, 1.01)]
-    with pytest.raises(InputError, match="give more sections between them"):
-        LoftedBody(sections=(BodySection(0.0), *wide, *thin, BodySection(9.0)))
+def few(x: list[float], width: list[float], height: list[float], y: list[float]) -> LoftedBody:
+    """Sections in a few places only."""
+    return LoftedBody(
+        sections=tuple(BodySection(*row) for row in zip(map(float, x), y, width, height, strict=True))
+    )
+
+
+SPOOL = [0, 2, 2, 0.02, 0.02, 0]
+FEW = {
+    "five over five units": few([0, 0.1, 0.5, 2.5, 5], [0, 0.5, 0.9, 0.84, 0], [0, 0.4, 0.7, 0.8, 0],
+                                [-0.1, 0, 0, 0, 0.1]),
+    "a flat tail": few([0, 0.3, 1, 4, 9], [0, 0.8, 1, 1, 0], [0, 0.8, 1, 0.4, 0], [0, 0, 0, 0.1, 0.4]),
+    "pairs far apart": few([0, 1, 1.01, 3, 3.02, 9], SPOOL, SPOOL, [0] * 6),
+    "all at the nose": few([0, 0.2, 0.5, 3, 10], [0, 0.5, 0.9, 1, 0], [0, 0.5, 0.9, 1, 0], [0] * 5),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FEW)
+def test_few_sections_make_a_body_that_neither_closes_nor_bulges(name: str) -> None:
+    body = FEW[name]
+    across, up, middle = body.sizes(np.linspace(0.0, body.length, 4001)[1:-1])
+    assert min(across.min(), up.min()) > 0.0
+    assert across.max() < 0.525 * body.width
+    assert up.max() < 0.525 * body.height
+    heights = [section.middle for section in body.sections]
+    assert min(heights) <= middle.min()
+    assert middle.max() <= max(heights)
+
+
+@pytest.mark.parametrize("name", FEW)
+def test_nose_and_tail_have_unit_normals(name: str) -> None:
+    body = FEW[name]
+    ends = np.array([[0.0, 0.0, 0.0], [body.length, 0.0, 0.0]])
+    nose, tail = map_around(body, 5.0 * body.extent).normals(ends)
+    assert nose[0] < -0.5
+    assert tail[0] > 0.5
+    assert np.hypot(nose[0], nose[1]) == pytest.approx(1.0)
+
+
+def test_a_round_tail_far_behind_the_last_section_is_an_ellipse() -> None:
+    body = few([0.0, 1, 2, 4, 8], [0, 2, 2, 2, 0], [0, 2, 2, 2, 0], [0] * 5)
+    x = np.linspace(7.5, 7.9, 50)
+    _, up, _ = body.sizes(body.arc_at(x))
+    rise = up * up / (8.0 - x)
+    assert np.ptp(rise) < 0.15 * rise.mean(), "the square of the radius is almost a line; a cone has none"
+
+
+def test_forms_that_change_at_once_do_not_bulge_behind() -> None:
+    rhombus, square = (BodySection(x, 0.0, 1.0, 1.0, n) for x, n in ((1.0, 1.2), (1.01, 20.0)))
+    sections = (BodySection(0.0), rhombus, square, BodySection(5.0, 0.0, 1.0, 1.0), BodySection(9.0))
+    body = LoftedBody(sections=sections)
+    s, theta = np.meshgrid(np.linspace(0.0, body.length, 201), THETA)
+    shape = body.shape(s.ravel(), theta.ravel())
+    assert shape.min() >= rhombus.shape.min() - 1e-9
+    assert shape.max() <= square.shape.max() + 1e-9
 
 
 POINTS = frame()

@@ -1,0 +1,44 @@
+"""Cubic splines that do not overshoot.
+
+Hyman, SIAM J. Sci. Stat. Comput. 4 (1983) 645-654.
+"""
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.cubic import CubicTable
+
+
+class LimitedSpline:
+    """The cubic spline through `values` (n, ...) at rising `knots` (n,), with slopes limited to be monotone.
+
+    Slopes at knots are those of `CubicTable`, at most three times those of the straight lines on either side,
+    and 0 at extrema: values in an interval lie between those at its ends. Other than by
+    `monotone.monotone_cubic`, the spline of smooth data is kept where it is monotone.
+    """
+
+    def __init__(self, values: Floats, knots: Floats) -> None:
+        self.values, self.knots = values, knots
+        step = np.diff(knots).reshape((-1,) + (1,) * (values.ndim - 1))
+        delta = np.diff(values, axis=0) / step
+        before, behind = np.concatenate([delta[:1], delta]), np.concatenate([delta, delta[-1:]])
+        most = 3.0 * np.minimum(np.abs(before), np.abs(behind))
+        slopes = np.clip(CubicTable(values, knots).slope(knots), -most, most)
+        self.slopes = np.where((slopes * before > 0.0) & (slopes * behind > 0.0), slopes, 0.0)
+
+    def __call__(self, places: Floats) -> Floats:
+        """Return values (p, ...) at places (p,)."""
+        x, along = self.knots, (-1,) + (1,) * (self.values.ndim - 1)
+        i = np.clip(np.searchsorted(x, places, side="right") - 1, 0, len(x) - 2)
+        h = x[i + 1] - x[i]
+        t, h = ((places - x[i]) / h).reshape(along), h.reshape(along)
+        return hermite_piece(
+            t, self.values[i], self.values[i + 1], h * self.slopes[i], h * self.slopes[i + 1]
+        )
+
+
+def hermite_piece(t: Floats, low: Floats, high: Floats, a: Floats, b: Floats) -> Floats:
+    """Return values at the parts t of pieces, from values at both ends and slopes there, times lengths."""
+    rise = high - low
+    out = low + t * (a + t * ((3 * rise - 2 * a - b) + t * (a + b - 2 * rise)))
+    return np.asarray(np.where(t >= 1.0, high, out))
