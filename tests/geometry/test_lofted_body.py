@@ -185,3 +185,10 @@ def test_points_that_are_no_half_section_are_refused(name: str) -> None:
 def test_sizes_that_are_no_superellipse_are_refused(values: dict[str, float], words: str) -> None:
     with pytest.raises(InputError, match=words):
         BodySection(**({"x": 1.0} | values))
+
+
+def test_a_meridian_whose_spline_crosses_the_axis_beside_the_tail_is_refused() -> None:
+    """It is below the axis only in the last eighth of the last interval."""
+    with pytest.raises(InputError, match="reaches the axis") as error:
+        Body(np.array([[0, 0], [1, 0.5], [2, 0.6], [3, 0.6], [4, 0.51], [8, 0]]))
+    assert error.value.place == "meridian: points 5 and 6"
