@@ -25,12 +25,11 @@ def finished(layout: Layout, settings: LayerSettings, held: Bools) -> Layout:
 
     Nodes `held` (n,) are fixed. Raises NoValidGridError, with the place: cells are folded.
     """
-    layout = evened(layout, settings, held)
-    held = held.copy()
+    inner = held.copy()
     for number in layout.layers:
         block = layout.blocks[number]
-        held[block[:, : 2 * block.shape[1] // 3]] = True
-    layout = unfolded(layout, held)
+        inner[block[:, : 2 * block.shape[1] // 3]] = True
+    layout = evened(unfolded(layout, inner), settings, held)  # which moves nothing near folded cells
     corner = smallest_jacobians(layout.mesh.nodes, layout.mesh.quads)
     if corner.min() <= 0.0:
         x, y = layout.mesh.nodes[layout.mesh.quads[int(corner.argmin())]].mean(axis=0)
@@ -54,7 +53,10 @@ def evened(layout: Layout, settings: LayerSettings, held: Bools | None = None) -
 
 
 def unfolded(layout: Layout, held: Bools) -> Layout:
-    """Return the layout with nodes near folded cells moved to unfold them; `held` (n,) nodes are fixed."""
+    """Return the layout with nodes near folded cells moved to unfold them; `held` (n,) nodes are fixed.
+
+    Cells keep their aspect ratios, so that layers stay where they are.
+    """
     mesh = layout.mesh
     bad = smallest_jacobians(mesh.nodes, mesh.quads) <= 0.0
     if not bad.any():
@@ -63,5 +65,8 @@ def unfolded(layout: Layout, held: Bools) -> Layout:
     free[mesh.quads[bad]] = True
     for _ in range(NEAR_FOLDS):
         free[mesh.quads[free[mesh.quads].any(axis=1)]] = True
-    optimum = optimise(mesh, iterations=FEW_ITERATIONS, held=held | ~free)
+    lengths = np.maximum(mesh.edge_lengths, np.finfo(float).tiny)
+    optimum = optimise(
+        mesh, iterations=FEW_ITERATIONS, held=held | ~free, targets=lengths, aspects=mesh.aspects(lengths)
+    )
     return replace(layout, mesh=made_symmetric(optimum.mesh)) if optimum.valid else layout

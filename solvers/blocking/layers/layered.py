@@ -46,6 +46,8 @@ from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.stages import Timings, stage
 
 ITERATIONS, STRIDING = 120, 60  # of each optimum, and of one before it on fewer cells
+UNFOLDING = 3
+"""How many times as many there are from folded cells, which leave nodes far from the optimum."""
 SWEEPS = 10
 """Sweeps that make wanted lengths change gradually: with twice as many, cells in slots grow too fast."""
 COUNTINGS = 3
@@ -175,6 +177,8 @@ def _optimised(
                 thick = _thickness(walls, mesh, table[:, 0], loop, counts.scale)
                 edges = mesh.edges_between(table[:, :-1], table[:, 1:])
                 targets[edges] = (thick / (table.shape[1] - 1))[:, None]
+    if smallest_jacobian(mesh.nodes, mesh.quads) <= 0.0:
+        iterations *= UNFOLDING
     optimum = optimise(mesh, iterations=iterations, targets=targets, aspects=mesh.aspects(targets), held=held)
     if not optimum.valid:
         raise NoValidGridError("cells outside the layers stay folded")
