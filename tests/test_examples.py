@@ -17,6 +17,7 @@ from spatial_shapes import box
 
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.revolve import Revolution, revolved
@@ -70,6 +71,12 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     square = np.stack(np.meshgrid([0.0, 1.0], [1.0, 1.5, 2.0], indexing="ij"), axis=-1)
     walls = (Patch("hub", "south", 0, 1, kind="wall"), Patch("shroud", "north", 0, 1, kind="wall"))
     revolved(Grid((Block(square),), walls), Revolution(360.0 / BLADES, 3)).write(made / "rotor.cgns")
+    cell = np.stack(np.meshgrid(np.linspace(0.0, 1.0, 5), np.linspace(0.0, 1.0, 5), indexing="ij"), axis=-1)
+    periods = [
+        Connection(0, low, ((0, 4),), 0, high, ((0, 4),), (1,), Motion(shift))
+        for low, high, shift in (("west", "east", (1.0, 0.0)), ("south", "north", (0.0, 1.0)))
+    ]
+    Grid((Block(cell),), (), tuple(periods)).write(made / "cell.cgns")
     (made / "path.csv").write_text("0,0,0\n9,0,0\n18,5,1\n")
     (made / "duct.csv").write_text("0,0\n1,0.2\n2,0\n2,1\n0,1\n")
     assert run_line("meshonet layout plate.geojson -o plate.json", made).returncode == 0
