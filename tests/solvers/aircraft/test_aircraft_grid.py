@@ -104,7 +104,7 @@ def test_a_wing_that_meets_the_body_at_a_sharp_angle_is_refused_with_place_and_a
     The node beside it, which is the one that is named, is up to a degree off.
     """
     near = aircraft(0.5, 1.0)
-    with pytest.raises(InputError, match=r"wing meets the fuselage at (9|10) degrees, at x=.*, y=0\.69[12].*, z="):
+    with pytest.raises(InputError, match=r"wing meets the fuselage at (9|10) degrees, at x=.*, y=0\.69"):
         aircraft_grid(near, COARSE)
     folded, _ = aircraft_grid(near, replace(COARSE, allow_invalid=True))
     assert sum(count_folded_solids(block.nodes, BEZIER) for block in folded.blocks) > 0
