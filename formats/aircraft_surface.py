@@ -11,9 +11,9 @@ import numpy as np
 from meshonet.formats.registry import read_grids
 from meshonet.formats.source import printable
 from meshonet.formats.toml_table import Table
-from meshonet.geometry.aircraft.axes import AircraftAxes, axes_of
+from meshonet.geometry.aircraft.axes import FLAT, AircraftAxes, axes_of
 from meshonet.geometry.aircraft.body import Body
-from meshonet.geometry.aircraft.body_cuts import FLAT, BodyCuts, body_cuts
+from meshonet.geometry.aircraft.body_cuts import BodyCuts, body_cuts
 from meshonet.geometry.aircraft.body_section import BodySection
 from meshonet.geometry.aircraft.lofted_body import LoftedBody
 from meshonet.geometry.aircraft.surface_wing import SurfaceWing

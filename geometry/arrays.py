@@ -94,9 +94,14 @@ def wrapped(parts: Floats, least: float = -0.5) -> Floats:
     return np.asarray(np.mod(parts - least, 1.0) + least)
 
 
+def arc_lengths(line: Floats) -> Floats:
+    """Return the arc lengths (n,), from 0, at the nodes of a `line` (n, d)."""
+    return np.append(0.0, np.cumsum(norms(np.diff(line, axis=0))))
+
+
 def arc_parts(line: Floats) -> Floats:
     """Return the arc lengths (n,) at the nodes of a `line` (n, d), over its length."""
-    arcs = np.append(0.0, np.cumsum(norms(np.diff(line, axis=0))))
+    arcs = arc_lengths(line)
     return np.asarray(arcs / arcs[-1])
 
 

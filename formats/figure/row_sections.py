@@ -21,7 +21,7 @@ from functools import cached_property
 import numpy as np
 
 from meshonet.formats.figure.slices import Cut, cut_where
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, arc_lengths, norms
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.screw import screw_of
 from meshonet.geometry.elementary import product
@@ -128,7 +128,7 @@ class RowSections:
             ordered.append(here)
             rest = np.delete(rest, k, axis=0)
         line = np.array(ordered)
-        arc = np.concatenate([[0.0], np.cumsum(norms(np.diff(line, axis=0)))]) / size
+        arc = arc_lengths(line) / size
         at = np.linspace(0.0, arc[-1], _POINTS)
         return np.stack([np.interp(at, arc, line[:, k]) for k in (0, 1)], axis=1)
 

@@ -12,8 +12,8 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.halves import with_i_reversed
 
 _NAMES = "xyz"
-_FLAT = 1e-6
-"""Distance from the plane of symmetry, over the size of a surface, that is none."""
+FLAT = 1e-6
+"""Distance from the plane of symmetry or an end of the body, over the size of a surface, that is none."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ FILE_AXES = AircraftAxes()
 
 def axes_of(points: Floats) -> AircraftAxes | None:
     """Return the axes of half an aircraft with points (n, 3); None if these are those of both halves."""
-    flat = _FLAT * float(np.ptp(points, axis=0).max())
+    flat = FLAT * float(np.ptp(points, axis=0).max())
     for span in (2, 1):
         for sign in (1, -1):
             if (sign * points[:, span]).min() >= -flat:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshonet.geometry.aircraft.axes import FLAT
 from meshonet.geometry.arrays import Floats, Indices, extent_of, norms
 from meshonet.geometry.elementary import arctan2, cos, sin
 from meshonet.geometry.errors import InputError
@@ -15,8 +16,6 @@ from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.notes import Change
 from meshonet.geometry.surface.merge import merged
 
-FLAT = 1e-6
-"""Distance, over the length of a surface, from the plane of symmetry or from its end that is none."""
 _CLOSE = 1e-4
 """Least distance of cuts, over the length of a body."""
 _SAME = 1e-6

@@ -8,10 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, arc_lengths, norms
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.elementary import arctan2, cos, power, sin
 from meshonet.geometry.errors import InputError, in_place
+from meshonet.geometry.polygon.corners import turning
 
 ANGLES = 513
 """Angles from keel to crown for which the shape of a section is known."""
@@ -139,23 +140,15 @@ def _half_section(points: Floats) -> Floats:
     wrong = np.flatnonzero(points[1:-1, 1] <= 0.0)
     if len(wrong):
         raise InputError(f"z={points[wrong[0] + 1, 1]:g} at point {wrong[0] + 2}", "give the half z >= 0")
-    ring = _mirrored(points)
-    steps = np.diff(ring, axis=0)
     same = np.flatnonzero(norms(np.diff(points, axis=0)) <= 0.0)
     if len(same):
         at = int(same[0]) + 1
         raise InputError(f"points {at} and {at + 1} are the same", "leave one of them out")
-    turns = _turns(steps)[len(points) - 2 : 2 * len(points) - 2]
+    turns = np.abs(turning(_mirrored(points)))[len(points) - 1 : 2 * len(points) - 1]
     if turns.max() > _MOST_TURN:
         problem = f"turns by {math.degrees(turns.max()):.0f} degrees at point {int(turns.argmax()) + 1}"
         raise InputError(problem, "give more points, on a rounded corner")
     return points
-
-
-def _turns(steps: Floats) -> Floats:
-    """Return the angles (n - 1,) between consecutive steps (n, 2)."""
-    a, b = steps[:-1], steps[1:]
-    return np.abs(arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1)))
 
 
 def _mirrored(points: Floats) -> Floats:
@@ -170,7 +163,7 @@ def _seen(points: Floats, middle: float, across: float, up: float) -> tuple[Floa
     Raises InputError: a ray from there meets the section twice.
     """
     ring = _mirrored((points - [middle, 0.0]) / [up, across])
-    arcs = np.concatenate([[0.0], np.cumsum(norms(np.diff(ring, axis=0)))])
+    arcs = arc_lengths(ring)
     first, count = len(points) - 1, len(points)
     steps = np.arange((count - 1) * _DENSE + 1) / _DENSE + first
     y, z = CubicTable(ring, arcs)(np.interp(steps, np.arange(len(ring)), arcs)).T

@@ -7,10 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.aircraft.wing_strips import at_heights
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.aircraft.wing_strips import at_heights, on_line
+from meshonet.geometry.arrays import Floats, arc_lengths, cross2, norms
 from meshonet.geometry.curves.cubic import CubicTable
-from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
 from meshonet.geometry.sections.stack import Tip
@@ -118,7 +117,7 @@ class SurfaceWing:
     @property
     def end(self) -> tuple[float, float, float]:
         """Position of the nose of the last section."""
-        x, y, z = _on(self.line(self.nose), np.array([self.height]))[0].tolist()
+        x, y, z = on_line(self.line(self.nose), np.array([self.height]))[0].tolist()
         return x, y, z
 
     @cached_property
@@ -140,7 +139,7 @@ class SurfaceWing:
             if apart[number][0] >= (1.0 - _NOSE) * most:
                 return float(number)
         number = max(range(len(rows)), key=lambda k: float(apart[k].max()))
-        way = np.append(0.0, np.cumsum(norms(np.diff(rows[number], axis=0))))
+        way = arc_lengths(rows[number])
         return number + float(way[int(apart[number].argmax())] / way[-1])
 
     def line(self, place: float) -> Floats:
@@ -172,13 +171,13 @@ class SurfaceWing:
         """Return the heights of the base (n,) at heights z (n,), in chords there."""
         upper, lower = self.edges(z)
         across = upper - lower
-        along = 0.5 * (upper + lower) - _on(self.line(self.nose), z)
-        square = _cross(along, across)
+        along = 0.5 * (upper + lower) - on_line(self.line(self.nose), z)
+        square = cross2(along, across)
         return np.asarray(np.abs(square) / (along[:, :2] ** 2).sum(axis=1))
 
     def edges(self, z: Floats) -> tuple[Floats, Floats]:
         """Return the upper and the lower corners (n, 3) of the trailing edge at heights z (n,)."""
-        return _on(self.line(0.0), z), _on(self.line(float(len(self.strips))), z)
+        return on_line(self.line(0.0), z), on_line(self.line(float(len(self.strips))), z)
 
     def opened(self, least: float) -> SurfaceWing:
         """Return the wing with a base of at least so many chords, and a note if it was lower.
@@ -195,7 +194,7 @@ class SurfaceWing:
     def _thicker(self, number: int, least: float) -> Floats:
         strip = self.strips[number]
         z = strip[..., 2].ravel()
-        nose, (upper, lower) = _on(self.line(self.nose), z), self.edges(z)
+        nose, (upper, lower) = on_line(self.line(self.nose), z), self.edges(z)
         chord = (0.5 * (upper + lower) - nose)[:, :2]
         square = (chord * chord).sum(axis=1)
         normal = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.sqrt(square)[:, None]
@@ -212,7 +211,7 @@ class SurfaceWing:
         """Return lines (stations, n, 3) at parts (n,) of the way across a strip."""
         rows = []
         for row in self.strips[number]:
-            arcs = np.append(0.0, np.cumsum(norms(np.diff(row, axis=0))))
+            arcs = arc_lengths(row)
             rows.append(CubicTable(row, arcs)(parts * arcs[-1]))
         return np.stack(rows)
 
@@ -225,13 +224,8 @@ class SurfaceWing:
         nose = loops[np.arange(len(z)), at]
         along = 0.5 * chord - nose
         length = norms(along)
-        high = _cross(along[:, None], loops - nose[:, None]) / np.where(length > 0.0, length, 1.0)[:, None]
+        high = cross2(along[:, None], loops - nose[:, None]) / np.where(length > 0.0, length, 1.0)[:, None]
         return length, np.asarray(np.ptp(high, axis=1))
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    """Return the z component (...) of the product of vectors (..., 3)."""
-    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
 def _rising(strip: Floats) -> Floats:
@@ -241,8 +235,3 @@ def _rising(strip: Floats) -> Floats:
         return strip
     left_out = strip[-1, :, 2].max() - strip[flat[0], :, 2].min()
     return strip[: flat[0] + 1] if left_out <= _CLOSING * np.ptp(strip[..., 2]) else strip
-
-
-def _on(line: Floats, z: Floats) -> Floats:
-    """Return points (n, 3) on a line (stations, 3) at heights z (n,), which may lie beyond its ends."""
-    return monotone_cubic(line[:, 2], line, z, linear=True)

@@ -10,8 +10,9 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.curves.monotone import monotone_cubic
-from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.polygon.corners import angle_between
 
 _CORNER = np.pi / 3.0
 """Angle by which the nodes of a section turn at the corners of a trailing edge, at least."""
@@ -62,15 +63,19 @@ def wing_strips(patches: Sequence[Floats], name: str) -> tuple[tuple[Floats, ...
     base = [_is_base(strip, back, chord) for strip in chain]
     chain = _from_edge(chain, base, back, chord, name)
     loop = np.concatenate([strip.rows[_LEVELS // 2] for strip in chain])
-    if _area(loop) < 0.0:
+    if polygon_area(loop[:, :2]) < 0.0:
         chain = [strip.turned() for strip in chain[::-1]]
     return tuple(strip.nodes for strip in chain), tuple(np.flatnonzero(~long).tolist())
 
 
 def at_heights(strip: Floats, z: Floats) -> Floats:
     """Return the nodes (k, n, 3) of a strip (stations, n, 3) at heights z (k,), or beyond its ends."""
-    columns = [monotone_cubic(strip[:, k, 2], strip[:, k], z, linear=True) for k in range(strip.shape[1])]
-    return np.stack(columns, axis=1)
+    return np.stack([on_line(strip[:, k], z) for k in range(strip.shape[1])], axis=1)
+
+
+def on_line(line: Floats, z: Floats) -> Floats:
+    """Return points (k, 3) on a line (stations, 3) at heights z (k,), or beyond its ends."""
+    return monotone_cubic(line[:, 2], line, z, linear=True)
 
 
 def _from_root(patch: Floats) -> Floats:
@@ -83,8 +88,7 @@ def _from_root(patch: Floats) -> Floats:
 def _between_corners(nodes: Floats) -> list[Floats]:
     """Return the parts of a strip (stations, n, 3) between its corners."""
     steps = np.diff(nodes, axis=1)
-    before, after = steps[:, :-1], steps[:, 1:]
-    turns = arctan2(norms(np.cross(before, after)), (before * after).sum(axis=-1))
+    turns = angle_between(steps[:, :-1], steps[:, 1:])
     corners = np.flatnonzero(np.median(turns, axis=0) > _CORNER) + 1
     bounds = [0, *corners.tolist(), nodes.shape[1] - 1]
     return [nodes[:, first : last + 1] for first, last in pairwise(bounds)]
@@ -134,9 +138,3 @@ def _from_edge(chain: list[_Strip], base: list[bool], back: Floats, chord: Float
         problem = f"the patches of the {name} do not end at its trailing edge"
         raise InputError(problem, "give patches with a side there")
     return [strip for strip, left_out in zip(chain, base, strict=True) if not left_out]
-
-
-def _area(loop: Floats) -> float:
-    """Return the area of a closed loop (n, 3) in x and y, positive if counter-clockwise."""
-    x, y = loop[:, 0], loop[:, 1]
-    return 0.5 * float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())

@@ -7,6 +7,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.cubic import CubicTable
+from meshonet.geometry.curves.monotone import hermite_piece
 
 
 class LimitedSpline:
@@ -35,10 +36,3 @@ class LimitedSpline:
         return hermite_piece(
             t, self.values[i], self.values[i + 1], h * self.slopes[i], h * self.slopes[i + 1]
         )
-
-
-def hermite_piece(t: Floats, low: Floats, high: Floats, a: Floats, b: Floats) -> Floats:
-    """Return values at the parts t of pieces, from values at both ends and slopes there, times lengths."""
-    rise = high - low
-    out = low + t * (a + t * ((3 * rise - 2 * a - b) + t * (a + b - 2 * rise)))
-    return np.asarray(np.where(t >= 1.0, high, out))

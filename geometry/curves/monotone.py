@@ -34,7 +34,13 @@ def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = Fals
         return np.asarray((1.0 - t) * low + t * high)  # bitwise exact at both ends
     step = h.reshape(along)
     slope = _slopes(step, np.diff(values, axis=0) / step)
-    a, b, rise = step[i] * slope[i], step[i] * slope[i + 1], high - low
+    a, b = step[i] * slope[i], step[i] * slope[i + 1]
+    return hermite_piece(t, low, high, a, b)
+
+
+def hermite_piece(t: Floats, low: Floats, high: Floats, a: Floats, b: Floats) -> Floats:
+    """Return values at the parts t of pieces, from values at both ends and slopes there, times lengths."""
+    rise = high - low
     out = low + t * (a + t * ((3 * rise - 2 * a - b) + t * (a + b - 2 * rise)))
     return np.asarray(np.where(t >= 1.0, high, out))
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from meshonet.geometry.aircraft.body import Body
 from meshonet.geometry.aircraft.surface_wing import SurfaceWing
+from meshonet.geometry.aircraft.wing_strips import on_line
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.sections.stack import Stack
 from meshonet.solvers.stacking.section_nodes import Around
 
@@ -103,9 +103,5 @@ class SurfaceLoft:
     def line(self, number: int, z: Floats) -> Floats:
         """Return points (m, 3) on a line at heights z (m,)."""
         if number in (0, len(self.lines) + 1):
-            return 0.5 * (_on(self.lines[0], z) + _on(self.lines[-1], z))
-        return _on(self.lines[number - 1], z)
-
-
-def _on(line: Floats, z: Floats) -> Floats:
-    return monotone_cubic(line[:, 2], line, z, linear=True)
+            return 0.5 * (on_line(self.lines[0], z) + on_line(self.lines[-1], z))
+        return on_line(self.lines[number - 1], z)

@@ -18,7 +18,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, Indices, norms
+from meshonet.geometry.arrays import Bools, Floats, Indices, arc_lengths, norms
 from meshonet.geometry.curves.cubic import cubic_spline
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
@@ -165,7 +165,7 @@ def _first_guess(
     low, high = sides[0], sides[2][::-1]
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     width = norms(half)
-    along = np.concatenate([[0.0], np.cumsum(norms(np.diff(middle, axis=0)))])
+    along = arc_lengths(middle)
     part = along / along[-1]
     m = (len(sides[1]) - 1) // 2
     depths = _grown(width, first, rows + m)

@@ -93,8 +93,8 @@ def test_the_junction_that_is_named_is_the_one_beside_the_folded_cells() -> None
 
     def named(x0: float, y0: float) -> tuple[float, float] | None:
         node = np.hypot(x - x0, y - y0).argmin()
-        found = hollows.nearest(surface, np.array([node]))
-        return found and (round(x[found[1]], 6), round(y[found[1]], 6))
+        junction = hollows.nearest(surface, np.array([node]))
+        return junction and (round(x[junction[1]], 6), round(y[junction[1]], 6))
 
     edges = surface.nodes[hollows.edges[:, 0], :2]
     left, right = edges[edges[:, 0].argmin()], edges[edges[:, 0].argmax()]
