@@ -146,9 +146,10 @@ class Body:
         s = monotone_cubic(self.meridian[:, 0], self.arc, x, linear=True)
         for _ in range(_STEPS):  # Newton's method
             slope = self._spline.slope(s)[:, 0]
-            s = np.clip(
-                s - (self._spline(s)[:, 0] - x) / np.where(slope > _FLAT, slope, np.inf), 0.0, self.length
-            )
+            step = (self._spline(s)[:, 0] - x) / np.where(slope > _FLAT, slope, np.inf)
+            before, s = s, np.clip(s - step, 0.0, self.length)
+            if (s == before).all():  # as would be all that follow
+                break
         return np.asarray(s)
 
     def outside(self, points: Floats) -> Floats:

@@ -68,7 +68,9 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
         sizes = exp(straight + bend * bump)
         total = sizes.sum(axis=1)
         slope = (sizes * bump).sum(axis=1) / total
-        bend = np.clip(bend + (log(lengths / total) / slope)[:, None], -_MOST_BENT, _MOST_BENT)
+        before, bend = bend, np.clip(bend + (log(lengths / total) / slope)[:, None], -_MOST_BENT, _MOST_BENT)
+        if (bend == before).all():  # as would be all that follow
+            break
     sizes = exp(straight + bend * bump)
     sizes *= (lengths / sizes.sum(axis=1))[:, None]
     arcs = np.concatenate([np.zeros((len(lengths), 1)), np.cumsum(sizes, axis=1)], axis=1)
