@@ -36,11 +36,12 @@ HEAD = """# Deformed grids: folded cells, first-cell heights, time
 
 <!-- made by python benchmarks/bench_deform.py --page docs/benchmarks/deform.md -->
 
-Use this page to compare `meshonet deform` with inverse-distance weighting (IDW): folded cells, first-cell
-heights, angles and CPU time. For its use see [deforming grids](../guide/deform.md).
+Use this page to compare `meshonet deform`, itself an inverse-distance weighting (IDW), with two published
+ones: folded cells, first-cell heights, angles and CPU time. For its use see
+[deforming grids](../guide/deform.md).
 
 The deformations are random (seed {seed}). *airfoils*: the thickness is multiplied by 0.9 to 1.1 and the
-camber changed by up to 2 % of the chord, in viscous C grids of 250 x 100 nodes with y+ 1 at Reynolds
+camber changed by -2 to 2 % of the chord, in viscous C grids of 250 x 100 nodes with y+ 1 at Reynolds
 number 6e6. *flap*: the flap of a section with slat and main element is rotated by up to 10 degrees in
 either direction about a point near its leading edge, in a multi-block grid of about 25,000 cells with
 first-cell heights of 1e-5.
@@ -49,19 +50,20 @@ first-cell heights of 1e-5.
   valid are left out ({refused}).
 - *folded*: number of grids with folded cells, and the largest number of folded cells in one grid.
 - *first cell*: largest relative change of a first-cell height, over all wall nodes and deformations.
-- *angle*: largest increase of the largest cell corner angle of a grid, in degrees.
+- *angle*: by how many degrees the largest cell corner angle grows, in the grid where it grows most.
 - *CPU ms*: CPU time from the grid and the new outline in memory to the new grid in memory, median / 90th
   percentile, one thread of {machine}, while other programs used the machine.
 - *IDW*: interpolation of displacements with weights 1/r^3 (Witteveen, Bijl, AIAA 2009-3996). *IDW,
   rotations*: interpolation of displacements and rotations with the weights of Luke, Collins and Blades
-  (J. Comput. Phys. 231 (2012) 586-601). Both use the same compiled kernel and all boundary nodes, without
-  treatment of folded cells.
+  (J. Comput. Phys. 231 (2012) 586-601). Both run in the compiled kernel of `deform`, sum over all
+  boundary nodes one by one, and leave folded cells as they are.
 
 """
 TAIL = """
-`meshonet deform` also uses weights of the inverse distance, in a compiled kernel. Its exponents are those
-for two dimensions; it uses every wall node and combines distant nodes in groups. If the result has folded
-cells, it repeats the deformation in several steps ({steps} of these deformations needed that).
+`meshonet deform` also uses weights of the inverse distance, in a compiled kernel. Its exponents are 2
+and 4, those for two dimensions (3 and 5 in the paper); it sums near wall nodes one by one and distant ones
+in groups. If the result has folded cells, it repeats the deformation in several steps, which
+{steps} of these deformations needed.
 """
 SEED = 20261122
 COLUMNS = "deformations", "method", "folded", "first cell", "angle", "CPU ms"

@@ -143,7 +143,7 @@ def folds(kept: Kept, count: int) -> str:
     """Return a table: how many procedural airfoils have no folded cell before and after the guard."""
     lines = [
         f"\n## Share of grids without folded cells, {count} procedural airfoils, 200x200\n",
-        f"| spacing | {OURS} | after repair | {SOLVER} |",
+        f"| spacing | {OURS} | infer, after repair | {SOLVER} |",
         "| --- | --- | --- | --- |",
     ]
 
@@ -156,7 +156,7 @@ def folds(kept: Kept, count: int) -> str:
 
     for spacing in ("conformal", "cosine", "curvature", None):
         shapes = random_airfoils(count, 200, spacing)  # type: ignore[arg-type]
-        label = "every law, random first cells at both edges" if spacing is None else str(spacing)
+        label = "every law, random cell lengths at both edges" if spacing is None else str(spacing)
         folds = [kept.row(("folds", label, one.name), partial(folded, one)) for one in shapes]
         share = 100.0 * (1.0 - np.array(folds).mean(axis=0))
         lines.append(f"| {label} | {share[0]:.1f} % | {share[1]:.1f} % | {share[2]:.1f} % |")
@@ -200,12 +200,12 @@ def times(kept: Kept) -> str:
     sharp, blunt = (partial(section, name) for name in ("2412-sharp", "2412"))
     network = {way: AIRFOILS[way] for way in ("**network, polish auto**",)}
     general = {way: DOMAINS[way] for way in ("**quad-general**", "**quad-general, 5 steps**")}
-    copy: dict[str, Way | None] = {"copy of the grid in memory": None}
+    copy: dict[str, Way | None] = {"copying the grid in memory": None}
     for label, shape, ways in (
         ("sharp edge", sharp, {OURS: infer}),
         ("blunt edge", blunt, {OURS: infer, **network, **COMMON}),
         ("arch", partial(family("arch").boundary, 0.3), {**general, **COMMON}),
-        ("all", sharp, copy),
+        ("for comparison", sharp, copy),
     ):
         for way, make in ways.items():
             sizes = [n for n in SIZES if n <= LARGEST.get(way, n)]
@@ -247,16 +247,29 @@ short advice see [choosing a method](../start/choosing-a-method.md).
 **Timing.** All methods of a table ran on the same boundaries, in one run, on {machine}, while other
 programs used the machine. *ms* is the CPU time to generate the grid, including set-up, without reading,
 writing and repair. Each value is the median over the shapes, with one run each. The last digits are not
-significant. Bold rows are the conformal and neural operators of meshonet.
+significant. Bold rows are what `infer` does, and networks.
+
+**Methods.** `infer, default`: the command without options.
+
+| row | how the grid is made |
+| --- | --- |
+| Winslow, coarse 65 | solved on 65 nodes a direction, interpolated, and smoothed |
+| harmonic base | conformal map of the outside; distribution of wall nodes extended harmonically |
+| + 1 Picard step | a step of fixed-point iteration for Winslow's equations in the plane of the map |
+| network alone, + 1 Picard step | the network `airfoil-o` corrects the harmonic base; then such a step |
+| network, polish auto | as many steps as are needed |
+| quad-general, 5 steps | the network for variational grids, then 5 steps of minimisation |
+| quad-winslow, 2 cycles | the network for Winslow's grids, then 2 cycles of multigrid |
+| MeshONet, MeshONet-hard | networks of the paper: with a penalty for the boundary, or exact on it |
 
 **Distance** is a relative L2 norm: the root mean square distance of the nodes to the reference nodes,
 divided by the root mean square distance of the reference nodes to the centre of the shape. *Near the
-wall* means within 1.5 chords of the centre of an airfoil, or in the tenth of the rows next to each side
-of a four-sided domain.
+wall* means within 1.5 chords of the centre of an airfoil, or in the 10 % of the rows that are nearest to
+each side of a four-sided domain.
 
 **Reference.** Winslow's equations are solved to a residual of 1e-8 with two and with four times the cells
 in each direction (at 800x800: with the same number and with twice the cells); the two solutions are
-extrapolated. Variational grids are compared with the full variational solution on the same nodes.
+extrapolated. The reference of variational grids is the converged variational grid of the same size.
 
 **Angles** are given relative to those of Winslow's grid, solved by multigrid to a residual of 1e-8 on the
 same nodes. A value below 1 is better than Winslow's grid. *Valid* is the share of grids without a folded
@@ -266,26 +279,28 @@ Remarks:
 
 - TFI distributes nodes differently in the interior, so its distance says little about its quality.
 - Multigrid Winslow stops by default when the error of the iteration is below the discretisation error.
-- The airfoil operator cannot resolve the wall cells of some bodies. `infer` uses multigrid or `hole-o`
-  for these, and they determine its largest distances.
+- The conformal map cannot resolve the wall cells of some bodies. `infer` uses multigrid or the model
+  `hole-o` for such bodies, from which the largest distances in its row come.
 - In the tables of distances each boundary consists of every fourth node of a finer boundary (at 800x800
-  every second). This can omit corners of a blunt trailing edge and changes the largest angles there by a
+  every second), which can omit corners of a blunt trailing edge and change the largest angles there by a
   few percent. The table of folded cells uses boundaries that are sampled directly.
-- For walls with uniform spacing the reference is accurate only to about 1e-4, because its order of
-  convergence is 1.4 at trailing edges. The operator also differs from the reference by design: the grid
-  lines that leave the trailing edge bisect its angle.
+- For walls with uniform spacing the reference is accurate only to about 1e-4, because Winslow's
+  solution converges only with order 1.4 at trailing edges. The operator also differs from the reference by
+  design: the grid lines that leave the trailing edge bisect its angle.
+- Titles have the number of shapes in brackets; a few have no converged reference and are not in the table.
 """
-DOMAINS_NOTE = """Winslow's methods and `quad-winslow` are compared with Winslow's solution, variational
-methods and `quad-general` with the full variational solve."""
+DOMAINS_NOTE = """The reference of Winslow's methods and `quad-winslow` is Winslow's solution; that of
+variational methods and `quad-general` is the converged variational grid."""
 FAMILIES_NOTE = """
 ## The six families of the MeshONet paper, 101x101, test members
 
 Median relative L2 distance of all nodes to Winslow's converged solution; in brackets, how many of the six
-grids have folded cells. Winslow's own grids of the wrench have folded cells. The operator is
+test members of a row have folded cells. Winslow's own grids of the wrench have folded cells. The operator is
 `quad-winslow` for the first four families, the airfoil operator for the airfoil and `hole-winslow` for
 the plate with a hole. None of them was trained on these shapes. The paper's models were trained on 30
-members of each family; their values are from [the reproduction of the paper](paper/index.md), where they
-are compared with the grid of the PDE solver.
+members of each family; *interpolation* is inside and *extrapolation* outside the range of training. Their
+values are from [the reproduction of the paper](paper/index.md), whose reference is the grid of the PDE
+solver.
 """
 TIMES_HEAD = """
 ## CPU time to generate the grid in milliseconds, float64, best of 3
@@ -293,17 +308,17 @@ TIMES_HEAD = """
 WHICH = """
 ## Consequences for the defaults of `infer`
 
-- **O grids around airfoils**: conformal map and Picard iteration without the network. The grid is as
-  close to the solution, with equally good angles, in less time. The network is used with `--polish off`
-  or `--model airfoil-o`.
-- **Four-sided domains**: the variational grid, solved on fewer nodes if the result is equivalent. For a
-  single grid no network is better. For batches, `--model quad-general` is many times faster than any
-  solver ([figures](quad-operator.md)).
+- **O grids around airfoils**: conformal map and Picard iteration without the network: as close to the
+  solution as with it, with equally good angles, in less time. `--model airfoil-o` chooses the network, and
+  so does `--polish off`.
+- **Four-sided domains**: the variational grid, solved on fewer nodes and interpolated if all sides are
+  resolved there. For a single grid the solver is better than any network. For batches,
+  `--model quad-general` is many times faster than any solver ([measurements](quad-operator.md)).
 - **C grids**: hyperbolic marching from the wall and the wake, or the variational method if marching
   fails. The network for four-sided domains generates worse C grids than TFI
-  ([figures](body-operator.md#c-grids-no-model)).
-- **Batches of airfoils** gain little from the network. It evaluates 64 airfoils together, but map,
-  iteration and evaluation of nodes are separate for each body.
+  ([measurements](body-operator.md#c-grids-no-model)).
+- **Batches of airfoils** gain little from the network. It runs for 64 airfoils at once, but the map,
+  the iteration and the computation of nodes run for one body after the other.
 """
 
 if __name__ == "__main__":

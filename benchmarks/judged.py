@@ -27,6 +27,10 @@ NEAR = 1.5
 RIM = 0.1
 """Part of the rows along a side of a four-sided domain that counts as near it."""
 
+_RIVALS = """
+Methods without a network that are as good (valid grids, distances near the wall), in no more time:
+"""
+
 
 def rows(kept: Kept, table: str, shapes: list[Shape], k: int, ways: Mapping[str, Way]) -> dict[str, Floats]:
     """Return for each way the figures of every shape: (shapes, 6), what `judged` returns.
@@ -152,8 +156,4 @@ def as_good(found: Mapping[str, Floats]) -> str:
         if rivals:
             told.setdefault("; ".join(rivals), []).append(ours)
     lines = [f"- for {'; '.join(ours)}: {rivals}".replace("**", "") for rivals, ours in told.items()]
-    return (
-        "\n".join(["\nMethods without a network that are as good, in no more time:\n", *lines]) + "\n"
-        if lines
-        else ""
-    )
+    return "\n".join([_RIVALS, *lines]) + "\n" if lines else ""

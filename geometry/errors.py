@@ -117,9 +117,9 @@ def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
 
 @dataclass(frozen=True)
 class BadCell:
-    """A folded cell: the indices of its lower-left node, its centre and, in several blocks, its block.
+    """A folded cell: the indices of its lower-left node, its centre and, in a multi-block grid, its block.
 
-    k is None on a surface and in the plane, z is None in the plane.
+    k is None for grids of surfaces and of the plane, z is None for grids of the plane.
     """
 
     i: int

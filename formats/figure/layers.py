@@ -56,7 +56,7 @@ class Colouring:
 
     @property
     def scale(self) -> str:
-        """Name of the colour map in matplotlib."""
+        """Name of the matplotlib colour map of these values."""
         return "YlGnBu_r" if self.worst_is_low else "YlGnBu"
 
     @property

@@ -93,11 +93,11 @@ def worst_cells_of(grid: Grid, limit: int = 10) -> list[BadCell]:
 
 
 def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
-    """Return the quality of `grid`; neighbours across the seam of ``o`` and the wake of ``c`` count.
+    """Return the quality of `grid`.
 
-    The 1st and 99th `percentiles` of every metric, by linear interpolation between cells, take four times as
-    long as the rest. The cells of all blocks are measured as one grid; cells across connections are
-    neighbours.
+    The cells of all blocks are measured as one grid: cells on both sides of a connection, of the seam of an O
+    grid or of the wake of a C grid are neighbours. With `percentiles`, the 1st and 99th of every metric are
+    computed too, by linear interpolation between cells; this takes four times as long as the rest.
     """
     quality = _compiled(grid, percentiles)
     more = [metric for metric in metrics_of(grid) if metric.cells]

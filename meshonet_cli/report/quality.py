@@ -36,7 +36,7 @@ class Measured(Timed):
     judged: bool
 
     def row(self) -> MemberRow:
-        """Return its row in a table."""
+        """Return the row of this grid in the table of all grids."""
         comparison = self.report.comparison
         values = figures(self.report.quality) | (comparison.figures() if comparison else {})
         return MemberRow(self.item.label, values, self.judgement if self.judged else None)

@@ -97,7 +97,10 @@ class LoftedMap(BodyMap):
         return (self.points(places + step) - self.points(places - step)) / (2.0 * _STEP)
 
     def normals(self, foot: Floats) -> Floats:
-        """Return unit normals (n, 3) of the body at places (n, 3) on it; at poles the mean around them."""
+        """Return unit normals (n, 3) of the body at places (n, 3) on it.
+
+        At nose and tail, where meridians meet, they are the mean of the normals around.
+        """
         length, normals = self.body.length, self._normals(_off_poles(foot, self.body.length))
         theta = np.linspace(0.0, np.pi, _AROUND)
         for end in (0.0, length):

@@ -69,10 +69,12 @@ class AircraftPlan:
 
     @classmethod
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> AircraftPlan:
-        """Return the plan for `around` nodes around each wing, and the first of `GROWTHS` if none is given.
+        """Return the plan for `around` nodes around each wing.
 
-        Raises InputError: a wing that does not begin inside the body or does not leave it; wings that are too
-        close to each other, or a root too close to keel or crown.
+        Cells grow by the first of `GROWTHS` if the request has no growth ratio.
+
+        Raises InputError: if a wing does not begin inside the body or does not leave it, if wings are too
+        close to each other, or a root is too close to keel or crown.
         """
         chord = aircraft.wing.chord
         first, growth = request.height() * chord, request.growth or GROWTHS[0]

@@ -61,12 +61,13 @@ class EdgeLaw:
 
 
 def edge_laws(model: CadModel, size: float, spacing: str) -> list[EdgeLaw]:
-    """Return where nodes of each edge go with cells of at most `size`.
+    """Return the distribution of nodes along each edge, for cells of at most `size`.
 
-    `spacing` is ``uniform``, ``cosine``, or ``curvature`` (``auto``): cells are then smaller where edges
-    bend, and beside vertices where a short edge ends. A pole has the law of the middle line of its face.
+    `spacing` is ``uniform``, ``cosine`` or ``curvature``, also called ``auto``. With ``curvature``, cells are
+    smaller where edges bend, and beside vertices at which a short edge ends. An edge that is a single point
+    (a pole) has the distribution of the line through the middle of its face.
 
-    Raises InputError: another spacing.
+    Raises InputError: if `spacing` is none of these.
     """
     curves = [edge.points for edge in model.edges]
     for face in model.faces:

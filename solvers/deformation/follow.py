@@ -32,13 +32,14 @@ FLAT = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """The displacement field of the motions of boundary nodes, by inverse-distance weighting with rotations.
+    """Displacements interpolated from motions and rotations of boundary nodes by inverse-distance weighting.
 
     The displacement at x is the weighted mean of d_k(x) = w_k' + R_k (x - w_k) - x over all sources k, nodes
     that move from w_k to w_k' and rotate by R_k. The weights are A_k (r^-2 + near² r^-4) in the plane and A_k
-    (r^-3 + near² r^-5) in three dimensions: A is the length or area assigned to a node, r its distance. Close
-    to a wall its nearest node dominates, so that boundary layers move and rotate with the wall. The field
-    depends on x alone, so that nodes shared by blocks remain shared.
+    (r^-3 + near² r^-5) in three dimensions: A_k is the length or area assigned to node k, r its distance from
+    x, `near` the distance inside which the second term is larger. Close to a wall the nearest node dominates,
+    so that boundary layers move and rotate with the wall. The field depends on x alone, so that nodes shared
+    by blocks remain shared.
 
     Luke, Collins, Blades, J. Comput. Phys. 231 (2012) 586-601, whose exponents are those in three dimensions;
     in the plane, where sources lie on lines, they are lower by one.

@@ -221,7 +221,7 @@ def _correct(nodes: Floats, side: str, height: float) -> None:
 
 
 def worst_first_cell(solution: Solution) -> float:
-    """Return the largest relative error of the prescribed first cells of `solution`."""
+    """Return the largest relative error of the first-cell heights that `solution` should have."""
     nodes, heights = solution.grid.nodes, solution.first_cells
     return max((first_cell_error(nodes, side, height) for side, height in heights.items()), default=0.0)
 

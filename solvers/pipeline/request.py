@@ -56,7 +56,7 @@ class OneBlock(Request):
 
     @property
     def sides(self) -> dict[str, float]:
-        """First-cell heights of single sides."""
+        """First-cell heights by side, for sides that have one of their own."""
         heights = self.spacing_south, self.spacing_east, self.spacing_north, self.spacing_west
         if heights == (None,) * 4:
             return {}

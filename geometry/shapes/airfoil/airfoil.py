@@ -176,7 +176,7 @@ class Airfoil:
         return Airfoil(section.points, self.name, notes=(*self.notes, moved_note(self._section, section)))
 
     def wall(self, ni: int, sampling: Sampling) -> Floats:
-        """Return nodes (ni, 2) on the curve, clockwise from the trailing edge, the first repeated bitwise."""
+        """Return nodes (ni, 2) on the curve, clockwise from the trailing edge; the last equals the first."""
         return self._wall(ni, sampling)[0]
 
     def _wall(self, ni: int, sampling: Sampling) -> tuple[Floats, tuple[str, ...]]:

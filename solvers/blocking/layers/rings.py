@@ -218,10 +218,10 @@ def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
 
 
 def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, Indices]:
-    """Return weights (k, 4) of columns, and the first column (k,), for fractional column numbers (k,).
+    """Return weights (k, 4) of columns at fractional column numbers (k,), and the first of each four (k,).
 
-    `low` and `high` (k,) are the first and last column between the same corners. If there are fewer than
-    four, the last weights are zero.
+    `low` and `high` (k,) are the columns at the corners on both sides of each number: only columns between
+    them have weights. Where these are fewer than four, the last weights are zero.
     """
     first = np.clip(index.astype(np.intp) - 1, low, np.maximum(high - 3, low))
     width = np.minimum(high - first, 3)
