@@ -241,7 +241,7 @@ class Grid(Connected):
         walls = [p for p in outer if p.kind == "wall" or (p.kind == "other" and p.side in body)]
         if walls or self.around_body or self.topology == "blocks":
             return walls
-        return [patch for patch in outer if patch.side in ("south", "north") and patch.kind == "other"]
+        return [patch for patch in outer if patch.side in ("south", "north") and patch.may_be_wall]
 
     def with_nodes(self, nodes: Floats, *, finite: bool = False) -> Grid:
         """Return the same grid with other nodes (ni, nj, 2), as many as before."""

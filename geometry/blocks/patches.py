@@ -38,6 +38,16 @@ def kind_of(name: str, otherwise: Kind = "other") -> Kind:
     return otherwise
 
 
+def may_be_wall(name: str, kind: Kind = "other") -> bool:
+    """Return whether a patch may have layers: neither its kind nor its name says that it is no wall.
+
+    >>> [may_be_wall(name) for name in ("wall", "ceiling", "inlet", "axis")]
+    [True, True, False, False]
+    """
+    kind = kind_of(name) if kind == "other" else kind
+    return kind == "wall" or (kind == "other" and "axis" not in name.lower())
+
+
 @dataclass(frozen=True)
 class Patch:
     """Nodes ``start`` to ``stop``, both included, of one side of a block, with a name.
@@ -63,6 +73,11 @@ class Patch:
     def place(self) -> tuple[int, int]:
         """The direction normal to its side, and the end of it (`meshonet.geometry.blocks.block.PLACES`)."""
         return PLACES[self.side]
+
+    @property
+    def may_be_wall(self) -> bool:
+        """Whether neither its kind nor its name says that it is no wall."""
+        return may_be_wall(self.name, self.kind)
 
     def range(self, counts: tuple[int, ...]) -> Range:
         """Return the range of its nodes along each direction of its side, in a block with `counts` nodes."""

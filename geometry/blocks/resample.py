@@ -1,16 +1,22 @@
 """The edges of a boundary resampled to other node counts, with the same node distribution."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Side, distinct
+from meshonet.geometry.arrays import Floats, Side, distinct, norms
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    from meshonet.geometry.blocks.boundary import Boundary
 
 _AROUND: tuple[Side, Side] = ("south", "north")
 _ACROSS: tuple[Side, Side] = ("west", "east")
@@ -93,3 +99,24 @@ def resample_patches(
         return replace(patch, start=start, stop=max(stop, start + 1))
 
     return tuple(moved(patch) for patch in patches)
+
+
+def patches_in_place(had: Boundary, has: Boundary) -> tuple[Patch, ...]:
+    """Return the patches of `had` at the nodes of `has`, the same edges with other nodes.
+
+    They end at the nodes nearest to their ends, by the part of the length of the side.
+    """
+
+    def moved(patch: Patch) -> Patch:
+        before, after = (_parts(getattr(edges, patch.side)) for edges in (had, has))
+        start, stop = (int(np.abs(after - before[k]).argmin()) for k in (patch.start, patch.stop))
+        start = min(start, len(after) - 2)
+        return replace(patch, start=start, stop=max(stop, start + 1))
+
+    return tuple(moved(patch) for patch in had.patches)
+
+
+def _parts(edge: Floats) -> Floats:
+    """Return the arc lengths (n,) of nodes (n, 2) along an edge, over its length."""
+    arcs = np.concatenate([[0.0], np.cumsum(norms(np.diff(edge, axis=0)))])
+    return np.asarray(arcs / arcs[-1])

@@ -259,6 +259,16 @@ def turned(grid: Grid) -> Grid:
     return replace(grid, blocks=blocks, patches=patches, connections=connections)
 
 
+def turned_boundary(boundary: Boundary) -> Boundary:
+    """Return a four-sided boundary with xi and eta exchanged, as `turned`."""
+    patches = tuple(turned_patch(patch, boundary.ni - 1) for patch in boundary.patches)
+    west, east = boundary.south[::-1], boundary.north[::-1]
+    return replace(
+        boundary, south=boundary.east, north=boundary.west, west=west, east=east, patches=patches, chord=0.0,
+        sensors=None,
+    )  # fmt: skip
+
+
 def turned_patch(patch: Patch, last: int) -> Patch:
     """Return a patch rotated as `turned` does; `last` is the index of the last node of its block along xi."""
     side, (start, stop) = _turned_stretch(patch.side, (patch.start, patch.stop), last)

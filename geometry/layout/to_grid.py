@@ -16,7 +16,7 @@ from meshonet.geometry.arrays import Indices, Side
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch, kind_of
+from meshonet.geometry.blocks.patches import Patch, kind_of, may_be_wall
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import matched_nodes, sides_of
 from meshonet.geometry.layout.shared_sides import Line, connection_of, key_of, shared, shared_in_part
@@ -113,7 +113,8 @@ def _patches(layout: Layout, line: Line, start: int, walls: Collection[str]) -> 
     patches = []
     for name, cells in groupby(names):
         stop = start + len(list(cells))
-        kind = kind_of(name, "wall" if number > 0 or name in walls else "other")
+        is_wall = name in walls or (number > 0 and may_be_wall(name))
+        kind = kind_of(name, "wall" if is_wall else "other")
         patches.append(Patch(name, side, start, stop, block=block, kind=kind))
         start = stop
     return patches

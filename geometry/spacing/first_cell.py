@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -124,6 +124,14 @@ def _values(given: AtWalls | None) -> tuple[float, ...]:
     if given is None:
         return ()
     return tuple(given.values()) if isinstance(given, Mapping) else (given,)
+
+
+def check_names(names: Iterable[str], known: Iterable[str], parameter: str) -> None:
+    """Raise InputError for a name of a wall that is not `known`."""
+    known = tuple(known)
+    for name in names:
+        if name not in known:
+            raise InputError(f"there is no wall {name!r}", "use " + ", ".join(known), parameter=parameter)
 
 
 def check_height(height: float, parameter: str) -> None:

@@ -19,7 +19,7 @@ Walls = Annotated[str | None, _option(
     "--walls", metavar="NAME,NAME",
     help="Names of the walls that get the layers of --first-cell or --y-plus: holes, or named parts of a "
     "boundary curve. At a corner of about 90 degrees, layers end or meet those of the next wall. [default: "
-    "all holes]",
+    "as described at --first-cell]",
 )]
 
 

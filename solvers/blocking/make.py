@@ -19,7 +19,7 @@ from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.reach import MOST_CELLS
 from meshonet.geometry.shapes.domain_shape import DomainShape
-from meshonet.geometry.spacing.first_cell import AtWalls
+from meshonet.geometry.spacing.first_cell import AtWalls, check_names
 from meshonet.solvers.blocking.block_grid import cut_off, fine_layout
 from meshonet.solvers.blocking.decomposition.decompose import decompose
 from meshonet.solvers.blocking.decomposition.reuse import carried_over
@@ -206,9 +206,7 @@ def _checked(domain: Domain, request: BlockRequest) -> Domain:
             raise InputError(f"there is no side {name!r}", "use " + ", ".join(known), parameter="count")
     domain = replace(domain, counts=request.count)
     option = "walls" if request.walls else "first_cell" if request.y_plus is None else "y_plus"
-    for name in request.layered:
-        if name not in known:
-            raise InputError(f"there is no wall {name!r}", "use " + ", ".join(known), parameter=option)
+    check_names(request.layered, known, option)
     heights = request.heights()
     if isinstance(heights, Mapping):
         domain = replace(domain, heights=heights)

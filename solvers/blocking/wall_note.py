@@ -6,6 +6,7 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import may_be_wall
 from meshonet.geometry.blocks.vertices import vertices
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.quality.lines import lines
@@ -20,10 +21,11 @@ def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) 
     ----------
     grid : grid of blocks, or of one ring.
     domain : its domain.
-    names : names of the walls with layers; empty for all holes.
+    names : names of the walls with layers; empty for all holes, but those that are no walls by their names.
     first : prescribed height in the domain's unit.
     """
-    layered = set(names) or {name for loop in domain.loops[1:] for name in loop.names}
+    holes = (name for loop in domain.loops[1:] for name in loop.names)
+    layered = set(names) or set(filter(may_be_wall, holes))
     patches = tuple(replace(p, kind="wall") if p.name in layered else p for p in grid.patches)
     grid = replace(grid, patches=patches)
     walls = [patch for patch in grid.walls() if patch.name in layered]

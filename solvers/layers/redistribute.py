@@ -16,7 +16,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, as_planar, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import default_patches
+from meshonet.geometry.blocks.resample import patches_in_place
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.elementary import exp
@@ -63,9 +63,9 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
         _make_exact(nodes, grid.periodic, heights)
     edges = replace(
         boundary, south=nodes[:, 0], north=nodes[:, -1], west=nodes[0], east=nodes[-1],
-        patches=boundary.patches if nodes.shape == grid.nodes.shape else _parts(boundary, nodes),
-        sensors=None,
+        patches=(), sensors=None,
     )  # fmt: skip
+    edges = replace(edges, patches=patches_in_place(boundary, edges))
     first_cells = heights.by_side
     facts = {**grid.provenance, **{f"spacing_{side}": height for side, height in first_cells.items()}}
     note = f"first cells {heights}, at every node there"
@@ -77,13 +77,6 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
         boundary=edges,
         notes=(*solution.notes, note),
     )
-
-
-def _parts(boundary: Boundary, nodes: Floats) -> tuple:  # type: ignore[type-arg]
-    """Return the patches of `boundary` if they do not depend on its numbers of rows, else the defaults."""
-    if all(part.side in ("south", "north") for part in boundary.patches):
-        return boundary.patches
-    return default_patches(boundary.topology, nodes.shape[0], nodes.shape[1], boundary.wake)
 
 
 def _within_growth(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Floats, float]:

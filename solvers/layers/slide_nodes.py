@@ -15,6 +15,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.resample import patches_in_place
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.elementary import log, product, sin, tanh
@@ -61,7 +62,8 @@ def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
         edge = curve.at(new)
         edge[[0, -1]] = getattr(boundary, side)[[0, -1]]
         sides.append(edge)
-    return replace(boundary, south=sides[0], north=sides[1], sensors=None), _controls(*knots, boundary.nj)
+    slid = replace(boundary, south=sides[0], north=sides[1], sensors=None)
+    return replace(slid, patches=patches_in_place(boundary, slid)), _controls(*knots, boundary.nj)
 
 
 def _inner_corners(curve: Curve) -> Floats:

@@ -13,6 +13,7 @@ from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.blocking.request import BlockRequest
+from meshonet.solvers.pipeline.first_cells import has_walls_on_sides
 from meshonet.solvers.pipeline.uses import MANY, SMOOTHED, refuse
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import stage
@@ -33,11 +34,10 @@ def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
 
     Raises InputError: a shape that is not a domain; options that do not apply to multi-block grids.
     """
-    if any(_for_one(request).values()):
+    asks = request.asks_for_blocks or (() if has_walls_on_sides(shape, request) else request.names_walls)
+    if _check_single(request, asks) or not (asks or getattr(shape, "many", False)):
         return None
-    if not (request.asks_for_blocks or getattr(shape, "many", False)):
-        return None
-    if not request.asks_for_blocks and request.method not in METHODS and getattr(shape, "one", None):
+    if not asks and request.method not in METHODS and getattr(shape, "one", None):
         return None  # a method of single blocks, as by the name
     domain = _domain(shape, request)
     _check_use(request, SMOOTHED if smooths(domain, request) else MANY)
@@ -69,11 +69,11 @@ def smoothed(grid: Grid, request: GridRequest) -> Solution:
 
 def check_asked(request: GridRequest) -> None:
     """Raise InputError for invalid options of multi-block grids, or options of single blocks beside them."""
+    if not request.asks_for_blocks:  # names of walls alone, maybe of a single block of any counts
+        _block_request(request, None)
+        return
     block_request(request)
-    for name, given in _for_one(request).items():
-        if given:
-            problem = f"{{{request.asks_for_blocks[0]}}} asks for many blocks and {{{name}}} for one"
-            raise InputError(problem, "give one of them")
+    _check_single(request, request.asks_for_blocks)
 
 
 def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str, float]]:
@@ -93,18 +93,17 @@ def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str
 
 def block_request(request: GridRequest) -> BlockRequest:
     """Return the options of `request` for multi-block grids. Raises InputError: as `BlockRequest`."""
-    own = [each.name for each in fields(BlockRequest) if each.name != "res"]
-    values = {name: getattr(request, name) for name in own}
     sampling = request.sampling
     if sampling.nj not in (None, sampling.ni):
         problem = f"{sampling.ni} x {sampling.nj} nodes for many blocks"
         remedy = "give one number: cells along the longest extent"
-        if request.at_walls:
-            remedy += (
-                "; a block of so many nodes has layers at single sides by solve-pde with {spacing_north}"
-            )
         raise InputError(problem, remedy, parameter="res")
-    return BlockRequest(res=sampling.ni, **values)
+    return _block_request(request, sampling.ni)
+
+
+def _block_request(request: GridRequest, res: int | None) -> BlockRequest:
+    own = [each.name for each in fields(BlockRequest) if each.name != "res"]
+    return BlockRequest(res=res, **{name: getattr(request, name) for name in own})
 
 
 def _domain(shape: Shape, request: GridRequest) -> DomainShape:
@@ -134,6 +133,15 @@ def _for_one(request: GridRequest) -> dict[str, bool]:
         "topology": sampling.topology != "auto",
         "corners": sampling.corners is not None,
     }
+
+
+def _check_single(request: GridRequest, asks: tuple[str, ...]) -> bool:
+    """Return whether an option asks for a single block. Raises InputError if others `asks` for many."""
+    single = [name for name, given in _for_one(request).items() if given]
+    if single and asks:
+        problem = f"{{{asks[0]}}} asks for many blocks and {{{single[0]}}} for one"
+        raise InputError(problem, "give one of them")
+    return bool(single)
 
 
 def _check_use(request: GridRequest, way: str = MANY) -> None:

@@ -40,7 +40,7 @@ def check_request(request: GridRequest) -> None:
             raise InputError(f"{value} is too few", f"give {least} or more", parameter=name)
     if request.blocks not in ("auto", "single"):
         raise InputError(f"blocks {request.blocks!r} is not known", "use auto or single")
-    if request.asks_for_blocks:
+    if request.asks_for_blocks or request.names_walls:
         from meshonet.solvers.pipeline.blocks import check_asked
 
         check_asked(request)

@@ -13,7 +13,7 @@ from meshonet.solvers.pipeline.request import OneBlock
 from meshonet.solvers.solution import Solution
 
 if TYPE_CHECKING:
-    from meshonet.solvers.pipeline.layered import FirstCells
+    from meshonet.solvers.pipeline.first_cells import FirstCells
     from meshonet.solvers.pipeline.methods import Method
 
 NETWORK_SETTINGS = ("model", "polish", "device", "fallback")
@@ -81,14 +81,11 @@ def _at_any_resolution(request: OneBlock, base: Method) -> Method:
 
 def _first_cells(request: OneBlock) -> FirstCells:
     """Return the first-cell heights, and the layers that start with them."""
-    from meshonet.solvers.pipeline.layered import FirstCells
+    from meshonet.solvers.pipeline.first_cells import FirstCells
 
-    note = request.height_note(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
-    in_chords = request.y_plus is not None and request.length is None
     free_rows = request.growth is not None and request.sampling.nj is None
     layers = request.constant_layers or 1, request.growth, free_rows, 2**request.refine
-    height = None if request.by_wall else request.height()  # single walls have theirs in many blocks only
-    return FirstCells(height, request.sides, *layers, in_chords=in_chords, note=note)
+    return FirstCells(request, getattr(request, "walls", ()), request.sides, *layers)
 
 
 def _angle(request: OneBlock) -> dict[str, float]:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from operator import itemgetter
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +22,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.layers.first_cells import Heights
 from meshonet.solvers.pipeline.fallback import guard
+from meshonet.solvers.pipeline.first_cells import FirstCells
 from meshonet.solvers.pipeline.methods import Each, method_named, solved
 from meshonet.solvers.pipeline.uses import CHANNEL, MARCHED, refuse
 from meshonet.solvers.pipeline.wrapper import Wrapper
@@ -32,35 +34,6 @@ if TYPE_CHECKING:
 UPRIGHT_DEGREES = 0.3  # by which lines may lean at walls whose nodes have slid
 LEANING_DEGREES = 1.0  # by which they may lean when sources have turned them
 OBLIQUE_DEGREES = 20.0  # beyond which layers that lean are worth a note
-
-
-@dataclass(frozen=True)
-class FirstCells:
-    """First-cell heights, and the layers that start with them."""
-
-    # off walls, or None: around a body in chords, off south and north of a four-sided domain in its own unit
-    height: float | None = None
-    # heights off single sides of four-sided domains, in their unit
-    sides: Mapping[str, float] = field(default_factory=dict)
-    constant: int = 1  # so many first layers are equally high
-    growth: float | None = None  # largest ratio of neighbouring cells, or None
-    free_rows: bool = False  # whether growth decides how many rows there are
-    multiple: int = 1  # of which the number of rows is one then
-    # the height is in chords everywhere; that of a four-sided domain is the extent of its south
-    in_chords: bool = False
-    note: str = ""  # where the height comes from, when it was computed
-
-    def heights(self, boundary: Boundary) -> Heights:
-        """Return the heights in the unit of `boundary`."""
-        walls: dict[str, float] = {}
-        if self.height is not None:
-            quad = not boundary.around_body
-            height = self.height * (boundary.chord if self.in_chords or not quad else 1.0)
-            walls = dict.fromkeys(("south", "north") if quad else ("south",), height)
-        return Heights(
-            **walls | dict(self.sides),
-            constant=self.constant, growth=self.growth, free_rows=self.free_rows,
-        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -91,8 +64,8 @@ class Layered(Wrapper):
                 "use {first_cell}",
                 parameter=f"spacing_{next(iter(self.cells.sides))}",
             )
-        if self.cells.height is not None and boundary.topology in self.marched:
-            return self._march(boundary, self.cells.height)
+        if self.cells.asked.at_walls and boundary.topology in self.marched:
+            return self._march(boundary)
         heights = self.cells.heights(boundary)
         if heights.any and "refine" in self.chosen:
             raise InputError("{refine} with first cells of given heights", "use a finer {res} instead")
@@ -100,9 +73,9 @@ class Layered(Wrapper):
             return self._even(boundary, heights, start)
         return self._in_layers(boundary, heights, start)
 
-    def _march(self, boundary: Boundary, height: float) -> Solution:
+    def _march(self, boundary: Boundary) -> Solution:
         refuse(self.chosen, MARCHED)
-        cells = self.cells
+        cells, height, note = self.cells, self.cells.in_chords(), self.cells.note(boundary)
         settings = {
             "growth": cells.growth,
             "free_rows": cells.free_rows,
@@ -110,7 +83,7 @@ class Layered(Wrapper):
             "multiple": cells.multiple,
         }
         solution = method_named("hyperbolic", wall_spacing=height, **settings).solve([boundary])[0]
-        return replace(solution, notes=(cells.note, *solution.notes)) if cells.note else solution
+        return replace(solution, notes=(note, *solution.notes)) if note else solution
 
     def _in_layers(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
         """Return the grid of `boundary` with layers; its time includes all stages."""
@@ -127,8 +100,8 @@ class Layered(Wrapper):
             solution = spread(guard(solution, edges, allow_invalid=True), edges, heights)
             solution = solution if slid else _noted_lean(solution, boundary, heights)
         seconds = {**solution.seconds, "grid": perf_counter() - begun}
-        note = (self.cells.note,) if self.cells.note else ()
-        return replace(solution, notes=(*note, *solution.notes), seconds=seconds)
+        notes = filter(None, [self.cells.note(boundary)])
+        return replace(solution, notes=(*notes, *solution.notes), seconds=seconds)
 
     def _even(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
         """Return the grid of `boundary` without layers; wall nodes may slide or grid lines be turned."""
@@ -162,16 +135,19 @@ class Layered(Wrapper):
         """Return `solution` with wall nodes slid, or with lines turned by sources, whichever is better."""
         from meshonet.solvers.elliptic.steger_sorenson import largest_lean
 
-        slid = solution.boundary
-        if slid is None or largest_lean(solution.grid.nodes, slid) < UPRIGHT_DEGREES:
+        slid, walls = solution.boundary, replace(heights, west=0.0, east=0.0)
+        if slid is None:
             return solution
-        turned = self._turned(slid, heights, start)
+        leans = [(largest_lean(solution.grid.nodes, slid), solution)]
+        if leans[0][0] < UPRIGHT_DEGREES:
+            return solution
+        turned = self._turned(slid, walls, start)
         turned = replace(turned, boundary=slid, notes=(*solution.notes, *turned.notes))
-        lean = largest_lean(turned.grid.nodes, slid)
-        if lean < LEANING_DEGREES:
-            return turned
-        kept = self._turned(boundary, heights, start)
-        return kept if largest_lean(kept.grid.nodes, boundary) < lean else turned
+        leans.append((largest_lean(turned.grid.nodes, slid), turned))
+        if leans[1][0] >= LEANING_DEGREES:
+            kept = self._turned(boundary, walls, start)
+            leans.append((largest_lean(kept.grid.nodes, boundary), kept))
+        return min(leans, key=itemgetter(0))[1]
 
     def _turned(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
         return solved(

@@ -41,6 +41,7 @@ class OneBlock(Request):
     """Options of single-block grids."""
 
     constant_layers: int | None = None
+    walls: tuple[str, ...] = ()
     spacing_south: float | None = None
     spacing_north: float | None = None
     spacing_west: float | None = None
@@ -107,8 +108,14 @@ class ManyBlocks(Request):
     @property
     def asks_for_blocks(self) -> tuple[str, ...]:
         """Names of the given options that only apply to multi-block grids."""
-        single = ("first_cell" if self.y_plus is None else "y_plus",) if self.by_wall else ()
-        return (*filter(FOR_MANY.__contains__, self.chosen), *single)
+        return tuple(filter(FOR_MANY.__contains__, self.chosen))
+
+    @property
+    def names_walls(self) -> tuple[str, ...]:
+        """Name of the given option that names the walls with layers, of many blocks or four sides."""
+        if self.by_wall:
+            return ("first_cell" if self.y_plus is None else "y_plus",)
+        return ("walls",) if self.walls else ()
 
 
 @dataclass(frozen=True)
@@ -143,8 +150,9 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         Keywords of the method.
     first_cell : float or mapping, optional
         Height of the first cell at every wall node, in chords around a body. In a four-sided domain the walls
-        are south and north, and the unit is that of the domain. In a domain of many blocks also the heights
-        of the walls that get layers, by name.
+        are south and north unless names of sides say otherwise (`wall_sides`), and the unit is that of the
+        domain. Also the heights of the walls that get layers, by name, in four-sided domains and those of
+        many blocks.
     y_plus : float or mapping, optional
         First-cell height, or heights, as y+, converted for a flat plate.
     reynolds : float, optional
@@ -192,7 +200,7 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     cell_size : float, optional
         Edge length, instead of `cells`.
     walls : tuple of str, optional
-        Names of the walls with layers; empty for all holes.
+        Names of the walls with layers; empty for all holes, or the walls of a four-sided domain.
     pitch : tuple of 2 float, optional
         Displacement from one blade of a cascade to the next.
     inlet, outlet : float, optional

@@ -30,6 +30,9 @@ MARCHING = ("best", "auto", "hyperbolic")
 THIN_BASE = 0.005
 """Base in chords up to which C grids without layers close it with a wedge, unless it is asked for."""
 
+_TURNED = "xi runs along the walls with layers, which are the sides south and north"
+"""Note on a four-sided domain whose walls, by their names, are at its left or right."""
+
 
 def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainShape | SpatialShape:
     """Return the boundary of a shape; a three-dimensional or multi-block shape is returned itself.
@@ -46,7 +49,7 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
     if request.sampling.nk is not None:
         problem = f"{request.sampling.nk} nodes along a third direction of a grid in the plane"
         raise InputError(problem, "give NI x NJ", parameter="res")
-    if request.asks_for_blocks or getattr(shape, "many", False):
+    if request.asks_for_blocks or request.names_walls or getattr(shape, "many", False):
         from meshonet.solvers.pipeline.blocks import as_blocks
 
         domain = as_blocks(shape, request)
@@ -59,6 +62,8 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
         _check_refined(sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ, request.refine)
         return _behind_base(shape, _times(sampling, k) if k > 1 else sampling, request)
     boundary = edges_of(shape, sampling)
+    if request.at_walls and boundary.topology == "quad" and not isinstance(shape, Boundary):
+        boundary = _along_walls(boundary, shape, sampling, request)
     if request.refine:
         _check_refined(boundary.ni, boundary.nj, request.refine)
         boundary = edges_of(shape, _finer(sampling, shape, boundary, 2**request.refine))
@@ -66,6 +71,18 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
     if boundary.topology == "quad" or not (unit and request.at_walls):
         return boundary
     return replace(boundary, notes=(*boundary.notes, *_far_field_advice(request, unit)))
+
+
+def _along_walls(boundary: Boundary, shape: Shape, sampling: Sampling, request: GridRequest) -> Boundary:
+    """Return the `boundary` of a four-sided shape, turned if all its walls with layers are west and east."""
+    from meshonet.geometry.blocks.transform import turned_boundary
+    from meshonet.solvers.pipeline.first_cells import along_walls
+
+    if along_walls(boundary, request):
+        return boundary
+    across = replace(sampling, ni=sampling.nj or DEFAULT_NJ, nj=sampling.ni or DEFAULT_NI)
+    boundary = turned_boundary(edges_of(shape, across))
+    return replace(boundary, notes=(*boundary.notes, _TURNED))
 
 
 def _check_refined(ni: int, nj: int, halvings: int) -> None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import may_be_wall
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop, turns_sharply
@@ -64,7 +66,7 @@ def section_grid(
     inside = _inside(shape)
     if isinstance(inside, DomainShape) and inside.many:
         request = _walled(inside, request)
-    elif request.at_walls and not request.asks_for_blocks:
+    elif request.at_walls and not (request.asks_for_blocks or request.names_walls):
         request = _four_walls(inside, request)
     elif isinstance(inside, Outline) and request.sampling.ni is None and not request.asks_for_blocks:
         request = replace(request, sampling=replace(request.sampling, ni=_SIDES[0], nj=_SIDES[1]))
@@ -114,7 +116,10 @@ def _inside(shape: Shape) -> Shape:
 
 
 def _four_walls(inside: Shape, request: GridRequest) -> GridRequest:
-    """Return the request with layers at the four sides; growth decides the numbers that are left open."""
+    """Return the request with layers at the sides that may be walls by their names.
+
+    Growth decides the numbers of nodes that are left open.
+    """
     h, sampling, growth = request.height() or 0.0, request.sampling, request.growth
     if sampling.ni is None and isinstance(inside, Outline):
         growth = growth or GROWTH
@@ -122,10 +127,9 @@ def _four_walls(inside: Shape, request: GridRequest) -> GridRequest:
         across = max(Curve(side).length for side in (edges.south, edges.north))
         needed = cells_needed(1.001 * across, h, h, Heights(growth=growth)) + 1
         sampling = replace(sampling, ni=max(_SIDES[0], needed))
-    return replace(
-        request, first_cell=None, slide=False, spacing_south=h, spacing_north=h, spacing_west=h,
-        spacing_east=h, growth=growth, sampling=sampling,
-    )  # fmt: skip
+    patches = edges_of(inside, sampling).patches
+    walls: dict[str, Any] = {f"spacing_{patch.side}": h for patch in patches if patch.may_be_wall}
+    return replace(request, first_cell=None, slide=False, growth=growth, sampling=sampling, **walls)
 
 
 def _loop(curve: Curve) -> Loop:
@@ -138,8 +142,12 @@ def _loop(curve: Curve) -> Loop:
 
 
 def _walled(shape: DomainShape, request: GridRequest) -> GridRequest:
-    """Return the request with layers along all loops that can have them, unless it names walls."""
+    """Return the request with layers along all loops that can have them, unless it names walls.
+
+    Stretches whose names say that they are no walls have none.
+    """
     loops = shape.domain.loops
     if not request.at_walls or request.walls or request.by_wall or (loops[0].corner_cells < 2).any():
         return request
-    return replace(request, walls=tuple(dict.fromkeys(name for loop in loops for name in loop.names)))
+    names = filter(may_be_wall, (name for loop in loops for name in loop.names))
+    return replace(request, walls=tuple(dict.fromkeys(names)))

@@ -50,7 +50,7 @@ JOINED = "blocks that are there already"
 GIVEN_SECTION = "a section that is a grid"
 
 _OF_MARCHED = _row("res", _SHAPE, _FIRST, "constant_layers repair_margin blocks refine", _SIDES)
-_OF_ONE = _OF_MARCHED | _row("slide wall_angle coarse initial")
+_OF_ONE = _OF_MARCHED | _row("slide wall_angle coarse initial walls")
 _OF_MANY = _row("res far_field te normalise", _FIRST, "constant_layers refine") | _row(
     "cells cell_size walls pitch inlet outlet layout periodic count"
 )

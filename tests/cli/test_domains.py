@@ -178,10 +178,7 @@ def test_one_block_stays_one_and_single_asks_for_it(meshonet: Meshonet) -> None:
         ("--pitch 1", "--pitch: '1' is not a vector; use DX,DY"),
         ("--inlet 1", "--inlet without --pitch; give --pitch as well, or drop --inlet"),
         ("--res 9x5", "--res: 9 x 5 nodes for many blocks; give one number"),
-        (
-            "--res 9x5 --walls outer --first-cell .01",
-            "layers at single sides by solve-pde with --spacing-north",
-        ),
+        ("--res 9x5 --walls outer --first-cell .01", "--res: 9 x 5 nodes for many blocks; give one number"),
         ("--spacing cosine", "--spacing is of no use to a domain of many blocks; drop --spacing"),
         ("--far-field 9", "a domain with a boundary of its own has no far field; leave --far-field out"),
         ("--layout missing.json", "missing.json: no such file"),

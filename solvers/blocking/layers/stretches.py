@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
+from meshonet.geometry.blocks.patches import may_be_wall
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
@@ -42,13 +43,14 @@ class Stretch:
 def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int], tuple[Stretch, ...]]:
     """Return the numbers of loops with layers all around, and stretches of other loops, by names of walls.
 
-    Without names, all holes have layers. Raises InputError, with the place: there are no holes; layers would
-    end at a point where the boundary is straight or turns away.
+    Without names, all holes have layers, apart from stretches whose names say that they are no walls.
+    Raises InputError, with the place: there is no such hole; layers would end at a point where the boundary
+    is straight or turns away.
     """
     whole: list[int] = []
     stretches: list[Stretch] = []
     for number, loop in enumerate(domain.loops):
-        on = [name in names if names else number > 0 for name in loop.names]
+        on = [name in names if names else number > 0 and may_be_wall(name) for name in loop.names]
         on = on * len(loop.corners) if len(on) == 1 and loop.corners else on
         if all(on) and not (loop.corner_cells == 1).any():
             whole.append(number)
@@ -56,7 +58,9 @@ def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int
             stretches += _stretches(loop, number, on)
     if not whole and not stretches:
         remedy = "name the walls with {walls}: without names, layers go around holes"
-        raise InputError("a first cell in a domain without holes", remedy)
+        inside = [name for loop in domain.loops[1:] for name in loop.names]
+        none = f"whose only holes are {', '.join(dict.fromkeys(inside))}" if inside else "without holes"
+        raise InputError(f"a first cell in a domain {none}", remedy)
     return whole, tuple(stretches)
 
 

@@ -1,0 +1,128 @@
+"""First-cell heights of a request off the sides of a block: around a body, or off the walls of four sides."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from meshonet.geometry.arrays import SIDES, Side
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.domain_shape import DomainShape, convex_corners, four_sided
+from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.spacing.first_cell import FirstCell, check_names
+from meshonet.solvers.layers.first_cells import Heights
+
+if TYPE_CHECKING:
+    from meshonet.solvers.pipeline.request import GridRequest, OneBlock
+
+
+@dataclass(frozen=True)
+class FirstCells:
+    """First-cell heights, and the layers that start with them."""
+
+    # height off walls, or off each named one: around a body in chords, else in the unit of the domain
+    asked: FirstCell
+    walls: tuple[str, ...] = ()  # names of the walls of a four-sided domain; empty for `wall_sides`
+    # heights off single sides of four-sided domains, in their unit
+    sides: Mapping[str, float] = field(default_factory=dict)
+    constant: int = 1  # so many first layers are equally high
+    growth: float | None = None  # largest ratio of neighbouring cells, or None
+    free_rows: bool = False  # whether growth decides how many rows there are
+    multiple: int = 1  # of which the number of rows is one then
+
+    def in_chords(self) -> float:
+        """Return the height off a body. Raises InputError: none, or heights of single walls."""
+        return self.asked.height() or 0.0
+
+    def heights(self, boundary: Boundary) -> Heights:
+        """Return the heights in the unit of `boundary`. Raises InputError: no side is a wall by its name."""
+        off: dict[str, float] = {}
+        if self.asked.at_walls and boundary.around_body:
+            off = {"south": self.in_chords() * boundary.chord}
+        elif self.asked.at_walls:
+            heights = self.asked.heights(boundary.chord)
+            if isinstance(heights, Mapping):
+                off = {side: heights[name] for name in heights for side in sides_called(boundary, name)}
+            elif heights is not None:
+                named = [side for name in self.walls for side in sides_called(boundary, name)]
+                off = dict.fromkeys(named or wall_sides(boundary), heights)
+        return Heights(
+            **off | dict(self.sides), constant=self.constant, growth=self.growth, free_rows=self.free_rows
+        )
+
+    def note(self, boundary: Boundary) -> str:
+        """Return how the heights follow from y+, as text; empty without one."""
+        if boundary.around_body:
+            return self.asked.height_note(f"and x/c {self.asked.chord_fraction:g}", in_unit=" chords")
+        where = f"on a length of {boundary.chord:.6g}, the extent of south,"
+        return self.asked.height_note(where, boundary.chord)
+
+
+def sides_called(boundary: Boundary, name: str) -> list[Side]:
+    """Return the sides of a four-sided boundary on which there is a patch of this name."""
+    return [side for side in SIDES if any(p.name == name for p in boundary.patches if p.side == side)]
+
+
+def wall_sides(boundary: Boundary) -> list[Side]:
+    """Return the sides of a four-sided boundary that have layers where no walls are named.
+
+    They are south and north, except those whose names say that they are no walls, and sides that are all
+    called walls; or else west and east, with the same exception. Raises InputError: there are none.
+    """
+    patches = {side: [p for p in boundary.patches if p.side == side] for side in SIDES}
+    possible = [side for side in SIDES if any(patch.may_be_wall for patch in patches[side])]
+    walls: list[Side] = [
+        side
+        for side in possible
+        if side in ("south", "north") or all(patch.kind == "wall" for patch in patches[side])
+    ]
+    if not possible:
+        names = ", ".join(dict.fromkeys(patch.name for patch in boundary.patches))
+        raise InputError(f"no side is a wall by its name: {names}", "name the walls with {walls}")
+    return walls or possible
+
+
+def along_walls(boundary: Boundary, request: OneBlock) -> bool:
+    """Return whether xi runs along walls with layers of a four-sided boundary: south or north is one."""
+    names = request.by_wall or request.walls
+    sides = [side for name in names for side in sides_called(boundary, name)] or wall_sides(boundary)
+    return not {"south", "north"}.isdisjoint(sides)
+
+
+def has_walls_on_sides(shape: Shape, request: GridRequest) -> bool:
+    """Return whether the walls that a request names are whole sides of a four-sided domain made as one block.
+
+    They are opposite unless the request has counts of nodes in both directions or asks for one block. Any
+    other domain becomes many blocks; so does one that is to be refined, which blocks with layers can be.
+
+    Raises InputError: a four-sided domain has no wall of such a name.
+    """
+    heights = request.first_cell if request.y_plus is None else request.y_plus
+    off = heights if isinstance(heights, Mapping) else dict.fromkeys(request.walls, 0.0)
+    sides = names_of_sides(shape)
+    if not sides or request.refine:
+        return False
+    known = dict.fromkeys(name for names in sides for name in names)
+    check_names(off, known, request.names_walls[0])
+    if not all(off.keys().isdisjoint(names) or len(set(map(off.get, names))) == 1 for names in sides):
+        return False
+    with_layers = {k % 2 for k, names in enumerate(sides) if not off.keys().isdisjoint(names)}
+    one = request.blocks == "single" or request.sampling.nj not in (None, request.sampling.ni)
+    return one or len(with_layers) == 1
+
+
+def names_of_sides(shape: Shape) -> list[list[str]]:
+    """Return the names along each of the four sides of a shape that is one block by default; else none."""
+    if isinstance(shape, Boundary):
+        return [] if shape.around_body else [[p.name for p in shape.patches if p.side == s] for s in SIDES]
+    if not isinstance(shape, DomainShape) or shape.many or not four_sided(shape.domain):
+        return []
+    loop = shape.domain.loops[0]
+    if len(loop.names) == 1:
+        return []
+    begins = [loop.corners.index(point) for point in convex_corners(loop)]
+    ends = [*begins[1:], begins[0] + len(loop.corners)]
+    names = [*loop.names, *loop.names]
+    return [names[begin:end] for begin, end in zip(begins, ends, strict=True)]
