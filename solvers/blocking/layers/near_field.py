@@ -55,8 +55,8 @@ class NearField:
             return None
         bodies = np.concatenate([loop.curve.points for loop in domain.loops[1:]])
         centre, mirrors = 0.5 * (bodies.min(axis=0) + bodies.max(axis=0)), mirrors_of(domain)
-        for mirror in mirrors:
-            centre = 0.5 * (centre + mirror.images(centre))
+        if mirrors:
+            centre = mirrors[0].centre if mirrors[1:] else 0.5 * (centre + mirrors[0].images(centre))
         reach = float(np.hypot(*(bodies - centre).T).max())
         arcs = np.linspace(0.0, outer.length, 8 * _POINTS, endpoint=False)
         away = outer.at(arcs) - centre

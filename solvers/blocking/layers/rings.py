@@ -23,7 +23,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
 from meshonet.kernels._native import nearest_points
-from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, steps_of_means
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
 from meshonet.solvers.blocking.layers.even_line import FINER, SLACK, Measures
 from meshonet.solvers.blocking.layers.marched import GAP_PART, fitted
 from meshonet.solvers.blocking.layers.wall_columns import nearest_arc, wall_columns
@@ -133,7 +133,7 @@ def march_ring(
     gap = GAP_PART * wall_gaps(domain, loop, arcs)
     if before is not None and room is not None:
         gap = np.minimum(gap, np.interp(arcs, before.arcs, room, period=loop.length))
-    steps = steps_of_means(own)
+    steps = [each for each in (range(1), range(1, len(own))) if own and each]
     for each in steps:
         moves = np.zeros(len(arcs))
         for k in each:

@@ -18,7 +18,7 @@ from meshonet.kernels._native import nearest_points
 from meshonet.solvers.blocking.decomposition.named_counts import nearer
 from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
-from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, every_mirror_of
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
 from meshonet.solvers.blocking.layers.even_line import Measures
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.layers.marched import GAP_PART
@@ -95,7 +95,7 @@ class WallLayers:
     @cached_property
     def mirrors(self) -> tuple[Mirror, ...]:
         """Mirrors of what the layers leave; none unless the domain has some."""
-        return every_mirror_of(self.rest) if every_mirror_of(self.domain) else ()
+        return mirrors_of(self.rest) if mirrors_of(self.domain) else ()
 
     def of_ring(self, number: int) -> LayerSettings:
         """Return the layers of the ring around a loop."""
@@ -180,7 +180,7 @@ def rings_around(domain: Domain, loops: Sequence[int], settings: LayerSettings) 
 
     Raises InputError: too little room for layers; a wall at which layers fold.
     """
-    mirrors, rings = every_mirror_of(domain), dict[int, Ring]()
+    mirrors, rings = mirrors_of(domain), dict[int, Ring]()
     rooms, tight = dict[int, Floats](), dict[int, Floats]()
     for _ in range(_MARCHES):
         before, rings = rings, {}

@@ -34,7 +34,7 @@ def flower(petals, count=240):
     return (1.0 + 0.2 * np.cos(petals * turn))[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
 
 
-ALL = (0, 90, 45, 135)
+ALL = (0, 45, 90, 135)
 EIGHT = tuple(np.arange(8) * 22.5)
 SYMMETRIC = {
     # name: polygons, a point on all mirrors, and the directions of these in degrees

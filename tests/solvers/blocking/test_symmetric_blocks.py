@@ -13,13 +13,13 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.blocking.block_grid import fine_layout
 from meshonet.solvers.blocking.decomposition.decompose import decompose
-from meshonet.solvers.blocking.decomposition.symmetry.mirrors import every_mirror_of, mirrors_of
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
 
 
 @pytest.mark.parametrize("name", SYMMETRIC)
 def test_grids_of_symmetric_domains_are_symmetric(name):
     domain, (_, _, angles) = symmetric_domain(name), SYMMETRIC[name]
-    found = [np.degrees(np.arctan2(*mirror.along[::-1])) % 180 for mirror in every_mirror_of(domain)]
+    found = [np.degrees(np.arctan2(*mirror.along[::-1])) % 180 for mirror in mirrors_of(domain)]
     np.testing.assert_allclose(found, angles, atol=1e-6)
     layout = decompose(domain)
     grids = [layout, fine_layout(layout, cells=1200), fine_layout(layout, cells=9000)]

@@ -9,12 +9,7 @@ import numpy as np
 from meshonet.geometry.arrays import Indices, distinct, norms
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.kernels._native import nearest_points
-from meshonet.solvers.blocking.decomposition.symmetry.mirrors import (
-    Mirror,
-    at_right_angles,
-    every_mirror_of,
-    steps_of_means,
-)
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
 
 Images = Sequence[tuple[Mirror, Indices]]
 """Mirrors, and the node (n,) that each node of a mesh becomes in them."""
@@ -24,7 +19,7 @@ SOME = 100
 
 def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images:
     """Return the images of nodes in those mirrors of its domain, of all by default, that its quads have."""
-    mirrors = every_mirror_of(mesh.domain) if mirrors is None else mirrors
+    mirrors = mirrors_of(mesh.domain) if mirrors is None else mirrors
     if (mesh.places.partner >= 0).any():
         return []
     images = []
@@ -43,15 +38,10 @@ def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list
 
 
 def agree(images: Images) -> bool:
-    """Return whether images of images are what turns by twice the angle between their mirrors make of nodes.
-
-    In the first two mirrors, if they are at right angles, they are the same in either order.
-    """
+    """Return whether images of images are what turns by twice the angle between mirrors make of nodes."""
     if len(images) < 2:
         return True
     (_, one), (_, other) = images[:2]
-    if at_right_angles([mirror for mirror, _ in images]):
-        return np.array_equal(one[other], other[one])
     turn = now = other[one]  # mirrors by their angles: each turns by as much more
     for _, to in images[1:]:
         if not np.array_equal(to[one], now):
@@ -63,13 +53,14 @@ def agree(images: Images) -> bool:
 def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
     """Return the mesh with all nodes and their images, by default in all mirrors, at the means of both.
 
-    Corners stay. A ring with an odd number of quads around is symmetric to the first mirror only.
+    Corners stay. A ring with an odd number of quads around is symmetric to the first mirror only. Images of
+    what is symmetric to the first one are what turns make of it, so that one mean is over all others.
     """
     images = images_of(mesh) if images is None else images
     if not agree(images):
         images = images[:1]
-    for step in steps_of_means([mirror for mirror, _ in images]):
-        mesh = _mean(mesh, [images[k] for k in step])
+    for some in filter(None, (images[:1], images[1:])):
+        mesh = _mean(mesh, some)
     return mesh
 
 

@@ -8,7 +8,7 @@ known exactly for any curve.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -25,7 +25,6 @@ MOST = 64
 """Directions looked at closely: a circle has as many as points, of which the first will do."""
 MOST_MIRRORS = 8
 """More are those of a circle, or nearly; each takes as many cells around the centre."""
-_ROOT = math.sqrt(2.0)  # length of the sum of two unit vectors at right angles
 _STEPS = 8  # of Newton's method towards a place on a curve, from the nearest of two places an interval
 
 
@@ -51,68 +50,36 @@ class Mirror:
 
 
 @lru_cache(maxsize=64)
-def every_mirror_of(domain: Domain) -> tuple[Mirror, ...]:
-    """Return three or more mirrors with equal angles between, by their angles, or those of `mirrors_of`.
-
-    They are taken if they are more, and up to `MOST_MIRRORS`.
-    """
-    some = mirrors_of(domain)
-    if not some or len(_directions(domain, *_centroids(domain))) > 2 * MOST_MIRRORS + 1:
-        return some
-    along, across = some[0].along, np.array([-some[0].along[1], some[0].along[0]])
-    for count in range(MOST_MIRRORS, max(len(some), 2), -1):
-        mirrors = [some[0]]
-        for k in range(1, count):
-            angle = math.pi * k / count
-            mirror = mirror_about(domain, some[0].centre, math.cos(angle) * along + math.sin(angle) * across)
-            if mirror is None:
-                break
-            mirrors.append(mirror)
-        if len(mirrors) == count:
-            return tuple(mirrors)
-    return some
-
-
-@lru_cache(maxsize=64)
 def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
-    """Return two mirrors of a domain at right angles if there are such, else one, or none.
+    """Return the mirrors of a domain by their angles, which are equal between; none if it has periodic sides.
 
-    Those along x and y are taken before others. After the two come the two halfway between if there are such.
-    A domain with periodic sides counts as having none.
+    The first is along x or y if there is such a one. A circle counts as having four.
     """
     if domain.periodic:
         return ()
     middles, centre = _centroids(domain)
-    for along in _directions(domain, middles, centre):
-        across = np.array([-along[1], along[0]])
-        found = [mirror_about(domain, centre, along), mirror_about(domain, centre, across)]
-        if all(found):
-            found += [mirror_about(domain, centre, (along + each) / _ROOT) for each in (across, -across)]
-        if any(found):
-            return tuple(mirror for mirror in found if mirror)
+    ways = _directions(domain, middles, centre)
+    counts = (4, 2) if len(ways) > 2 * MOST_MIRRORS + 1 else range(MOST_MIRRORS, 1, -1)
+    for along in ways:
+        for way in (along, np.array([-along[1], along[0]])):
+            first = mirror_about(domain, centre, way)
+            if first:
+                several = (_all_about(domain, first, count) for count in counts)
+                return next(filter(None, several), (first,))
     return ()
 
 
-def at_right_angles(mirrors: Sequence[Mirror]) -> bool:
-    """Return whether the first two of some mirrors are at right angles; others are halfway between."""
-    return abs(float((mirrors[0].along * mirrors[1].along).sum())) < SAME
-
-
-def by_angle(mirrors: Sequence[Mirror]) -> list[Mirror]:
-    """Return two mirrors at right angles and those halfway between by their angles, the first one first."""
-    return [mirrors[k] for k in (0, 2, 1, 3)] if len(mirrors) == 4 else list(mirrors)
-
-
-def steps_of_means(mirrors: Sequence[Mirror]) -> list[range]:
-    """Return which mirrors to take means over, step after step, for what is symmetric to all of them.
-
-    A step is the mean of what there is and its images. Those of mirrors at right angles follow each other.
-    Else the images of what is symmetric to the first one are what turns make of it, and one mean is over all.
-    """
-    count = len(mirrors)
-    if count < 2 or at_right_angles(mirrors):
-        return [range(k, k + 1) for k in range(count)]
-    return [range(1), range(1, count)]
+def _all_about(domain: Domain, first: Mirror, count: int) -> tuple[Mirror, ...]:
+    """Return so many mirrors with equal angles between, from the first on; none if one is not there."""
+    across, mirrors = np.array([-first.along[1], first.along[0]]), [first]
+    for k in range(1, count):
+        angle = math.pi * k / count
+        cosine = 0.0 if 2 * k == count else math.cos(angle)
+        mirror = mirror_about(domain, first.centre, cosine * first.along + math.sin(angle) * across)
+        if mirror is None:
+            return ()
+        mirrors.append(mirror)
+    return tuple(mirrors)
 
 
 def mirror_about(domain: Domain, centre: Floats, along: Floats) -> Mirror | None:

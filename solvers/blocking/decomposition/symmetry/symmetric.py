@@ -24,16 +24,14 @@ from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseCo
 from meshonet.solvers.blocking.decomposition.collapse.contract import is_conforming
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.quads.padding import Span, wrong_count
-from meshonet.solvers.blocking.decomposition.symmetry.halves import both_halves, left_half, spans_between
 from meshonet.solvers.blocking.decomposition.symmetry.images import Images, agree, images_of, made_symmetric
-from meshonet.solvers.blocking.decomposition.symmetry.mirrors import (
-    Mirror,
-    by_angle,
-    every_mirror_of,
-    mirror_about,
-    mirrors_of,
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
+from meshonet.solvers.blocking.decomposition.symmetry.parts import (
+    part_of,
+    sector_of,
+    spans_between,
+    with_copies,
 )
-from meshonet.solvers.blocking.decomposition.symmetry.sectors import all_sectors, sector_of
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import refine
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
@@ -69,7 +67,8 @@ def symmetric_blocks(
     lengths of edges are prescribed, `unsized` makes the mesh of blocks for edges that are all alike, which
     are taken if no others are symmetric.
     """
-    mesh, some, every = blocks.mesh, mirrors_of(blocks.mesh.domain), every_mirror_of(blocks.mesh.domain)
+    mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
+    pair = every[:1] if len(every) % 2 else every[:: max(len(every) // 2, 1)]
     most = score(blocks, False) + worth
 
     def best(ways: Sequence[Way], mirrors: Sequence[Mirror], enough: int = 0) -> BaseComplex | None:
@@ -90,12 +89,12 @@ def symmetric_blocks(
         return [partial(_of_sector, mesh.domain, mirrors, k, find, optimised, score) for k in (0, 1)]
 
     alike = unsized is None
-    if len(every) > len(some):
+    if len(every) == 3 or len(every) > 4:
         symmetric = best([lambda: mesh, *in_sectors(every)], every)
         if symmetric:
             return symmetric
     irregular = wrong_count(mesh).any() or (mesh.irregular & ~mesh.wall_nodes).any()
-    for group in [some[:2], some[:1], some[1:2]][: (0, 1, 3)[len(some[:2])]]:
+    for group in [pair, pair[:1], pair[1:]][: (0, 1, 3)[len(pair)]]:
         ways: list[Way] = [
             lambda: mesh,
             partial(_of_part, mesh.domain, group, find),
@@ -103,9 +102,10 @@ def symmetric_blocks(
             *([unsized] if unsized else []),
         ]
         symmetric = best(ways, group, 2 if irregular else 1)
-        if symmetric and group == some[:2] and len(images_of(symmetric.mesh, some)) < len(some):
-            again = best([partial(_recounted, symmetric, some, optimised, alike)], some)
-            return again or best(in_sectors(by_angle(some)), by_angle(some)) or symmetric
+        four = every[:: max(len(every) // 4, 1)]
+        if symmetric and group is pair and len(four) == 4 > len(images_of(symmetric.mesh, four)):
+            again = best([partial(_recounted, symmetric, four, optimised, alike)], four)
+            return again or best(in_sectors(four), four) or symmetric
         if symmetric:
             return symmetric
     return blocks
@@ -115,9 +115,9 @@ def _of_sector(
     domain: Domain, mirrors: Sequence[Mirror], start: int, find: FindPart, optimised: Optimised, score: Score
 ) -> QuadMesh:  # fmt: skip
     """Return the mesh of a sector, from a mirror on, and its turned copies."""
-    sector = sector_of(domain, mirrors, start)
-    found = base_complex(find(sector.domain, len(mirrors), spans_between(sector.domain.loops[0])))
-    return all_sectors(symmetric_blocks(found, find, optimised, score, worth=np.inf).mesh, sector)
+    part = sector_of(domain, mirrors, start)
+    found = base_complex(find(part.domain, len(mirrors), spans_between(part.domain.loops[0])))
+    return with_copies(symmetric_blocks(found, find, optimised, score, worth=np.inf).mesh, part)
 
 
 def _trial(way: Way, mirrors: Sequence[Mirror], optimised: Optimised) -> BaseComplex | None:
@@ -135,13 +135,14 @@ def _trial(way: Way, mirrors: Sequence[Mirror], optimised: Optimised) -> BaseCom
 def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Images]:
     """Return the mesh with its nodes symmetric, and their images; raises BlockingError: its quads are not.
 
-    Of a domain with four mirrors they are symmetric to the others too, if the quads are.
+    With two mirrors they are symmetric to all others of the domain too, if the quads are.
     """
     images = images_of(mesh, mirrors)
     if len(images) < len(mirrors) or not agree(images):
         raise BlockingError("quads that are not symmetric")
     if len(mirrors) == 2:
-        images = [*images, *images_of(mesh, mirrors_of(mesh.domain)[2:])]
+        every = images_of(mesh)
+        images = every if agree(every) else images
     return made_symmetric(mesh, images), images
 
 
@@ -186,14 +187,5 @@ def _recounted(blocks: BaseComplex, mirrors: Sequence[Mirror], optimised: Optimi
 
 def _of_part(domain: Domain, mirrors: Sequence[Mirror], find: FindPart) -> QuadMesh:
     """Return the mesh of a half and its image, or of a quarter and its images."""
-    part, halves = domain, []
-    for each in mirrors:
-        mirror = mirror_about(part, each.centre, each.along)
-        if mirror is None:
-            raise BlockingError("a half that is not symmetric")
-        halves.append(left_half(part, mirror))
-        part = halves[-1].domain
-    mesh = find(part, 2 * len(halves), spans_between(part.loops[0]))
-    for half in reversed(halves):
-        mesh = both_halves(mesh, half)
-    return mesh
+    part = part_of(domain, mirrors)
+    return with_copies(find(part.domain, len(part.copies), spans_between(part.domain.loops[0])), part)
