@@ -30,11 +30,16 @@ def test_nodes_and_gradients_are_those_of_torch_and_of_finite_differences() -> N
     np.testing.assert_allclose(nodes(*given), expected, rtol=0, atol=1e-14)
     np.testing.assert_allclose(jax.vmap(nodes)(*given), expected, rtol=0, atol=1e-11)
 
-    def loss(south: Any) -> Any:
-        return (nodes(south, *(side[0] for side in given[1:])) ** 3).sum()
+    south, *others = (side[0] for side in given)
+    within = np.sin(np.linspace(0.0, np.pi, len(south)))[:, None]  # the corners are those of west and east
 
-    check_grads(loss, (given[0][0],), order=1, modes=["rev"])
-    assert jax.vmap(jax.grad(loss))(given[0]).shape == given[0].shape
+    def loss(move: Any) -> Any:
+        return (nodes(south + within * move, *others) ** 3).sum()
+
+    check_grads(loss, (0.0 * south,), order=1, modes=["rev"])
+    moves = 0.01 * np.arange(3.0)[:, None, None] * np.ones_like(south)
+    slopes = jax.vmap(jax.grad(loss))(moves)
+    np.testing.assert_allclose(slopes[2], jax.grad(loss)(moves[2]), rtol=0, atol=1e-10)
 
 
 def test_bodies_take_the_count_across() -> None:

@@ -14,20 +14,17 @@ from meshonet.solvers.neural.differentiable.functional import Stencil
 
 
 class BlockCholesky:
-    """The factor of a stencil's matrix at the inner nodes, with `shift` (batch,) times its diagonal added.
+    """The factor of a stencil's matrix at the inner nodes.
 
     `positive` (batch,) says of which members the matrix is positive definite; other factors are unusable.
     """
 
-    def __init__(self, stencil: Stencil, shift: Tensor) -> None:
+    def __init__(self, stencil: Stencil) -> None:
         self._turned = stencil[0, 0].shape[3] < stencil[0, 0].shape[4]
         diagonal, beside = _blocks(_turned(stencil) if self._turned else stencil)
-        diagonal = diagonal + torch.diag_embed(
-            shift[:, None, None] * diagonal.diagonal(dim1=-2, dim2=-1).abs()
-        )
         self._factors: list[Tensor] = []
         self._beside: list[Tensor] = []
-        self.positive = torch.ones(len(shift), dtype=torch.bool, device=shift.device)
+        self.positive = torch.ones(len(diagonal), dtype=torch.bool, device=diagonal.device)
         for k in range(diagonal.shape[1]):
             block = diagonal[:, k]
             if k:

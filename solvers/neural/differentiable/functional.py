@@ -50,18 +50,24 @@ class Functional:
                 energy = energy + self.smoothness * (factor * change * change).sum((1, 2))
         return energy
 
-    def hessian(self, nodes: Tensor, aspect: Tensor) -> Stencil:
-        """Return the second derivatives of E at valid `nodes`, with `aspect` constant."""
+    def hessian(self, nodes: Tensor, aspect: Tensor, *, convex: bool = False) -> Stencil:
+        """Return the second derivatives of E at valid `nodes`, with `aspect` constant.
+
+        `convex`: a positive definite matrix near them instead. The matrices of cells lose their negative
+        eigenvalues, and differences of log lengths are linearised (Gauss-Newton).
+        """
         zero = nodes.new_zeros(len(nodes), 2, 2, *nodes.shape[2:])
         offsets = ((0, 0), (0, 1), (0, 2), (1, -1), (1, 0), (1, 1), (2, 0))
         stencil = {offset: zero.clone() for offset in offsets}
         cells = (nodes.shape[2] - 1) * (nodes.shape[3] - 1)
         by_nodes = self._by_nodes(nodes, aspect) / cells
+        if convex:
+            by_nodes = _positive_part(by_nodes)
         for k, first in enumerate(_AT):
             for m, second in enumerate(_AT):
                 _add(stencil, by_nodes[:, 4 * k + m], first, second)
         for axis, family in enumerate(_edges(nodes)):
-            self._add_lengths(stencil, family, axis)
+            self._add_lengths(stencil, family, axis, convex)
         return stencil
 
     def _harmonic(self, aspect: Tensor) -> tuple[Tensor, Tensor]:
@@ -98,7 +104,7 @@ class Functional:
         blocks = torch.cat([uu, uv, uv.transpose(2, 3), vv], 1)
         return torch.einsum("km,bmpqij->bkpqij", _assembly(nodes), blocks)
 
-    def _add_lengths(self, stencil: Stencil, family: Tensor, axis: int) -> None:
+    def _add_lengths(self, stencil: Stencil, family: Tensor, axis: int, convex: bool) -> None:
         """Add the terms of one `family` of edges (batch, 2, rows, columns), along `axis`."""
         one = 1.0 / (family * family).sum(1, keepdim=True)
         slope = family * one  # of the logarithm of a length
@@ -107,7 +113,7 @@ class Functional:
         starts = ((0, 0), -1), (end, 1)  # nodes of an edge, and their signs in it
         for change, factor, way in _changes(family, axis):
             factor = 2.0 * self.smoothness[:, None, None] * factor
-            pull = factor * change
+            pull = 0.0 * change if convex else factor * change
             count = family.shape[way + 2] - 1
             for first, sign in ((0, -1.0), (1, 1.0)):
                 weight.narrow(way + 1, first, count).add_(factor)
@@ -126,6 +132,14 @@ class Functional:
         for a, sign in starts:
             for b, other in starts:
                 _add(stencil, sign * other * own, a, b)
+
+
+def _positive_part(blocks: Tensor) -> Tensor:
+    """Return the positive semidefinite part of symmetric matrices (batch, 16, 2, 2, mi, mj) of cells."""
+    cells = blocks.unflatten(1, (4, 4)).permute(0, 5, 6, 1, 3, 2, 4)  # row: node and component; column: same
+    values, vectors = torch.linalg.eigh(cells.flatten(3, 4).flatten(4, 5))
+    part = (vectors * values.clamp_min(0.0)[..., None, :]) @ vectors.mT
+    return part.unflatten(4, (4, 2)).unflatten(3, (4, 2)).permute(0, 3, 5, 4, 6, 1, 2).flatten(1, 2)
 
 
 def aspect_of(nodes: Tensor) -> Tensor:

@@ -1,10 +1,11 @@
 """The variational optimum in torch: converged grids of batches, and their gradients.
 
 Newton's method starts from the grids of the compiled solver, which also chooses the weight of the edge
-lengths for each member. Where the Hessian is not positive definite, multiples of its diagonal are added;
-where a step folds cells or does not lower the functional, it is halved.
+lengths for each member. Where the Hessian is not positive definite, it is moved towards its convex part, cell
+by cell, no further than needed; where a step folds cells or does not lower the functional, it is halved.
 
-Nocedal and Wright, Numerical Optimization (2006), section 3.4.
+Nocedal and Wright, Numerical Optimization (2006), section 3.4; Teran, Sifakis, Irving, Fedkiw, Robust
+quasistatic finite elements and flesh simulation, SCA 2005 (the convex part).
 """
 
 from typing import NamedTuple
@@ -26,13 +27,11 @@ from meshonet.solvers.neural.differentiable.members import MemberError, check_fi
 START, MOST = 1e-8, 1000  # tolerance and iterations of the compiled solver
 STILL = 1e-10  # displacement of a node, relative to its shortest edge, at which a member has converged
 KEPT = 1e-3  # the same below which the next step takes the same factor
-STEPS = 150  # of Newton's method at the most; few domains take more than 5, nearly degenerate ones some 70
-REACH = 0.5  # displacement of a node, in its shortest edges, by a step at the most
+STEPS = 200  # of Newton's method at the most; few domains take more than 5, nearly degenerate ones some 70
 HALVINGS = 30  # of a step
 FALL = 1e-4  # part of the decrease that the slope promises which a step has to reach
 ROUNDING = 1e-13  # of the functional, relative, by which it may rise
-SHIFTS = 1e-4, 10.0  # first multiple of the Hessian's diagonal, and the factor of the next ones
-SHIFTED = 12  # times at the most
+CONVEX = 1e-3, 1e-2, 0.1, 0.3, 1.0  # shares of the way from the Hessian to its convex part
 LARGEST = 2**34  # bytes of the factors of one member
 FACTORS = 2**28, 2**33  # bytes of factors at once, on a CPU and on a GPU
 
@@ -65,7 +64,7 @@ class Optimum:
         with torch.enable_grad():
             x = nodes.detach().requires_grad_()
             (slope,) = torch.autograd.grad(functional.value(x, aspect_of(x)).sum(), x, create_graph=True)
-        factor = BlockCholesky(functional.hessian(nodes, aspect_of(nodes)), torch.zeros_like(number))
+        factor = BlockCholesky(functional.hessian(nodes, aspect_of(nodes)))
         share = bordered(factor.solve(inner(gradient)))
         return gradient - torch.autograd.grad(slope, x, share)[0]
 
@@ -83,7 +82,7 @@ def newton(nodes: Tensor, smoothness: Tensor) -> Tensor:
             line = _Quadratic(nodes[moving], Functional(Weights().shape, smoothness[moving]))
         state = line.stepped(nodes[moving])
         nodes[moving] = state.nodes
-        far = state.moved > STILL
+        far = ~(state.moved <= STILL)  # true where it is not a number
         if not bool(far.any()):
             return nodes
         if not bool(far.all()) or not bool((state.moved < KEPT).all()):
@@ -98,18 +97,27 @@ class _Step(NamedTuple):
 
 
 class _Quadratic:
-    """The functional near `nodes`, by its Hessian, shifted where that is not positive definite."""
+    """The functional near `nodes`, by its Hessian, or by a convex matrix where that is not positive."""
 
     def __init__(self, nodes: Tensor, functional: Functional) -> None:
         self._functional, self._aspect = functional, aspect_of(nodes)
         stencil = functional.hessian(nodes, self._aspect)
-        shift = torch.zeros_like(functional.smoothness)
-        for _ in range(SHIFTED):
-            self._factor = BlockCholesky(stencil, shift)
-            failed = ~self._factor.positive
-            if not bool(failed.any()):
-                break
-            shift = torch.where(failed, (SHIFTS[1] * shift).clamp_min(SHIFTS[0]), shift)
+        self._factor = BlockCholesky(stencil)
+        where = (~self._factor.positive).nonzero().flatten()
+        if not len(where):
+            return
+        few = Functional(functional.shape, functional.smoothness[where])
+        convex = few.hessian(nodes[where], self._aspect[where], convex=True)
+        exact = {offset: blocks[where] for offset, blocks in stencil.items()}
+        shares = torch.zeros_like(few.smoothness)
+        for share in CONVEX:
+            shares[~self._factor.positive[where]] = share
+            for offset, blocks in stencil.items():
+                part = torch.lerp(exact[offset], convex[offset], shares[:, None, None, None, None])
+                blocks.index_copy_(0, where, part)
+            self._factor = BlockCholesky(stencil)
+            if bool(self._factor.positive.all()):
+                return
 
     def stepped(self, nodes: Tensor) -> _Step:
         """Return the nodes after a step of Newton's method from `nodes`, shortened where it has to be."""
@@ -121,7 +129,7 @@ class _Quadratic:
         step = -self._factor.solve(slope)
         promise = FALL * (slope * step).sum((1, 2, 3))
         far = (step.square().sum(1).sqrt() / inner(shortest_edges(nodes)[:, None])[:, 0]).amax((1, 2))
-        size = (REACH / far).clamp_max(1.0)
+        size = torch.ones_like(far)
         for _ in range(HALVINGS):
             trial = nodes + bordered(size[:, None, None, None] * step)
             after = self._functional.value(trial, self._aspect)
