@@ -20,6 +20,8 @@ from meshonet.geometry.blocks.grid import Grid
 
 FOLDER = Path(__file__).parent / "img"
 GAP = 40
+BEHIND, AHEAD = 6.0, 12.0
+"""Range of x in which parts of the body with a fin are drawn."""
 PAGES = Path(__file__).parent / "guide"
 LIGHT = np.array([0.35, -0.5, 0.8]) / np.linalg.norm([0.35, -0.5, 0.8])
 
@@ -142,6 +144,34 @@ def aircraft() -> None:
     save(images, "aircraft.png")
 
 
+def fin() -> None:
+    """Draw the fin and tail plane of docs/guide/aircraft-fins.md, and one level around them."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "aircraft.toml"
+        path.write_text(toml_of("aircraft.md") + toml_of("aircraft-fins.md"))
+        volume = meshonet.stack(path, around=49, span=13, first_cell=1e-2, growth=1.35, far_field=8)
+    colours = {"fuselage": "#9db8d9", "tail": "#e39a8f", "tail-tip": "#e39a8f"}
+    colours |= {"fin": "#a8cf9a", "fin-tip": "#a8cf9a"}
+    walls = [
+        (patch, colours[name])
+        for patch, name in ((np.squeeze(volume.at(each)), each.name) for each in volume.patches)
+        if name in colours and (name != "fuselage" or patch[..., 0].max() > BEHIND)
+    ]
+    beside = [
+        block for block, zone in zip(volume.blocks, volume.provenance["zones"], strict=True) if "tail" in zone
+    ]
+    beside = [block.nodes[:, :, 14] for block in beside if block.counts[2] > volume.blocks[-1].counts[2]]
+    levels = [(patch, "#dddddd") for patch in beside if patch[..., 0].max() < AHEAD]
+    images = []
+    for shown, angles in ((walls, (28.0, 125.0)), ([*levels, *walls], (28.0, 60.0))):
+        fig = plt.figure(figsize=(9.0, 9.0))
+        ax = fig.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
+        draw(ax, shown)
+        show(ax, np.concatenate([patch.reshape(-1, 3) for patch, _ in walls]), angles, 1.0)
+        images.append(image(fig))
+    save(images, "fin.png")
+
+
 def image(fig: plt.Figure) -> Image.Image:
     """Return a figure without its white margins."""
     with tempfile.NamedTemporaryFile(suffix=".png") as file:
@@ -170,3 +200,4 @@ if __name__ == "__main__":
     wing()
     pipe()
     aircraft()
+    fin()

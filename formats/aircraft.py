@@ -29,6 +29,11 @@
     [[wings]]                       # others before or behind it
     name = "tail"                   # of its patch
     file = "tail.toml"
+
+    [[wings]]                       # a fin: half of it, z >= 0, in the plane of symmetry
+    plane = "symmetry"
+    name = "fin"
+    [[wings.sections]]              # symmetric ones, upwards: airfoil, chord, y, x or sweep
 """
 
 from __future__ import annotations
@@ -39,6 +44,7 @@ from pathlib import Path
 import numpy as np
 
 from meshonet.formats.aircraft_surface import surface_body, surface_wing
+from meshonet.formats.fin_table import fin_of, fin_table
 from meshonet.formats.rows.points import point_blocks
 from meshonet.formats.source import Source, open_source, printable
 from meshonet.formats.stack_table import stack_table
@@ -70,7 +76,8 @@ def read_aircraft(data: Table, source: Source) -> Aircraft:
         body, axes, notes = surface_body(bodies[0], folder)
     else:
         body = _body(bodies[0], folder)
-    wing, *others = [_wing(row, folder, body, axes) for row in wings]
+    fins = [row.text("name", "fin") for row in wings if "plane" in row.data]
+    wing, *others = [_wing(row, folder, body, axes, fins) for row in wings]
     name = data.text("name", source.stem or "aircraft")
     half = data.flag("half", default=True)
     return Aircraft(body, wing, name, half, tuple(others), axes, notes)
@@ -117,19 +124,29 @@ def _points(row: Table, folder: Path, key: str, columns: str, least: int) -> Flo
     return blocks[0]
 
 
-def _wing(row: Table, folder: Path, body: Body, axes: AircraftAxes) -> Stack | SurfaceWing:
+def _wing(row: Table, folder: Path, body: Body, axes: AircraftAxes, fins: list[str]) -> Stack | SurfaceWing:
     on = row.text("on", body.name)
+    if on in fins:
+        problem = f"a wing on the {printable(on)}, as in a T-tail, cannot be made"
+        raise row.error("on", problem, f"use {body.name}")
     if on != body.name:
         raise row.error("on", f"{printable(on)} is no body", f"use {body.name}")
     if "surface" in row.data:
         return surface_wing(row, folder, axes)
+    fin = "plane" in row.data
+    if fin:
+        row.word("plane", ("symmetry",), "symmetry")
     if "file" not in row.data:
         with row.located():
-            return stack_table(row, folder, "wing", ("on",))
-    row.only("on", "name", "file")
+            return (
+                fin_table(row, folder, ("on", "plane")) if fin else stack_table(row, folder, "wing", ("on",))
+            )
+    row.only("on", "name", "file", "plane")
     file = str(folder / row.text("file"))
     with row.in_file_of("file"):
         source = open_source(file)
     with in_source(source.name):
         wing = stack_table(toml_table(source), source.path.parent if source.path else folder, "wing")
+        if fin:
+            return fin_of(wing, row.text("name", "fin"))
     return replace(wing, name=row.text("name", wing.name))

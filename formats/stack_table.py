@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 from meshonet.formats.section_shape import section_shape
 from meshonet.formats.toml_table import Table
@@ -20,19 +21,26 @@ def stack_table(data: Table, folder: Path, name: str, more: tuple[str, ...] = ()
 
     Raises InputError: as `meshonet.formats.stack.stack_of`.
     """
-    data.only("kind", "tip", "between", *_SPACINGS, "name", "about", "sections", *more)
+    options = stack_options(data, name, ("about", *more))
     about = data.pair("about", QUARTER)
     sections: list[Section] = []
     for row in data.rows("sections", least=2):
         sections.append(_section(row, about, sections, folder))
-    return Stack(
-        tuple(sections),
-        kind=data.word("kind", KINDS, "wing"),  # type: ignore[arg-type]
-        tip=data.word("tip", TIPS, "round"),  # type: ignore[arg-type]
-        between=data.word("between", BETWEEN, "linear"),  # type: ignore[arg-type]
+    return Stack(tuple(sections), **options)
+
+
+def stack_options(data: Table, name: str, more: tuple[str, ...]) -> dict[str, Any]:
+    """Return what a table says of a stack beside its sections; it may have `more` keys.
+
+    Raises InputError: another key, a value that is not known.
+    """
+    data.only("kind", "tip", "between", *_SPACINGS, "name", "sections", *more)
+    words = (("kind", KINDS, "wing"), ("tip", TIPS, "round"), ("between", BETWEEN, "linear"))
+    return {
+        **{key: data.word(key, known, default) for key, known, default in words},
         **{key: data.number(key) for key in _SPACINGS if key in data.data},
-        name=data.text("name", name),
-    )
+        "name": data.text("name", name),
+    }
 
 
 def _section(row: Table, about: tuple[float, float], before: list[Section], folder: Path) -> Section:
@@ -44,14 +52,14 @@ def _section(row: Table, about: tuple[float, float], before: list[Section], fold
         section_shape(row, folder),
         row.positive("chord"),
         z,
-        _along(row, "x", "sweep", z, before),
-        _along(row, "y", "dihedral", z, before),
+        along(row, "x", "sweep", z, before),
+        along(row, "y", "dihedral", z, before),
         row.number("twist", 0.0),
         row.pair("about", about),
     )
 
 
-def _along(row: Table, direct: str, angle: str, z: float, before: list[Section]) -> float:
+def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) -> float:
     """Return x or y of a section: the given value, or that given by an angle to the previous section."""
     if angle not in row.data:
         return row.number(direct, getattr(before[-1], direct) if before else 0.0)

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.aircraft.aircraft import Aircraft as Aircraft
     from meshonet.geometry.aircraft.body import Body as Body
     from meshonet.geometry.aircraft.body_section import BodySection as BodySection
+    from meshonet.geometry.aircraft.fin import Fin as Fin
     from meshonet.geometry.aircraft.lofted_body import LoftedBody as LoftedBody
     from meshonet.geometry.blocks.boundary import Boundary as Boundary
     from meshonet.geometry.blocks.connection import Motion as Motion
@@ -90,6 +91,7 @@ _MODULES = {
     "meshonet.geometry.aircraft.aircraft": ("Aircraft",),
     "meshonet.geometry.aircraft.body": ("Body",),
     "meshonet.geometry.aircraft.body_section": ("BodySection",),
+    "meshonet.geometry.aircraft.fin": ("Fin",),
     "meshonet.geometry.aircraft.lofted_body": ("LoftedBody",),
     "meshonet.geometry.blocks.boundary": ("Boundary",),
     "meshonet.geometry.blocks.connection": ("Motion",),

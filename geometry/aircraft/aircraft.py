@@ -32,7 +32,8 @@ class Aircraft:
         Whether the grid ends in the plane of symmetry; otherwise it is joined there to its mirror image,
         whose patches have the same names.
     others : tuple of Stack or SurfaceWing, optional
-        Further wings before or behind it, such as a tail plane or canards, each with a name of its own.
+        Further wings before or behind it, such as a tail plane or canards, and a `Fin` above them, each with
+        a name of its own.
     axes : AircraftAxes, optional
         Axes of the file of its surfaces, which the grid is turned to.
     notes : tuple of str, optional

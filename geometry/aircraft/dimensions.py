@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.aircraft.fin import Fin
 
 
 @dataclass(frozen=True)
@@ -17,6 +18,7 @@ class AircraftDimensions:
     length, width, height : of the body.
     diameter : the larger of width and height, which are the same for a body of revolution.
     spans : distance from tip to tip of each wing, both halves together, by the name of its patch.
+    fins : height y of the tip of each fin, by the name of its patch.
     chord : the longest of the first wing, in which heights of cells and distances are given.
     first_cell : height of the cells at the walls.
     far_field : radius of the outer boundary.
@@ -27,6 +29,7 @@ class AircraftDimensions:
     height: float
     diameter: float
     spans: dict[str, float]
+    fins: dict[str, float]
     chord: float
     first_cell: float
     far_field: float
@@ -37,6 +40,7 @@ class AircraftDimensions:
     def lines(self) -> dict[str, str]:
         """Lines of text by their headings."""
         spans = "".join(f"; {name} {span:.4g} from tip to tip" for name, span in self.spans.items())
+        fins = "".join(f"; {name} up to y={y:.4g}" for name, y in self.fins.items())
         across = f"{self.width:.4g} wide and {self.height:.4g} high"
         if self.width == self.height:
             across = f"{self.diameter:.4g} in diameter"
@@ -44,19 +48,20 @@ class AircraftDimensions:
         walls = (
             f"first cells {self.first_cell:.4g}, far field {self.far_field:.4g} from the middle of the body"
         )
-        return {"aircraft": f"{body}{spans}; chord {self.chord:.4g}", "lengths": walls}
+        return {"aircraft": f"{body}{spans}{fins}; chord {self.chord:.4g}", "lengths": walls}
 
 
 def aircraft_dimensions(aircraft: Aircraft, first_cell: float, far_field: float) -> AircraftDimensions:
     """Return the dimensions of an aircraft and of its grid, both lengths in longest chords of the wing."""
     chord, body = aircraft.wing.chord, aircraft.body
-    names = (name for name, _ in aircraft.patches)
+    wings = [(name, wing) for (name, _), wing in zip(aircraft.patches, aircraft.wings, strict=True)]
     return AircraftDimensions(
         length=body.extent,
         width=body.width,
         height=body.height,
         diameter=max(body.width, body.height),
-        spans={name: 2.0 * wing.end[2] for name, wing in zip(names, aircraft.wings, strict=True)},
+        spans={name: 2.0 * wing.end[2] for name, wing in wings if not isinstance(wing, Fin)},
+        fins={name: wing.end[1] for name, wing in wings if isinstance(wing, Fin)},
         chord=chord,
         first_cell=first_cell * chord,
         far_field=far_field * chord + 0.5 * body.extent,

@@ -22,7 +22,7 @@ from meshonet.geometry.blocks.halves import with_image
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.solvers.aircraft.body_map import BodyMap
-from meshonet.solvers.aircraft.body_plane import WING_PATCHES, level_patches
+from meshonet.solvers.aircraft.body_plane import level_patches
 from meshonet.solvers.aircraft.exact_cells import at_height, between_walls
 from meshonet.solvers.aircraft.lofted_map import map_around, points_above
 from meshonet.solvers.aircraft.plan import AircraftPlan, plan_of
@@ -77,7 +77,7 @@ def planned_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, fl
     caps = [space.places(patch) for tip in plan.tips for patch in tip]
     lattices = _columns([*levels[0], *caps])
     table = np.stack([np.concatenate([patch.reshape(-1, 3) for patch in level]) for level in levels])
-    rings = lattices[: WING_PATCHES * len(plan.wings) : WING_PATCHES]
+    rings = [lattices[number] for number in plan.levels.collar_patches]
     walls = np.concatenate([ring[:, 0] for ring in rings])
     points = space.points(table)
     lines = LineArcs.through(points)
@@ -89,14 +89,14 @@ def planned_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, fl
     beyond = _beyond_tip(space, tip, on_tip, ends, growth)
     low = _flat(space.points(beside), aircraft)
     low = off_body(low, points_above(space, beside[0], first), rings, first)
-    for ring in rings:
-        low = off_wing(low, ring, first)
+    for wing, ring in zip(plan.wings, rings, strict=True):
+        low = off_wing(low, ring, first, closed=not wing.fin)
         wall, near = ring[:, 0], ring[:, 1]
         low[1, near] = between_walls((low[1, wall], low[0, near]), low[1, near], first)
     high = _flat(space.points(beyond), aircraft)
     inside = lattices[plan.levels.patches :]
-    for ring, *cap in zip(rings, inside[::2], inside[1::2], strict=True):
-        high = off_tip(high, np.concatenate([each.ravel() for each in cap]), ring)
+    for wing, ring, *cap in zip(plan.wings, rings, inside[::2], inside[1::2], strict=True):
+        high = off_tip(high, np.concatenate([each.ravel() for each in cap]), ring, wing)
     half = _joined(aircraft, plan, lattices, low, high)
     whole = aircraft.axes.to_file(half if aircraft.half else with_image(half))
     return whole, growth, (*aircraft.notes, *notes, *_flat_tips(aircraft))
@@ -124,18 +124,23 @@ def _flat(points: Floats, aircraft: Aircraft) -> Floats:
 
 def _level(space: BodyMap, plan: AircraftPlan, k: int, first: float) -> list[Floats]:
     """Return the patches (ni, nj, 3) of s, theta, zeta of the key level `k`."""
-    holes = [each[k] for each in plan.holes]
-    patches = level_patches(plan.levels, holes)
-    for number, (hole, sections) in enumerate(zip(holes, plan.sections, strict=True)):
-        made = patches[WING_PATCHES * number]
+    columns = [[each[k] for each in column] for column in plan.holes]
+    patches = level_patches(plan.levels, columns)
+    holes = [hole for column in columns for hole in column]
+    for number, hole, sections in zip(plan.levels.collar_patches, holes, plan.sections, strict=True):
+        made = patches[number]
         lift = sections[k][:, None, 2] - hole.zeta
         made[..., 2] = hole.zeta + lift * _fade(made[..., :2] * hole.scale)
         ring = made
         for _ in range(2):
             steps = norms(np.diff(space.points(ring), axis=1))
             ring = resampled(ring, steps, with_first(steps, np.full(len(steps), first)))
-        ring[:, 0], ring[:, -1], ring[-1] = made[:, 0], made[:, -1], ring[0]
-        patches[WING_PATCHES * number] = ring
+        ring[:, 0], ring[:, -1] = made[:, 0], made[:, -1]
+        if hole.fin:
+            ring[[0, -1], :, 1] = np.pi
+        else:
+            ring[-1] = ring[0]
+        patches[number] = ring
     return patches
 
 
@@ -231,8 +236,16 @@ def _names(plan: AircraftPlan, aircraft: Aircraft) -> list[str]:
     """Return the names of the blocks, after the wings and the parts of the body that they are beside."""
     body, tips = aircraft.body.name, dict(aircraft.patches)
     wings = [wing.name for wing in plan.wings]
-    names = [f"{name}-{part}" for name in wings for part in ("collar", "above", "below")]
-    names += [f"{before}-to-{after}" for before, after in pairwise(wings)]
+    names, firsts, members = list[str](), list[str](), iter(wings)
+    for column in plan.levels.columns:
+        first = next(members)
+        firsts.append(first)
+        names += [f"{first}-{part}" for part in ("collar", "above", "below")]
+        if column.fin_alone:
+            names.remove(f"{first}-above")
+        elif column.fin:
+            names.append(f"{next(members)}-collar")
+    names += [f"{before}-to-{after}" for before, after in pairwise(firsts)]
     names += [f"{body}-{part}" for part in ("nose", "nose-core", "tail", "tail-core")]
     return [*names, *(f"{tips[name]}-{part}" for name in wings for part in ("ring", "core"))]
 
@@ -255,8 +268,10 @@ def _patches(blocks: tuple[Block, ...], plan: AircraftPlan, tip: int, aircraft: 
         name = aircraft.body.name if inside < 0 else tips[names[inside // 2]]
         yield Patch(name, "bottom", 0, ni, (0, nj), number, "wall")
         yield Patch("farfield", "top", 0, ni, (0, nj), number)
-        if number in range(0, WING_PATCHES * len(names), WING_PATCHES):
-            yield Patch(names[number // WING_PATCHES], "south", 0, ni, (0, tip), number, "wall")
+        if number in plan.levels.collar_patches:
+            yield Patch(
+                names[plan.levels.collar_patches.index(number)], "south", 0, ni, (0, tip), number, "wall"
+            )
         for side in ("west", "east", "south", "north"):
             if not face_of(block.nodes[..., 2], side).any():
                 yield Patch("symmetry", side, 0, ni if side in ("south", "north") else nj, (0, nk), number)

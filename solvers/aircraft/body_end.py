@@ -50,16 +50,22 @@ class BodyEnd:
         cells = max(smooth_cells(far - at, (step, size), WIDEST, FEWEST) for far, size in levels)
         return cls(theta, core, at, step, cells)
 
-    def patches(self, far: float, last: float, theta: Floats) -> tuple[Floats, Floats]:
-        """Return rows and core (., ., 2) in s from the pole and theta, out to `far` with `theta` there."""
-        arcs = self.at + smooth_arcs(np.array([far - self.at]), (self.step, last), self.cells)[0]
-        lines = lines_between(arcs, self.theta, theta)
+    def patches(self, side: Floats, last: Floats) -> tuple[Floats, Floats]:
+        """Return rows and core (., ., 3) from the pole to the `side` (n, 3) of a column, with `last` cells.
+
+        Both are places whose s is counted from the pole.
+        """
+        far, zeta = side[:, 0], 0.5 * float(side[0, 2] + side[-1, 2])
+        arcs = self.at + smooth_arcs(far - self.at, (self.step, last), self.cells)
+        begin = np.stack([np.full(len(side), self.at), self.theta, np.full(len(side), zeta)], axis=1)
+        lines = lines_between(arcs, begin, side)
         lines[:, -1, 0] = far
-        rows = _polar(self.core.rows[:-1, :, :2]).swapaxes(0, 1)
+        rows = _polar(self.core.rows[:-1, :, :2], zeta).swapaxes(0, 1)
         rows[0, :, 1], rows[-1, :, 1] = 0.0, np.pi
-        return np.concatenate([rows, lines], axis=1), _polar(self.core.nodes[..., :2])
+        return np.concatenate([rows, lines], axis=1), _polar(self.core.nodes[..., :2], zeta)
 
 
-def _polar(nodes: Floats) -> Floats:
+def _polar(nodes: Floats, zeta: float) -> Floats:
     x, y = nodes[..., 0], nodes[..., 1]
-    return np.stack([np.sqrt(x * x + y * y), arctan2(np.where(np.abs(y) < 1e-15, 0.0, y), x)], axis=-1)
+    theta = arctan2(np.where(np.abs(y) < 1e-15, 0.0, y), x)
+    return np.stack([np.sqrt(x * x + y * y), theta, np.full(x.shape, zeta)], axis=-1)

@@ -16,27 +16,22 @@ All in (s, theta); collars are made in lengths in space, as units of s and theta
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
+from typing import TypeAlias
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.solvers.aircraft.body_end import BodyEnd
-from meshonet.solvers.aircraft.collar_level import (
-    FEWEST,
-    WIDEST,
-    CollarLevel,
-    CollarPlan,
-    Hole,
-    lines_between,
-    planned_collar,
-)
+from meshonet.solvers.aircraft.collar_level import FEWEST, WIDEST, CollarPlan, Hole, lines_between
+from meshonet.solvers.aircraft.column import ColumnLevel, ColumnPlan, Side, planned_column
 from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
 
-WING_PATCHES = 3
-"""Patches of a level beside each wing: its collar first."""
+_EVEN = 1.6
+"""Largest cell beside a collar of those to keel and crown, over their mean, where there is a fin: as many
+lines pass beside it as beside wings, and many of them are far from it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,77 +41,100 @@ class LevelPlan:
     Parameters
     ----------
     length : arc length of the meridian.
-    collars : of each wing, from nose to tail.
-    between : cells between the collars of neighbouring wings.
+    columns : of wings and fins, from nose to tail.
+    between : cells between neighbouring columns.
     ends : nose and tail.
     """
 
     length: float
-    collars: tuple[CollarPlan, ...]
+    columns: tuple[ColumnPlan, ...]
     between: tuple[int, ...]
     ends: tuple[BodyEnd, BodyEnd]
 
     @property
     def patches(self) -> int:
         """Number of patches of a level."""
-        return WING_PATCHES * len(self.collars) + len(self.between) + 4
+        return sum(each.patches for each in self.columns) + len(self.between) + 4
+
+    @property
+    def collars(self) -> tuple[CollarPlan, ...]:
+        """Of each wing and fin."""
+        return tuple(collar for column in self.columns for collar in column.collars)
+
+    @property
+    def collar_patches(self) -> tuple[int, ...]:
+        """Numbers of the patches that are collars, of each wing and fin."""
+        out, begin = [], 0
+        for column in self.columns:
+            out += [begin, begin + column.patches - 1][: len(column.collars)]
+            begin += column.patches
+        return tuple(out)
 
 
-def planned(holes: Sequence[Sequence[Hole]], length: float, first: float, growth: float) -> LevelPlan:
-    """Return the counts for the holes of each wing, from nose to tail, on some levels from the root on."""
-    plans, levels = zip(*(planned_collar(list(each), first, growth) for each in holes), strict=True)
-    collars = _with_equal_lines(plans)
+def planned(
+    holes: Sequence[Sequence[Sequence[Hole]]], length: float, first: float, growth: float
+) -> LevelPlan:
+    """Return the counts for the holes in each column, from nose to tail, on some levels from the root on."""
+    plans, levels = zip(*(planned_column(each, first, growth) for each in holes), strict=True)
+    columns = _with_equal_lines(plans)
+    if any(column.fin for column in columns):
+        columns = tuple(column.evened(_EVEN) for column in columns)
     between = []
     for before, after in pairwise(levels):
-        ways = [_between(*pair) for pair in zip(before, after, strict=True)]
+        ways = [way for pair in zip(before, after, strict=True) for way in _ways(*pair)]
         between.append(max(smooth_cells(way, sizes, WIDEST, FEWEST) for way, sizes in ways))
-    nose = [(level.sides[0], level.ends[0]) for level in levels[0]]
-    tail = [(length - level.sides[1], level.ends[1]) for level in levels[-1]]
-    ends = (
-        BodyEnd.of(nose, 2 * collars[0].nose + collars[0].bands),
-        BodyEnd.of(tail, 2 * collars[-1].edge + collars[-1].bands),
+    nose = [way for level in levels[0] for way in _to_pole(level.sides[0], 0.0)]
+    tail = [way for level in levels[-1] for way in _to_pole(level.sides[1], length)]
+    lines = columns[0].beside[0] + columns[0].bands, columns[-1].beside[1] + columns[-1].bands
+    ends = BodyEnd.of(nose, lines[0]), BodyEnd.of(tail, lines[1])
+    return LevelPlan(length, columns, tuple(between), ends)
+
+
+Way: TypeAlias = tuple[float, tuple[float, float]]
+"""A way in s, and the lengths of cells at its ends."""
+
+
+def _ways(before: ColumnLevel, after: ColumnLevel) -> Iterator[Way]:
+    """Yield the ways from one column to the next, along the keel and along the crown where they differ."""
+    (start, first), (stop, last) = before.sides[1], after.sides[0]
+    yield from dict.fromkeys(
+        (float(stop[k, 0] - start[k, 0]), (float(first[k]), float(last[k]))) for k in (0, -1)
     )
-    return LevelPlan(length, collars, tuple(between), ends)
 
 
-def _between(before: CollarLevel, after: CollarLevel) -> tuple[float, tuple[float, float]]:
-    """Return the way in s from one collar to the next, and the lengths of the cells there."""
-    return after.sides[0] - before.sides[1], (before.ends[1], after.ends[0])
+def _to_pole(side: Side, pole: float) -> list[tuple[float, float]]:
+    """Return the ways in s from a pole to a side, and cells there, the shortest first."""
+    nodes, cells = side
+    ways = np.abs(nodes[:, 0] - pole)
+    return sorted({(float(ways[k]), float(cells[k])) for k in (0, -1)})
 
 
-def _with_equal_lines(plans: Sequence[CollarPlan]) -> tuple[CollarPlan, ...]:
-    """Return the plans with wider bands, so that as many lines leave each collar as come to the next one."""
-    more = np.cumsum([0] + [2 * (a.edge - b.nose) for a, b in pairwise(plans)])
+def _with_equal_lines(plans: Sequence[ColumnPlan]) -> tuple[ColumnPlan, ...]:
+    """Return the plans with wider bands, so that as many lines leave each column as come to the next one."""
+    more = np.cumsum([0] + [a.beside[1] - b.beside[0] for a, b in pairwise(plans)])
     bands = max(plan.bands - n for plan, n in zip(plans, more.tolist(), strict=True)) + more
-    out = []
-    for plan, cells in zip(plans, bands.tolist(), strict=True):
-        low = round(plan.low * cells / plan.bands)
-        out.append(replace(plan, low=low, top=cells - low))
-    return tuple(out)
+    return tuple(plan.with_bands(cells) for plan, cells in zip(plans, bands.tolist(), strict=True))
 
 
-def level_patches(plan: LevelPlan, holes: Sequence[Hole]) -> list[Floats]:
-    """Return patches (ni, nj, 3) of s, theta and zeta on a level around holes, from nose to tail.
+def level_patches(plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floats]:
+    """Return patches (ni, nj, 3) of s, theta and zeta on a level around the holes of columns.
 
-    Collar, top and low of each wing, then the patches between wings, then rows and core of the nose, rows and
-    core of the tail.
+    Those of columns, from nose to tail, then the patches between them, then rows and core of the nose, rows
+    and core of the tail.
     """
-    levels = [CollarLevel.of(*each) for each in zip(plan.collars, holes, strict=True)]
-    patches = [_on(patch, level.zeta) for level in levels for patch in level.patches()]
+    levels = [ColumnLevel.of(*each) for each in zip(plan.columns, holes, strict=True)]
+    patches = [patch for level in levels for patch in level.patches()]
     for cells, before, after in zip(plan.between, levels[:-1], levels[1:], strict=True):
-        way, sizes = _between(before, after)
-        s = before.sides[1] + smooth_arcs(np.array([way]), sizes, cells)[0]
-        zeta = lines_between(s, np.array([before.zeta]), np.array([after.zeta]))[..., 1]
-        patches.append(_on(lines_between(s, before.across[1], after.across[0]), zeta))
+        (start, first), (stop, last) = before.sides[1], after.sides[0]
+        s = start[:, :1] + smooth_arcs(stop[:, 0] - start[:, 0], (first, last), cells)
+        patches.append(lines_between(s, start, stop))
     nose, tail = plan.ends
-    first, last = levels[0], levels[-1]
-    for patch in nose.patches(first.sides[0], first.ends[0], first.across[0]):
-        patches.append(_on(patch, first.zeta))
-    for patch in tail.patches(plan.length - last.sides[1], last.ends[1], last.across[1]):
-        patches.append(_on(patch * [-1.0, 1.0] + [plan.length, 0.0], last.zeta))
+    patches += nose.patches(*levels[0].sides[0])
+    back, last = levels[-1].sides[1]
+    patches += [_from_tail(patch, plan) for patch in tail.patches(_from_tail(back, plan), last)]
     return patches
 
 
-def _on(patch: Floats, zeta: Floats | float) -> Floats:
-    """Return nodes (ni, nj, 3) of a patch (ni, nj, 2) at zeta."""
-    return np.concatenate([patch, np.broadcast_to(zeta, patch.shape[:2])[..., None]], axis=-1)
+def _from_tail(nodes: Floats, plan: LevelPlan) -> Floats:
+    """Return places (..., 3) with s counted from the tail, or back."""
+    return nodes * [-1.0, 1.0, 1.0] + [plan.length, 0.0, 0.0]

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -52,6 +53,10 @@ _MIRROR = np.array([1.0, -1.0])
 """Of the plane of a boundary, which runs clockwise."""
 
 
+Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
+"""Least and largest s, and theta."""
+
+
 @dataclass(frozen=True)
 class Rectangle:
     """The rectangle around a root: low and high s, low and high t."""
@@ -62,16 +67,17 @@ class Rectangle:
     high: float
 
 
-def rectangle(section: Floats, within: tuple[float, float], scale: Floats) -> Rectangle:
+def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
     """Return the rectangle around a section (n, 2) of s and theta, in lengths in space.
 
-    It takes at most half of the way to the least and largest s `within` which the section lies.
+    It takes at most half of the way to the least and largest s and theta `within` which the section lies.
     """
     (front, low), (back, high) = (section * scale).min(axis=0), (section * scale).max(axis=0)
-    begin, end = (s * float(scale[0]) for s in within)
-    girth = np.pi * float(scale[1])
+    (begin, end), (bottom, top) = (
+        [each * float(unit) for each in ends] for ends, unit in zip(within, scale, strict=True)
+    )
     margin = MARGIN * (back - front)
-    ways = [way * _SHARE for way in (front - begin, end - back, low, girth - high)]
+    ways = [way * _SHARE for way in (front - begin, end - back, low - bottom, top - high)]
     margin = max(margin, math.sqrt(margin * min(ways)))
     before, behind, below, above = (min(margin, way) for way in ways)
     return Rectangle(float(front - before), float(back + behind), float(low - below), float(high + above))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -12,6 +13,7 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.ties import first_least
 from meshonet.solvers.aircraft.collar import (
     Rectangle,
+    Within,
     collar,
     corner_nodes,
     lengths,
@@ -52,13 +54,22 @@ class Hole:
     section : (n, 2) s and theta around it.
     scale : (2,) lengths in space of units of s and theta there.
     zeta : of the level beside it.
-    within : least and largest s of its collar, if that took all of the way.
+    within : least and largest s and theta of its collar, if that took all of the way.
+    fin : whether it is that of a fin, whose middle is the crown: a half of its collar is one of the grid.
+    below : theta where the cells below its collar end.
     """
 
     section: Floats
     scale: Floats
     zeta: float
-    within: tuple[float, float]
+    within: Within
+    fin: bool = False
+    below: float = 0.0
+
+    @property
+    def box(self) -> Rectangle:
+        """The rectangle around it, in lengths in space."""
+        return rectangle(self.section, self.within, self.scale)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,10 +80,11 @@ class CollarPlan:
     ----------
     edge, nose : nodes from the middles of trailing edge and nose to the corners of a collar's rectangle.
     rows : cells across a collar.
-    low, top : cells from keel and crown to a collar.
+    low, top : cells from keel and crown to a collar; from a wing to the fin above it both have as many.
     first : height of the cells at the wing.
     straight : of the lines of collars (`collar`).
     sine : the least of an angle in them.
+    widest : largest cell beside it of those above or below, over their mean.
     """
 
     edge: int
@@ -83,19 +95,25 @@ class CollarPlan:
     first: float
     straight: float = 0.0
     sine: float = 1.0
-
-    @property
-    def bands(self) -> int:
-        """Cells above and below."""
-        return self.low + self.top
+    widest: float = math.inf
 
 
-def planned_collar(holes: list[Hole], first: float, growth: float) -> tuple[CollarPlan, list[CollarLevel]]:
-    """Return the plan for some `holes` of a wing, from the root on, and their levels, with narrow bands."""
-    boxes = [rectangle(hole.section, hole.within, hole.scale) for hole in holes]
+def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
+    """Return the nodes from the middles of trailing edge and nose to the corners, a mean over `holes`."""
+    boxes = [hole.box for hole in holes]
     planes = [hole.section * hole.scale for hole in holes]
     corners = [corner_nodes(plane, box, _CORNER) for plane, box in zip(planes, boxes, strict=True)]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
+    return edge, nose
+
+
+def planned_collar(
+    holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
+) -> tuple[CollarPlan, list[CollarLevel]]:
+    """Return the plan for some `holes` of a wing, from the root on, and their levels, with narrow bands."""
+    boxes = [hole.box for hole in holes]
+    planes = [hole.section * hole.scale for hole in holes]
+    edge, nose = corners
     plan = CollarPlan(edge, nose, 4, FEWEST, FEWEST, first)
     for plane, box in zip(planes, boxes, strict=True):
         away = float(lengths(plane, outer_loop(plane, box, (edge, nose))).max())
@@ -113,7 +131,7 @@ def planned_collar(holes: list[Hole], first: float, growth: float) -> tuple[Coll
         max(smooth_cells(level.bands[k], (level.last[1 + k], None), WIDEST, FEWEST) for level in levels)
         for k in (0, 1)
     )
-    return replace(plan, low=low, top=top), levels
+    return replace(plan, low=low, top=low if holes[0].fin else top), levels
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,17 +140,15 @@ class CollarLevel:
 
     Parameters
     ----------
-    plan, box, scale : counts, the rectangle, lengths in space of units of s and theta.
-    zeta : of the level beside the section.
+    plan, hole, box : counts, the section, the rectangle.
     ring : (n, rows + 1, 2) the collar, in lengths in space.
     between : least sine of an angle between its lines before they are turned to the normals.
     last : lengths in space of its outermost cells at the front, below, above and at the back.
     """
 
     plan: CollarPlan
+    hole: Hole
     box: Rectangle
-    scale: Floats
-    zeta: float
     ring: Floats
     between: float
     last: tuple[float, float, float, float]
@@ -142,17 +158,20 @@ class CollarLevel:
         """Return the level of a hole."""
         scale = hole.scale
         plane = hole.section * scale
-        box = rectangle(hole.section, hole.within, scale)
+        box = hole.box
         edge, nose, half = plan.edge, plan.nose, (len(plane) - 1) // 2
         outer = outer_loop(plane, box, (edge, nose))
         behind, before = outer_cells(box, (edge, nose))
         share = np.abs(np.arange(len(plane)) - half) / half
         last = before + (behind - before) * share
-        for way, side, cells in (
-            (box.low, slice(half + nose, -edge), plan.low),
-            (np.pi * float(scale[1]) - box.high, slice(edge, half - nose + 1), plan.top),
+        for way, side, cells in zip(
+            _bands(hole, box),
+            (slice(half + nose, -edge), slice(edge, half - nose + 1)),
+            (plan.low, plan.top),
+            strict=True,
         ):  # the band there may be short
-            last[side] = np.minimum(last[side], way * (1.0 - 1.0 / WIDEST) / (1.0 - math.pow(WIDEST, -cells)))
+            shrinking = way * (1.0 - 1.0 / WIDEST) / (1.0 - math.pow(WIDEST, -cells))
+            last[side] = np.minimum(last[side], min(shrinking, way * plan.widest / cells))
         grown = smooth_arcs(lengths(plane, outer), (plan.first, None), plan.rows)
         last = _graded(np.minimum(last, _AHEAD * (grown[:, -1] - grown[:, -2])))
         ring, between = collar(plane, outer, plan.rows, plan.first, last, plan.straight)
@@ -162,7 +181,7 @@ class CollarLevel:
             step[edge + 1 : half - nose + 1], np.concatenate([step[:edge], step[-edge:]]),
         )  # fmt: skip
         outer_steps = tuple(float(np.median(part)) for part in parts)
-        return cls(plan, box, scale, hole.zeta, ring, between, outer_steps)  # type: ignore[arg-type]
+        return cls(plan, hole, box, ring, between, outer_steps)  # type: ignore[arg-type]
 
     @property
     def sine(self) -> float:
@@ -172,7 +191,7 @@ class CollarLevel:
     @property
     def sides(self) -> tuple[float, float]:
         """Least and largest s of the rectangle."""
-        unit = float(self.scale[0])
+        unit = float(self.hole.scale[0])
         return self.box.front / unit, self.box.back / unit
 
     @property
@@ -182,13 +201,14 @@ class CollarLevel:
         They lie between those of the collar and those of the bands above and below it.
         """
         behind, before = outer_cells(self.box, (self.plan.edge, self.plan.nose))
+        unit = float(self.hole.scale[0])
         ahead, aft = (math.sqrt(a * b) for a, b in ((self.last[0], before), (self.last[3], behind)))
-        return ahead / float(self.scale[0]), aft / float(self.scale[0])
+        return ahead / unit, aft / unit
 
     @property
     def bands(self) -> tuple[float, float]:
-        """Lengths in space from the rectangle to keel and crown."""
-        return self.box.low, np.pi * float(self.scale[1]) - self.box.high
+        """Lengths in space from the rectangle to keel and crown, or to the next wing's part."""
+        return _bands(self.hole, self.box)
 
     @cached_property
     def low_and_top(self) -> tuple[Floats, Floats]:
@@ -196,29 +216,47 @@ class CollarLevel:
         out = []
         for cells, way, step in zip((self.plan.low, self.plan.top), self.bands, self.last[1:3], strict=True):
             out.append(smooth_arcs(np.array([way]), (step, None), cells)[0])
-        rho = float(self.scale[1])
+        rho = float(self.hole.scale[1])
         low, top = (self.box.low - out[0][::-1]) / rho, (self.box.high + out[1]) / rho
         low[0], top[-1] = 0.0, np.pi
         return low, top
 
     @property
     def across(self) -> tuple[Floats, Floats]:
-        """Theta of the lines before and behind the rectangle, from keel to crown."""
-        outer, half, rho = self.ring[:, -1, 1], (len(self.ring) - 1) // 2, float(self.scale[1])
+        """Theta of the lines before and behind the rectangle, from its low to its high side or the crown."""
+        outer, half, rho = self.ring[:, -1, 1], (len(self.ring) - 1) // 2, float(self.hole.scale[1])
         edge, nose = self.plan.edge, self.plan.nose
-        low, top = self.low_and_top
         front = outer[half + nose : half - nose - 1 : -1] / rho
         back = np.concatenate([outer[2 * half - edge : 2 * half], outer[: edge + 1]]) / rho
-        ahead, behind = (np.concatenate([low, side[1:-1], top]) for side in (front, back))
-        return ahead, behind
+        if not self.hole.fin:
+            return front, back
+        front, back = front[: nose + 1], back[: edge + 1]
+        front[-1] = back[-1] = np.pi
+        return front, back
 
-    def patches(self) -> list[Floats]:
-        """Return the collar, and the patches above and below it (ni, nj, 2) of s and theta."""
-        ring, half = self.ring / self.scale, (len(self.ring) - 1) // 2
+    @property
+    def long_sides(self) -> tuple[Floats, Floats]:
+        """The s of nodes on the low and on the high side of the rectangle, from its back to its front."""
+        s, half = self.ring[:, -1, 0] / self.hole.scale[0], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
-        low, top = self.low_and_top
-        upper, lower = ring[edge : half - nose + 1, -1, 0], ring[half + nose : 2 * half - edge + 1, -1, 0]
-        return [ring, _lattice(upper, top), _lattice(lower, low)]
+        return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]
+
+    def collar(self) -> Floats:
+        """Return the collar (n, rows + 1, 2), of a fin the half up to the crown, from nose to edge."""
+        ring = self.ring / self.hole.scale
+        if not self.hole.fin:
+            return ring
+        ring = ring[(len(ring) - 1) // 2 :]
+        ring[[0, -1], :, 1] = np.pi
+        return ring
+
+
+def _bands(hole: Hole, box: Rectangle) -> tuple[float, float]:
+    """Return the lengths in space from the low and from the high side of a rectangle to the end in theta."""
+    bottom, top = (theta * float(hole.scale[1]) for theta in (hole.below, hole.within[1][1]))
+    if hole.fin:
+        top = box.high + box.low - bottom
+    return box.low - bottom, top - box.high
 
 
 def _graded(sizes: Floats) -> Floats:
@@ -229,13 +267,13 @@ def _graded(sizes: Floats) -> Floats:
     return sizes
 
 
-def _lattice(s: Floats, theta: Floats) -> Floats:
-    """Return nodes (m, n, 2) of s (m,) and theta (n,)."""
-    return np.stack(np.broadcast_arrays(s[:, None], theta[None]), axis=-1)
+def lines_between(along: Floats, before: Floats, after: Floats) -> Floats:
+    """Return nodes (n, m, k) at s `along` lines (n or 1, m) from places (n, k) to others, s being the first.
 
-
-def lines_between(s: Floats, before: Floats, after: Floats) -> Floats:
-    """Return nodes (n, m, 2) at s (m,) on lines whose theta goes from one (n,) smoothly to another."""
-    t = (s - s[0]) / (s[-1] - s[0])
-    across = before[:, None] + (after - before)[:, None] * (t * t * (3.0 - 2.0 * t))
-    return np.stack(np.broadcast_arrays(s, across), axis=-1)
+    What follows it changes smoothly from one to the other, on the part of the way that all lines share.
+    """
+    begin, end = float(along[:, 0].max()), float(along[:, -1].min())
+    t = np.clip((along - begin) / (end - begin), 0.0, 1.0)[..., None]
+    across = before[:, None, 1:] + (after - before)[:, None, 1:] * (t * t * (3.0 - 2.0 * t))
+    s = np.broadcast_to(along[..., None], (*across.shape[:2], 1))
+    return np.concatenate([s, across], axis=-1)

@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.aircraft.fin import Fin
 from meshonet.geometry.aircraft.surface_wing import SurfaceWing
 from meshonet.geometry.aircraft.wing_strips import on_line
 from meshonet.geometry.arrays import Floats
@@ -59,6 +60,26 @@ class SectionLoft:
     def line(self, number: int, z: Floats) -> Floats:
         """Return points (m, 3) on a line at heights z (m,)."""
         return self.stack.lofted(self.unit[:, number : number + 1], z)[:, 0]
+
+
+@dataclass(frozen=True, eq=False)
+class FinLoft(SectionLoft):
+    """Lines through the nodes `unit` (sections, n, 2) of half a fin, z >= 0, whose heights are y in space."""
+
+    remedy: str = "give a first section inside the body, with a smaller y, and a last one outside"
+
+    @classmethod
+    def of(cls, fin: Fin, unit: Floats) -> FinLoft:
+        """Return the lines from nose to trailing edge, given nodes (sections, n, 2) around sections."""
+        half = (unit.shape[1] - 1) // 2
+        upper, lower = unit[:, half::-1], unit[:, half:]
+        nodes = 0.5 * (upper + lower * [1.0, -1.0])
+        nodes[:, [0, -1], 1] = 0.0
+        return cls(fin, nodes)
+
+    def line(self, number: int, z: Floats) -> Floats:
+        """Return points (m, 3) on a line at heights (m,)."""
+        return np.ascontiguousarray(super().line(number, z)[:, [0, 2, 1]])
 
 
 @dataclass(frozen=True, eq=False)

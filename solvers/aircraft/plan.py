@@ -15,9 +15,9 @@ from meshonet.geometry.spacing.growth import cells_for_growth
 from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.body_plane import LevelPlan, planned
 from meshonet.solvers.aircraft.collar_level import Hole
-from meshonet.solvers.aircraft.holes import holes_of
+from meshonet.solvers.aircraft.holes import columns_of, grouped, holes_of, ordered
 from meshonet.solvers.aircraft.request import AircraftRequest
-from meshonet.solvers.aircraft.tip_fill import tip_patches
+from meshonet.solvers.aircraft.tip_fill import half_tip_patches, tip_patches
 from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.rows.span_lines import key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, spaced_cells
@@ -47,9 +47,9 @@ class AircraftPlan:
 
     Parameters
     ----------
-    wings : lines along the span of each wing, from nose to tail.
+    wings : lines along the span of each wing, from nose to tail, that of a fin after the wing below it.
     sections : of each wing, (SAMPLES, n, 3) s, theta and zeta around it on the key levels.
-    holes : of each wing, on the key levels.
+    holes : of each wing, on the key levels, column by column.
     levels : counts that levels share.
     tips : of each wing, nodes (m, k, 3) of the ring and of the core that fill its last section.
     span, beyond : cells from the body to the tips, and from there to the far field.
@@ -59,7 +59,7 @@ class AircraftPlan:
 
     wings: tuple[WingLines, ...]
     sections: tuple[Floats, ...]
-    holes: tuple[tuple[Hole, ...], ...]
+    holes: tuple[tuple[tuple[Hole, ...], ...], ...]
     levels: LevelPlan
     tips: tuple[tuple[Floats, Floats], ...]
     span: int
@@ -87,8 +87,10 @@ class AircraftPlan:
         if not request.allow_invalid:
             for wing, each in zip(wings, sections, strict=True):
                 _refuse_oblique(space, wing, each[0])
-        holes = holes_of(space, wings, sections)
-        known = [[each[k] for k in _PLANNED] for each in holes]
+        columns = columns_of(space, wings, sections)
+        wings, sections = ordered(columns, wings), ordered(columns, sections)
+        holes = holes_of(space, grouped(columns, wings), grouped(columns, sections))
+        known = [[[each[k] for k in _PLANNED] for each in column] for column in holes]
         levels = planned(known, aircraft.body.length, first, growth)
         for wing, each, made in zip(wings, sections, levels.collars, strict=True):
             if made.sine <= 0.0 and not request.allow_invalid:
@@ -96,7 +98,7 @@ class AircraftPlan:
         length = max(wing.length for wing in wings)
         span = spaced_cells(length, (first, first), growth, length / (request.surface.span - 1), 8)
         beyond = cells_for_growth(first, request.far_field * chord, growth)
-        tips = tuple(tip_patches(wing.points(np.ones((1, len(wing.roots))))[0], first) for wing in wings)
+        tips = tuple(_tip(wing, first) for wing in wings)
         halves = 1 if aircraft.half else 2
         return cls(tuple(wings), tuple(sections), tuple(holes), levels, tips, span, beyond, growth, halves)
 
@@ -108,11 +110,15 @@ class AircraftPlan:
     @property
     def cells(self) -> int:
         """About how many cells there will be."""
-        around, columns = self.sections[0].shape[1] - 1, 0
-        for each in self.levels.collars:
-            columns += around * each.rows + (around // 2 - each.edge - each.nose) * each.bands
-        for each, cells in zip(self.levels.collars, self.levels.between, strict=False):
-            columns += cells * (2 * each.edge + each.bands)
+        columns = sum(
+            (each.shape[1] - 1) * made.rows
+            for each, made in zip(self.sections, self.levels.collars, strict=True)
+        )
+        half = (self.sections[0].shape[1] - 1) // (1 if self.wings[0].fin else 2)
+        for column in self.levels.columns:
+            columns += (half - column.collars[0].edge - column.collars[0].nose) * column.bands
+        for each, cells in zip(self.levels.columns, self.levels.between, strict=False):
+            columns += cells * (each.beside[1] + each.bands)
         for end in self.levels.ends:
             columns += (len(end.theta) - 1) * (len(end.core.rows) - 1 + end.cells) + _cells(end.core.nodes)
         filled = sum(_cells(patch) for tip in self.tips for patch in tip)
@@ -165,7 +171,10 @@ def _refuse_oblique(space: BodyMap, wing: WingLines, root: Floats) -> None:
     along_s, along_theta = (
         _unit(space.points(root + np.eye(3)[axis] * way) - at) for axis, way in ((0, step), (1, _AHEAD))
     )
-    tangent = _unit(np.diff(at, axis=0, append=at[1:2]))
+    tangent = np.diff(at, axis=0, append=at[1:2])
+    if wing.fin:
+        tangent[-1] = tangent[-2]
+    tangent = _unit(tangent)
     turns = np.stack([(tangent * each).sum(axis=1) for each in (along_s, along_theta)], axis=1)
     outwards = _unit(turns[:, 1:] * along_s - turns[:, :1] * along_theta)
     span = _unit(wing.points(np.full((1, len(root)), _AHEAD))[0] - at)
@@ -200,6 +209,12 @@ def _refuse_acute(space: BodyMap, name: str, root: Floats) -> None:
         raise InputError(problem, "move it towards the axis, or make its root thinner", place="wings")
 
 
+def _tip(wing: WingLines, first: float) -> tuple[Floats, Floats]:
+    """Return the patches that fill the last section of a wing."""
+    filled = half_tip_patches if wing.fin else tip_patches
+    return filled(wing.points(np.ones((1, len(wing.roots))))[0], first)
+
+
 def _cells(patch: Floats) -> int:
     return (patch.shape[0] - 1) * (patch.shape[1] - 1)
 
@@ -208,4 +223,6 @@ def _on_keys(space: BodyMap, wing: WingLines) -> Floats:
     """Return s, theta and zeta (SAMPLES, n, 3) around a wing on the key levels."""
     sections = space.places(wing.points(key_heights(SAMPLES)[:, None] + np.zeros(len(wing.roots))))
     sections[0, :, 2] = 0.0
+    if wing.fin:
+        sections[:, [0, -1], 1] = np.pi
     return sections

@@ -35,6 +35,19 @@ def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
     return nodes, core
 
 
+def half_tip_patches(half: Floats, first: float) -> tuple[Floats, Floats]:
+    """Return half the patches inside the tip of a fin: that inside a `half` (n, 3) from nose to edge.
+
+    They are those of a wing, turned.
+    """
+    flat = half[:, [0, 2, 1]]
+    loop = np.concatenate([flat[::-1], flat[1:] * [1.0, -1.0, 1.0]])
+    ring, core = tip_patches(loop, first)
+    ring, core = ring[: len(half)][::-1, :, [0, 2, 1]], core[:, : core.shape[1] // 2 + 1, [0, 2, 1]]
+    ring[[0, -1], :, 2] = core[:, -1, 2] = 0.0
+    return ring, core
+
+
 def _arcs(lengths: Floats, first: float, last: Floats, rows: int) -> Floats:
     """Return arcs (n, rows + 1) on lines of `lengths` (n,), with cells of about `first` and `last` (n,).
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.elementary import exp
+from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.rows.columns import arcs_of
 
 _WAY = 0.6
@@ -44,7 +45,7 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
     return out
 
 
-def off_wing(points: Floats, ring: Indices, first: float) -> Floats:
+def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
     """Return points (k, p, 3), with lines of the collar `ring` (n, m) at right angles to the wing's span."""
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first
@@ -63,11 +64,12 @@ def off_wing(points: Floats, ring: Indices, first: float) -> Floats:
     moved[1, at] = _at(flat[0, at], moved[1, at], first)
     out = points.copy()
     out[:, ring] = np.moveaxis(moved.reshape(shape), 0, 2)
-    out[:, ring[-1]] = out[:, ring[0]]
+    if closed:
+        out[:, ring[-1]] = out[:, ring[0]]
     return out
 
 
-def off_tip(points: Floats, cap: Indices, ring: Indices) -> Floats:
+def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
     """Return points (k, p, 3) of lines beyond a tip, row k = 0, whose first cells on it are normal.
 
     `cap` (c,) are the columns that fill the last section, `ring` (n, m) those of its collar. Lines of the
@@ -78,8 +80,8 @@ def off_tip(points: Floats, cap: Indices, ring: Indices) -> Floats:
     columns = np.concatenate([cap, ring.ravel()])
     away = points[1, columns] - points[0, columns]
     first = norms(away)
-    turned = np.array([0.0, 0.0, 1.0]) - away / first[:, None]
-    chord = 0.5 * float(norms(np.diff(points[0, ring[:, 0]], axis=0)).sum())
+    turned = wing.axis - away / first[:, None]
+    chord = (1.0 if wing.fin else 0.5) * float(norms(np.diff(points[0, ring[:, 0]], axis=0)).sum())
     share = np.concatenate([np.ones(len(cap)), (fade * fade).ravel()])
     out = points.copy()
     out[:, columns] += (

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.aircraft.fin import Fin
 from meshonet.geometry.aircraft.surface_wing import SurfaceWing
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.sections.stack import Stack
-from meshonet.solvers.aircraft.lofts import Loft, SectionLoft, SurfaceLoft
+from meshonet.solvers.aircraft.lofts import FinLoft, Loft, SectionLoft, SurfaceLoft
 from meshonet.solvers.aircraft.root import root_heights
 from meshonet.solvers.rows.span_spacing import spaced_cells, two_sided
 from meshonet.solvers.stacking.section_nodes import GAP, Around, around, unit_nodes
@@ -53,12 +54,14 @@ class WingLines:
     name : of the wing.
     roots : (n,) heights z where they leave the body.
     notes : what was changed of the wing.
+    fin : whether its span is along y: lines are those of its half z >= 0, from nose to trailing edge.
     """
 
     loft: Loft
     name: str
     roots: Floats
     notes: tuple[str, ...]
+    fin: bool = False
 
     @classmethod
     def of(
@@ -75,9 +78,10 @@ class WingLines:
             notes = opened.notes
         else:
             loft, notes = _through_sections(wing, nodes, GAP if base is None else base)
-        roots = root_heights(loft, name, body)
-        roots[-1] = roots[0]
-        return cls(loft, name, roots, notes)
+        roots, fin = root_heights(loft, name, body), isinstance(wing, Fin)
+        if not fin:
+            roots[-1] = roots[0]
+        return cls(loft, name, roots, notes, fin)
 
     def points(self, parts: Floats) -> Floats:
         """Return points (k, n, 3) at parts (k, n) of the way along the lines, in z."""
@@ -91,6 +95,11 @@ class WingLines:
             root, second = self.points(parts[:2])
             parts[1] *= first / norms(second - root)
         return parts
+
+    @property
+    def axis(self) -> Floats:
+        """(3,) direction of the span, at right angles to the tip."""
+        return np.array([0.0, 1.0, 0.0] if self.fin else [0.0, 0.0, 1.0])
 
     @property
     def length(self) -> float:
@@ -107,4 +116,5 @@ def _through_sections(wing: Stack, nodes: int, base: float) -> tuple[Loft, tuple
     """Return lines through nodes around the sections of a wing, and notes."""
     plan = _around(nodes, base, wing.te_spacing, wing.le_spacing)
     units, notes = zip(*(unit_nodes(section, plan) for section in wing.sections), strict=True)
-    return SectionLoft(wing, np.stack(units)), (*wing.notes, *dict.fromkeys(filter(None, notes)))
+    loft = FinLoft.of(wing, np.stack(units)) if isinstance(wing, Fin) else SectionLoft(wing, np.stack(units))
+    return loft, (*wing.notes, *dict.fromkeys(filter(None, notes)))

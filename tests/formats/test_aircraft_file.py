@@ -7,7 +7,9 @@ import pytest
 
 from meshonet.formats.stack import stack_of
 from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.aircraft.fin import Fin
 from meshonet.geometry.aircraft.lofted_body import LoftedBody
+from meshonet.geometry.errors import InputError
 
 BODY = "[[bodies]]\nmeridian = [[0, 0], [1, 0.5], [4, 0.5], [6, 0]]\n"
 SECTIONS = "".join(
@@ -75,3 +77,40 @@ def test_further_wings_have_names_of_their_own(tmp_path: Path) -> None:
     assert [wing.name for wing in jet.wings] == ["wing", "tail"]
     named = read(tmp_path, BODY + WING.replace("on =", 'name = "left"\non ='))
     assert named.patches == (("left", "tip"),)
+
+
+FIN = '[[wings]]\nplane = "symmetry"\n' + "".join(
+    f'[[wings.sections]]\nairfoil = "naca:0010"\nchord = 1\ny = {y}\n{place}\n'
+    for y, place in ((0, "x = 4"), (2, "sweep = 45"))
+)
+
+
+def test_sections_of_a_fin_go_upwards(tmp_path: Path) -> None:
+    jet = read(tmp_path, BODY + WING + FIN)
+    (fin,) = jet.others
+    assert isinstance(fin, Fin)
+    assert jet.patches == (("wing", "tip"), ("fin", "fin-tip"))
+    assert fin.end == pytest.approx((6.0, 2.0, 0.0))
+
+
+def test_a_fin_may_be_the_file_of_a_wing(tmp_path: Path) -> None:
+    (tmp_path / "fin.toml").write_text(SECTIONS.replace("wings.sections", "sections").replace("2412", "0012"))
+    jet = read(tmp_path, BODY + WING + '[[wings]]\nname = "rudder"\nplane = "symmetry"\nfile = "fin.toml"\n')
+    assert isinstance(jet.others[0], Fin)
+    assert (jet.others[0].name, jet.others[0].end) == ("rudder", (2.0, 4.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("0010", "2410", "NACA 2410 is not symmetric"),
+        ("y = 2", "y = -2", "-2 is not above 0; give sections upwards"),
+        ("y = 2", "z = 2", "z"),
+        ("symmetry", "vertical", "plane"),
+        ('plane = "symmetry"', 'plane = "symmetry"\non = "tail"', "tail is no body"),
+        ('plane = "symmetry"', 'plane = "symmetry"\non = "fin"', "a wing on the fin, as in a T-tail"),
+    ],
+)
+def test_fins_that_cannot_be_made_are_refused(tmp_path: Path, old: str, new: str, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        read(tmp_path, BODY + WING + FIN.replace(old, new))

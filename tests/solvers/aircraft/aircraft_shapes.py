@@ -4,6 +4,7 @@ import numpy as np
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.aircraft.fin import Fin
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.sections.section import Section
@@ -32,6 +33,13 @@ def tail(x: float = 8.2, y: float = 0.3, span: float = 1.9, name: str = "tail") 
     """A tail plane of the body, whose root begins at `x`, with a tip at z = `span`."""
     root = Section(naca("0010"), 0.9, 0.0, x=x, y=y)
     return Stack((root, Section(naca("0010"), 0.5, span, x=x + 0.8, y=y + 0.1)), tip="flat", name=name)
+
+
+def fin(x: float = 8.0, chord: float = 1.2, sweep: float = 35.0, height: float = 2.2) -> Fin:
+    """A fin of the body, whose root begins at `x`, with a tip of half its chord at y = `height`."""
+    root = Section(naca("0010"), chord, 0.1, x=x)
+    behind = (height - 0.1) * float(np.tan(np.radians(sweep)))
+    return Fin((root, Section(naca("0010"), 0.5 * chord, height, x=x + behind)), tip="flat", name="fin")
 
 
 def wall(grid: Grid, name: str) -> list[tuple[Floats, Floats]]:
