@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, extent_of, norms
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.quality.blocks import BlockFigures, block_figures
@@ -18,7 +18,7 @@ from meshonet.geometry.quality.walls import WallRow, wall_rows
 from meshonet.geometry.summary import Quality
 
 _SAME = 1e-9
-"""Part of its extent by which the ends of a closed line may be apart."""
+"""Part of a length within rounding: of its extent by which the ends of a closed line may be apart."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,14 +99,19 @@ class Figures:
             return None
         wall = np.concatenate([_points(grid, patch) for patch in self.walls])
         beyond = grid.nodes[:, -1] if grid.around_body else np.concatenate(far)
-        middle = 0.5 * (wall.min(axis=0) + wall.max(axis=0))
-        chord = max(self._chords(), default=0.0) or _longest(wall[:, None])
-        return Figure(float(norms(beyond - middle).min()) / chord)
+        low, high = wall.min(axis=0), wall.max(axis=0)
+        middles, chord = [0.5 * (low + high)], extent_of(wall)
+        if grid.form == "volume":
+            chord = max(self._chords(), default=0.0) or _longest(wall[:, None])
+        elif wall.shape[1] == 2:
+            middles.append(np.clip(_centre(beyond), low, high))
+            if grid.around_body:  # a chord ends in the middle of a base, where the lines around a body begin
+                chord = min(chord, float(norms(wall - wall[0]).max()))
+        distance = max(float(norms(beyond - middle).min()) for middle in middles)
+        return Figure((1.0 + _SAME) * distance / chord)
 
     def _chords(self) -> list[float]:
         """Return the longest extents of closed lines on walls of a volume, which go around sections."""
-        if self.grid.form != "volume":
-            return []
         walls = [self.grid.at(patch) for patch in self.walls]
         lines = [each for wall in walls for each in (wall, wall.swapaxes(0, 1)) if _closed(each)]
         return [_longest(each) for each in lines]
@@ -114,6 +119,20 @@ class Figures:
 
 def _figure(extreme: Extreme | None) -> Figure | None:
     return None if extreme is None else Figure(extreme.max, extreme.at, extreme.along)
+
+
+def _centre(ring: Floats) -> Floats:
+    """Return the centre (2,) of the circle through points (n, 2), if they are on one, with least squares."""
+    middle = ring.mean(axis=0)
+    size = float(np.abs(ring - middle).max())
+    x, y = (ring - middle).T / size
+    square = x * x + y * y
+    a, b, c = float((x * x).sum()), float((x * y).sum()), float((y * y).sum())
+    p, q = 0.5 * float((square * x).sum()), 0.5 * float((square * y).sum())
+    det = a * c - b * b
+    if not det > 0.0:
+        return middle
+    return np.asarray(middle + size * np.array([c * p - b * q, a * q - b * p]) / det)
 
 
 def _closed(lines: Floats) -> bool:

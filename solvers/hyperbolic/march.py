@@ -242,15 +242,16 @@ def _marched(
         reached = front.reach(levels)
         if not math.isfinite(reached):
             return None, steps
+        alike, near = True, NEAREST <= reached / front.outer <= FARTHEST
         if front.concave and widening is not None:
             # were nodes moved afterwards, only the lines from the corner would, past their neighbours
             wrong = norms((levels[:, 1] - levels[:, 0]).T) / front.heights(first)
             widening = widening / wrong
-            if float(np.abs(wrong - 1.0).max()) > ALIKE:
-                continue
-        if NEAREST <= reached / front.outer <= FARTHEST:
+            alike = float(np.abs(wrong - 1.0).max()) <= ALIKE
+        if alike and near:
             break
-        distance *= (0.75 * NEAREST + 0.25 * FARTHEST) * front.outer / reached
+        if not near:
+            distance *= (0.75 * NEAREST + 0.25 * FARTHEST) * front.outer / reached
     nodes = front.nodes(levels)
     _snap(nodes, front.heights(first), steps)
     _equalise(nodes, min(constant, cells - 1), front.heights(1.0))

@@ -75,3 +75,36 @@ def test_quads_have_walls_where_they_are_named(meshonet: Meshonet, duct_h5: Path
     named = [type(part)("lower wall" if part.name == "south" else part.name, part.side, part.start, part.stop)
              for part in grid.patches]  # fmt: skip
     assert [part.name for part in grid.from_nodes(grid.nodes, patches=tuple(named)).walls()] == ["lower wall"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "naca:2412 --res 120x60",
+        "naca:0012 --res 120x60",
+        "naca:2412 --topology c --res 160x60",
+        "naca:2412 --topology c --te exact --first-cell 1e-4 --res 301x60",
+        "{flatback} --topology o --first-cell 1e-4 --res 201x60",
+        "{flatback} --topology c --first-cell 1e-4 --res 301x80",
+        "{square} --topology o --res 81x60",
+        "{square} --topology o --first-cell 1e-3 --res 81x60",
+        "naca:0012 --cells 1500",
+    ],
+)
+def test_a_far_field_passes_the_gate_of_its_own_distance(meshonet: Meshonet, words: str) -> None:
+    x = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, 41)))
+    half = 0.25 * np.sqrt(x) * (1.6 - 1.1 * x)
+    upper, lower = np.stack([x, half], axis=1), np.stack([x, -half], axis=1)
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    np.savetxt("flatback.dat", np.concatenate([upper[::-1], lower[1:]]), header="flatback", comments="")
+    np.savetxt("square.csv", square)
+    words = words.format(flatback="flatback.dat", square="square.csv")
+    gate = ("--far-field", "50", "--fail-on", "far_field<50", "-o", "g.h5")
+    done = meshonet("infer", *words.split(), *gate)
+    assert done.code == 0, done.err
+    (value,) = (
+        check["value"]
+        for check in meshonet("quality", "g.h5", "--profile", "viscous", "--json").only["profile"]["checks"]
+        if check["figure"] == "far_field"
+    )
+    assert value < 53.0
