@@ -42,7 +42,7 @@ def _grids(
 def reported(
     member: Item[Any], result: Result, criteria: Criteria, *, detailed: bool = True
 ) -> tuple[Grid, Report]:
-    """Return the grid of `member` with the command in its provenance, and its report, judged by `criteria`.
+    """Return the grid of `member`, the command and the verdict in its provenance, and its report.
 
     A `detailed` report has angles and growth of grid lines in multi-block grids, which only JSON shows.
 
@@ -57,6 +57,7 @@ def reported(
         confidence=solution.confidence, dimensions=solution.dimensions,
     )  # fmt: skip
     report.seconds |= result.seconds
+    facts = provenance()
     with stage("quality", report.seconds):
         if grid.topology == "blocks":
             from meshonet.geometry.quality.blocks import block_counts, block_figures
@@ -65,8 +66,9 @@ def reported(
                 block_figures(grid, result.quality, result.lines) if detailed else block_counts(grid)
             )
         if criteria:
-            report.judgement = criteria.judge(grid, result.quality)
-    return grid.with_provenance(**provenance()), report
+            report.judgement = judgement = criteria.judge(grid, result.quality)
+            facts |= {"verdict": judgement.verdict, "limits_exceeded": ", ".join(judgement.beyond)}
+    return grid.with_provenance(**facts), report
 
 
 def write_grids(

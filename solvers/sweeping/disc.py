@@ -92,9 +92,12 @@ class Disc:
         if self.cells is None or self.side > AROUND // 4 or self.count(self.side) <= 1.1 * self.cells:
             return ""
         fewer = replace(self, around=_FEWER, cells=None)
+        angle = 2.0 * math.pi / _FEWER
+        equal = self.radius * math.sqrt(angle / math.sin(angle))
         return (
             f"a circle has {self.count(self.side)} cells or more instead of {self.cells}: {AROUND} around "
-            f"keep its area within 0.1 %; {{around}} {_FEWER} makes {fewer.count(fewer.side)}, 0.4 % off"
+            f"keep its area within 0.1 %; {{around}} {_FEWER} makes {fewer.count(fewer.side)}, 0.4 % off, "
+            f"or not in a circle of radius {equal:.10g}"
         )
 
 

@@ -188,3 +188,19 @@ def test_a_layout_outside_layers_along_walls_is_taken_for_a_duct_like_it(meshone
     done = meshonet("infer", "duct.geojson", "--layout", "l.json", *words, "--refine", 1, "-o", "g.h5")
     assert done.code == 0, done.err
     assert all((n - 1) % 2 == 0 for block in grid_of("g.h5").blocks for n in block.nodes.shape[:2])
+
+
+def test_counts_with_which_cells_stay_folded_are_named(meshonet: Meshonet) -> None:
+    """An ellipse in a channel, whose layers need more cells around it than are given along its sides."""
+    t = np.linspace(0.0, 2.0 * np.pi, 101)
+    ellipse = np.stack([0.5 * np.cos(t), 0.2 * np.sin(t)], axis=1)
+    ellipse[-1] = ellipse[0]
+    channel = [[-2, -1], [4, -1], [4, 1], [-2, 1], [-2, -1]]
+    properties = {"names": [["floor", "outlet", "ceiling", "inlet"], "body"]}
+    geometry = {"type": "Polygon", "coordinates": [channel, ellipse.tolist()]}
+    text = json.dumps({"type": "Feature", "properties": properties, "geometry": geometry})
+    Path("channel.geojson").write_text(text)
+    counts = "body=48,inlet=24,floor=60"
+    done = meshonet("infer", "channel.geojson", "--first-cell", "5e-3", "--count", counts, "-o", "g.h5")
+    assert done.code == 3
+    assert "leave --count body=48, inlet=24, floor=60 out, or give numbers nearer to" in done.err

@@ -181,7 +181,11 @@ def _optimised(
         iterations *= UNFOLDING
     optimum = optimise(mesh, iterations=iterations, targets=targets, aspects=mesh.aspects(targets), held=held)
     if not optimum.valid:
-        raise NoValidGridError("cells outside the layers stay folded")
+        remedy = "use more {cells} or a lower first cell"
+        if walls.domain.counts:
+            given = ", ".join(f"{name}={count}" for name, count in walls.domain.counts.items())
+            remedy = f"leave {{count}} {given} out, or give numbers nearer to those of the grid without them"
+        raise NoValidGridError(f"cells outside the layers stay folded; {remedy}")
     return walls.symmetric(replace(layout, mesh=optimum.mesh))
 
 

@@ -66,6 +66,8 @@ def test_lines_leave_the_wall_at_right_angles():
 def test_more_cells_than_were_asked_for_have_a_note():
     assert Disc(RADIUS, 200).note.startswith("a circle has 1012 cells or more instead of 200: 88 around")
     assert not Disc(RADIUS, 2000).note
+    radius = float(Disc(RADIUS, 200).note.rpartition(" ")[2])
+    assert area(butterfly(Disc(radius, around=40))) == pytest.approx(np.pi * RADIUS**2, rel=1e-9)
     assert not Disc(RADIUS, around=24).note
 
 
