@@ -26,7 +26,7 @@ from meshonet.solvers.blocking.decomposition.collapse.score import PRICE, score
 from meshonet.solvers.blocking.decomposition.errors import BlockingError, most_folded
 from meshonet.solvers.blocking.decomposition.field.seamless_map import seamless_map
 from meshonet.solvers.blocking.decomposition.periodic_counts import check_sides, lacking_side
-from meshonet.solvers.blocking.decomposition.quads.corner_rows import corner_row
+from meshonet.solvers.blocking.decomposition.quads.inner_rows import corner_row
 from meshonet.solvers.blocking.decomposition.quads.padding import (
     Span,
     loops_to_pad,

@@ -16,6 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, Indices, distinct
+from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.periodic_sides import following
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 
@@ -119,11 +120,16 @@ def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
         ends = (int(line[0]), previous, begin), (last, after[last], end)
         moved.cells[new[[0, -1]]] = 1
     for node, beyond, arc in ends:
-        way = places.arc[beyond] - arc
-        way -= loop.length * np.round(way / loop.length)
-        moved.loop[node], moved.arc[node] = number, np.mod(arc + INSET * way, loop.length)
+        moved.loop[node], moved.arc[node] = number, towards(loop, arc, places.arc[beyond])
         nodes[node] = loop.at(moved.arc[node : node + 1])[0]
     return QuadMesh(mesh.domain, nodes, np.concatenate([mesh.quads, row]), moved)
+
+
+def towards(loop: Loop, arc: float, beyond: float) -> float:
+    """Return the arc length that is `INSET` of the shorter way from one arc length of a loop to another."""
+    way = beyond - arc
+    way -= loop.length * np.round(way / loop.length)
+    return float(np.mod(arc + INSET * way, loop.length))
 
 
 def _moved(places: Places, along: Indices) -> Places:
