@@ -12,8 +12,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.decomposition.errors import most_folded
-from meshonet.solvers.blocking.decomposition.named_counts import sums_of, with_counts
-from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides
+from meshonet.solvers.blocking.decomposition.side_counts import suited, sums_of
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric, node_images
 from meshonet.solvers.blocking.request import CELLS
 from meshonet.solvers.blocking.sizes.chords import Chords
@@ -99,7 +98,7 @@ def fine_layout(
         times = 2 ** (halvings + halved - own)
         if layout.mesh.domain.counts:
             chords, times = chords.of_refined(fine), 2**halved
-            exact = with_counts(chords, chords.counts * 2**halvings, chords.least)
+            exact = suited(chords, chords.counts * 2**halvings, chords.least)
             fine = refine(fine, exact, chords)
         fine = multiplied(fine, times) if times > 1 else fine
         return replace(fine, mesh=with_tied_sides(made_symmetric(fine.mesh)))
@@ -115,7 +114,7 @@ def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, h
     for _ in range(RECOUNTS):
         few = max(int(cells), 1)
         counts = chords.counts_for_size(size, least) if size else chords.counts_for_cells(few, least)
-        counts = with_counts(chords, counts_along_sides(chords, counts, least), least, finer=2**halvings)
+        counts = suited(chords, counts, least, finer=2**halvings)
         if size or not chords.layout.mesh.domain.counts:
             break
         cells *= wanted / chords.cells(counts)

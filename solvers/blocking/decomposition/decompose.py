@@ -25,7 +25,6 @@ from meshonet.solvers.blocking.decomposition.collapse.collapse import simplify
 from meshonet.solvers.blocking.decomposition.collapse.score import PRICE, score
 from meshonet.solvers.blocking.decomposition.errors import BlockingError, most_folded
 from meshonet.solvers.blocking.decomposition.field.seamless_map import seamless_map
-from meshonet.solvers.blocking.decomposition.periodic_counts import check_sides, lacking_side
 from meshonet.solvers.blocking.decomposition.quads.inner_rows import corner_row
 from meshonet.solvers.blocking.decomposition.quads.padding import (
     Span,
@@ -35,6 +34,7 @@ from meshonet.solvers.blocking.decomposition.quads.padding import (
     spans_to_pad,
 )
 from meshonet.solvers.blocking.decomposition.quads.quad_mesh import quad_mesh
+from meshonet.solvers.blocking.decomposition.side_counts import check_sides, lacking_side
 from meshonet.solvers.blocking.decomposition.symmetry.symmetric import symmetric_blocks
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise

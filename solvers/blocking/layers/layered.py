@@ -24,8 +24,7 @@ from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.solvers.blocking.decomposition.named_counts import with_counts
-from meshonet.solvers.blocking.decomposition.periodic_counts import alike_along_sides
+from meshonet.solvers.blocking.decomposition.side_counts import alike_along_sides, suited
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric, node_images
 from meshonet.solvers.blocking.layers.attach import attach
 from meshonet.solvers.blocking.layers.even_line import evened_loops
@@ -146,11 +145,11 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
         cut = max((n for n, loop in zip(layers, rows.loops, strict=True) if loop == 0), default=0)
         for number, loop in enumerate(rows.loops):  # walls that periodic sides cut have the same at both
             cells[row == number] = cut if loop == 0 and walls.domain.periodic else layers[number]
-        fixed = {int(chord): int(cells[chord]) for chord in np.flatnonzero(row >= 0)}
-        cells = with_counts(chords, cells, chords.least, multiple=walls.settings.multiple, fixed=fixed)
         if not alike_along_sides(chords, cells):
             problem = "layers end at one of two periodic sides and not at the other"
             raise InputError(problem, "name the walls at both", parameter="walls")
+        fixed = {int(chord): int(cells[chord]) for chord in np.flatnonzero(row >= 0)}
+        cells = suited(chords, cells, chords.least, multiple=walls.settings.multiple, fixed=fixed)
         fine = _tied(walls.symmetric(refine(coarse, cells, chords)))
         fine = walls.symmetric(unfolded(fine, np.isin(fine.mesh.places.loop, list(walls.measures))))
         moved = walls.symmetric(evened_loops(fine, walls.measures, EVEN, most=FEW_STEPS))

@@ -15,8 +15,7 @@ from meshonet.geometry.domain.gap import wall_points
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.kernels._native import nearest_points
-from meshonet.solvers.blocking.decomposition.named_counts import nearer
-from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides
+from meshonet.solvers.blocking.decomposition.side_counts import nearer, suited
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
 from meshonet.solvers.blocking.layers.even_line import Measures
@@ -267,5 +266,5 @@ def wanted_counts(
     least = -(-chords.least // chords.multiple)
     coarse = chords.multiple * np.maximum(least, np.round(counts / around).astype(np.intp))
     fixed = {int(chord): ROWS for chord in np.flatnonzero(~inner)}
-    coarse = counts_along_sides(chords, np.where(inner, coarse, ROWS), chords.least, fixed)
+    coarse = suited(chords, np.where(inner, coarse, ROWS), chords.least, fixed=fixed, given=False)
     return Counts(coarse, stride, times, scale, metric)

@@ -21,7 +21,7 @@ from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseCo
 from meshonet.solvers.blocking.decomposition.collapse.contract import contract
 from meshonet.solvers.blocking.decomposition.collapse.score import score
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
-from meshonet.solvers.blocking.decomposition.periodic_counts import check_sides
+from meshonet.solvers.blocking.decomposition.side_counts import check_sides
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
 
