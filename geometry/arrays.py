@@ -46,6 +46,11 @@ def norms(vectors: Floats) -> Floats:
     return np.sqrt((vectors**2).sum(axis=-1))
 
 
+def turned_left(vectors: Floats) -> Floats:
+    """Return vectors (..., 2) turned by a right angle to the left."""
+    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
+
+
 def extent_of(points: Floats) -> float:
     """Return the longest extent of `points` (n, d) along an axis."""
     return float(np.ptp(points, axis=0).max())
@@ -95,14 +100,16 @@ def wrapped(parts: Floats, least: float = -0.5) -> Floats:
 
 
 def arc_lengths(line: Floats) -> Floats:
-    """Return the arc lengths (n,), from 0, at the nodes of a `line` (n, d)."""
-    return np.append(0.0, np.cumsum(norms(np.diff(line, axis=0))))
+    """Return the arc lengths (..., n), from 0, at the nodes of lines (..., n, d)."""
+    arcs = np.zeros(line.shape[:-1])
+    np.cumsum(norms(np.diff(line, axis=-2)), axis=-1, out=arcs[..., 1:])
+    return arcs
 
 
 def arc_parts(line: Floats) -> Floats:
-    """Return the arc lengths (n,) at the nodes of a `line` (n, d), over its length."""
+    """Return the arc lengths (..., n) at the nodes of lines (..., n, d), over their lengths."""
     arcs = arc_lengths(line)
-    return np.asarray(arcs / arcs[-1])
+    return np.asarray(arcs / arcs[..., -1:])
 
 
 def running_sums(values: Floats, count: int) -> Floats:

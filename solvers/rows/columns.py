@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, norms
+from meshonet.geometry.arrays import Floats, Indices, arc_parts, norms
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.layers.attach import sampled
-from meshonet.solvers.blocking.layers.layer_rows import arc_shares
 
 _NEWTON = 12
 _STRAIGHT, _MARCHED = 0.5, 1.5
@@ -34,7 +33,7 @@ def straight_near(lines: Floats, away: Floats) -> Floats:
     thickness = norms(np.diff(lines, axis=1)).sum(axis=1).max()
     t = np.clip((_MARCHED - away / thickness) / (_MARCHED - _STRAIGHT), 0.0, 1.0)
     part = t * t * (3.0 - 2.0 * t)
-    straight = lines[:, :1] + arc_shares(lines)[..., None] * (lines[:, -1:] - lines[:, :1])
+    straight = lines[:, :1] + arc_parts(lines)[..., None] * (lines[:, -1:] - lines[:, :1])
     return np.asarray(lines + part[:, None, None] * (straight - lines))
 
 

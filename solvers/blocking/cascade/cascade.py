@@ -18,14 +18,10 @@ from meshonet.geometry.reach import MOST_CELLS, check_reach
 from meshonet.geometry.shapes.assembly import far_loop
 from meshonet.solvers.blocking.cascade.passage import NEAR, Passage
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
-from meshonet.solvers.blocking.layers.rings import Ring, march_ring
+from meshonet.solvers.blocking.layers.rings import COLUMNS, THICKNESS, Ring, march_ring
 from meshonet.solvers.blocking.request import CELLS
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 
-THICKNESS, COLUMNS = 0.018, 140
-"""Thickness of the layers and number of cells around the blade; the thickness is relative to its
-perimeter.
-"""
 PLAIN_ROWS, PLAIN_GROWTH = 6.0, 1.1
 """Number of rows within this thickness and their growth ratio, if no first-cell height is given."""
 GAP_PART = 0.25

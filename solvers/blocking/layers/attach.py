@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.arrays import Floats, Indices, arc_lengths
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
@@ -96,9 +96,7 @@ def beside(blocks: Sequence[Indices], position: Indices, count: int) -> list[Ind
 
 def spaced(lines: Floats, law: Callable[[Floats], Floats]) -> Floats:
     """Return lines (k, m, 2) with new nodes (k, n, 2) at arc lengths that `law` gives for their lengths."""
-    step = np.diff(lines, axis=1)
-    length = np.hypot(step[..., 0], step[..., 1])
-    arc = np.concatenate([np.zeros((len(lines), 1)), np.cumsum(length, axis=1)], axis=1)
+    arc = arc_lengths(lines)
     wanted = law(arc[:, -1])
     return sampled(lines, arc, np.minimum(wanted, arc[:, -1:]))
 

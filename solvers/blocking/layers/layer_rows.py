@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, running_sums
+from meshonet.geometry.arrays import Floats, arc_parts, norms, running_sums, turned_left
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
@@ -89,7 +89,8 @@ def ring_metric(ring: Ring, settings: LayerSettings, factors: Floats | float = 1
     tangent = step + np.roll(step, 1, axis=0)
     rows = settings.rows(float((ring.thickness / factors).max()))
     across = last_layers(ring.thickness, rows, settings, settings.first * factors)
-    return SizeMetric(points, _normals(tangent), across, along, np.inf)
+    normals = turned_left(tangent / norms(tangent)[:, None])
+    return SizeMetric(points, normals, across, along, np.inf)
 
 
 def last_layers(
@@ -99,12 +100,6 @@ def last_layers(
     none = np.full_like(thickness, np.inf)
     arcs = layer_arcs(thickness, settings.first if first is None else first, none, rows, settings.constant)
     return np.asarray(JOIN * (arcs[:, -1] - arcs[:, -2]))
-
-
-def _normals(tangents: Floats) -> Floats:
-    """Return unit normals (n, 2) to the left of tangents (n, 2)."""
-    unit = tangents / np.hypot(*tangents.T)[:, None]
-    return np.stack([-unit[:, 1], unit[:, 0]], axis=1)
 
 
 def ring_rows(
@@ -129,7 +124,7 @@ def layer_lines(
 
     `inner` (k,) are the heights of the cells beyond, `first` (k,) those of the first ones.
     """
-    columns = columns + arc_shares(columns)[..., None] * (ends - columns[:, -1])[:, None]
+    columns = columns + arc_parts(columns)[..., None] * (ends - columns[:, -1])[:, None]
 
     def law(length: Floats) -> Floats:
         return layer_arcs(length, first, inner / JOIN, rows, settings.constant, settings.growth)
@@ -159,13 +154,6 @@ def _smooth(values: Floats, window: int = _WINDOW) -> Floats:
     """Return the geometric running mean (n,) of values around a closed curve."""
     around = np.arange(-window, len(values) + window) % len(values)
     return exp(running_sums(log(values)[around], 2 * window + 1) / (2 * window + 1))
-
-
-def arc_shares(lines: Floats) -> Floats:
-    """Return the relative arc lengths (k, m), 0 to 1, of the nodes of lines (k, m, 2)."""
-    length = np.hypot(*np.diff(lines, axis=1).transpose(2, 0, 1))
-    total = np.cumsum(length, axis=1)
-    return np.concatenate([np.zeros((len(lines), 1)), total / total[:, -1:]], axis=1)
 
 
 def exact(lines: Floats, first: float | Floats) -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, Indices, percentiles_of
+from meshonet.geometry.arrays import Bools, Floats, Indices, norms, percentiles_of
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import exp, log, power
 from meshonet.geometry.layout.layout import Layout
@@ -17,7 +17,6 @@ from meshonet.solvers.algebraic.tfi import interpolate, parameters
 from meshonet.solvers.blocking.layers.attach import spaced
 from meshonet.solvers.blocking.layers.layer_law import layer_arcs
 from meshonet.solvers.blocking.layers.layer_rows import JOIN, LayerSettings, exact
-from meshonet.solvers.blocking.layers.rings import line_lengths
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
 from meshonet.solvers.blocking.sizes.on_loops import on_loops
 
@@ -53,7 +52,7 @@ def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings)
         ]
     )
     first, extra = settings.first, settings.constant - 1
-    room = line_lengths(layout.mesh.nodes[columns]) / first
+    room = norms(np.diff(layout.mesh.nodes[columns], axis=1)).sum(axis=1) / first
     on = layout.mesh.places.loop[columns[:, 0]] == rows.loops[row]  # a wake has as many
     rise = math.log(settings.growth)
     if (layout.mesh.domain.loops[rows.loops[row]].corner_cells == 1).any():
@@ -163,11 +162,11 @@ def _lines(columns: Floats, beyond: Floats, opened: Floats, settings: LayerSetti
             settings.growth,
         )  # fmt: skip
         if short.any():
-            arcs[short] = _shrinking(length[short], first, rows)
+            arcs[short] = _by_one_ratio(length[short], np.full(int(short.sum()), first), rows)
         wide = opened > 0.0
         if wide.any():
             last = np.minimum(beyond[wide] / JOIN, (1.0 - 1.0 / settings.growth) * length[wide])
-            even = np.diff(_growing_back(length[wide], last, rows), axis=1)
+            even = np.diff(_by_one_ratio(length[wide], last, rows), axis=1)[:, ::-1]
             steps = log(np.diff(arcs[wide], axis=1))
             steps = exp(steps + opened[wide, None] * (log(even) - steps))
             places = np.cumsum(steps, axis=1)
@@ -182,21 +181,9 @@ def _lines(columns: Floats, beyond: Floats, opened: Floats, settings: LayerSetti
     return lines
 
 
-def _growing_back(length: Floats, last: Floats, rows: int) -> Floats:
-    """Return places (k, rows + 1) of cells that fill a `length` (k,), at one ratio up to the `last` (k,)."""
-    low, high = np.full(len(length), 0.5), np.full(len(length), 3.0)
-    powers = np.arange(rows - 1.0, -1.0, -1.0)
-    for _ in range(_STEPS):
-        ratio = 0.5 * (low + high)
-        more = last * power(ratio[:, None], -powers).sum(axis=1) > length
-        low, high = np.where(more, ratio, low), np.where(more, high, ratio)
-    arcs = np.cumsum(power(ratio[:, None], -powers), axis=1)
-    return np.pad(length[:, None] * arcs / arcs[:, -1:], ((0, 0), (1, 0)))
-
-
-def _shrinking(length: Floats, first: float, rows: int) -> Floats:
-    """Return places (k, rows + 1) up to a `length` (k,) of cells that shrink from the first one on."""
-    low, high = np.zeros(len(length)), np.ones(len(length))
+def _by_one_ratio(length: Floats, first: Floats, rows: int) -> Floats:
+    """Return places (k, rows + 1) up to a `length` (k,) of cells from the `first` (k,) on, at one ratio."""
+    low, high = np.zeros(len(length)), np.full(len(length), 2.0)
     powers = np.arange(float(rows))
     for _ in range(_STEPS):
         ratio = 0.5 * (low + high)

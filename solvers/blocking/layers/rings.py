@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.arrays import Floats, Indices, arc_parts, norms
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
@@ -31,6 +31,10 @@ from meshonet.solvers.hyperbolic.settings import ATTEMPTS
 
 FILLED = 0.85
 """Largest part of a gap that the rings of both walls fill; without sharp edges they fill twice `GAP_PART`."""
+THICKNESS, COLUMNS = 0.018, 140
+"""Thickness of layers where there is room, in lengths of their loop, and cells around a loop, if all were as
+long as the longest.
+"""
 _SAMPLES = 2000  # points of a wall from which distances are measured
 
 
@@ -56,7 +60,7 @@ class Ring:
     @property
     def thickness(self) -> Floats:
         """(n,) lengths of the columns."""
-        return line_lengths(self.levels)
+        return np.asarray(norms(np.diff(self.levels, axis=1)).sum(axis=1))
 
     def columns(self, places: Floats) -> tuple[Floats, Floats]:
         """Return the lines (k, m, 2) to arc lengths `places` (k,) of the front, and wall arc lengths (k,).
@@ -242,14 +246,6 @@ def started(lines: Floats, begin: Floats) -> Floats:
 
     The displacement decreases to 0 at the ends.
     """
-    step = np.diff(lines, axis=1)
-    height = np.cumsum(np.hypot(step[..., 0], step[..., 1]), axis=1)
-    left = 1.0 - np.pad(height / height[:, -1:], ((0, 0), (1, 0)))
-    moved = lines + left[..., None] * (begin - lines[:, 0])[:, None]
+    moved = lines + (1.0 - arc_parts(lines))[..., None] * (begin - lines[:, 0])[:, None]
     moved[:, 0] = begin
     return np.asarray(moved)
-
-
-def line_lengths(lines: Floats) -> Floats:
-    """Return the lengths (k,) of lines (k, m, 2)."""
-    return np.asarray(np.hypot(*np.diff(lines, axis=1).transpose(2, 0, 1)).sum(axis=1))

@@ -7,20 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.arrays import Floats, distinct, turned_left
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import gaps_in_front, wall_points
 from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
 from meshonet.solvers.blocking.layers.layer_rows import JOIN, LayerSettings, last_layers
 from meshonet.solvers.blocking.layers.marched import GAP_PART, SLOPE, check_room
-from meshonet.solvers.blocking.layers.rings import place
+from meshonet.solvers.blocking.layers.rings import COLUMNS, place
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.sizes.size_metric import GRADING, SizeMetric
-from meshonet.solvers.blocking.sizes.wall_turning import wall_bend
+from meshonet.solvers.blocking.sizes.wall_turning import SAMPLES, sizes_by_bend
 
-COLUMNS = 140.0
-"""Number of cells along a loop if all were as long as the longest."""
 TURN = np.radians(3.5)
 """Largest angle by which a wall turns along one cell, for the default number of cells."""
 CELLS_IN_GAP = 15.0  # cells along a wall are so many times shorter than the gap in front
@@ -36,7 +34,6 @@ AROUND_CORNER = 2.5
 """Ratio of arc length to straight distance below which the same wall counts as around a corner, not as a
 gap.
 """
-_SAMPLES, _WINDOW = 400, 3  # points around a loop, and those on either side over which its bend is averaged
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,9 +63,8 @@ class RowSizes:
     ) -> RowSizes:
         """Return the sizes along stretches of a loop of a domain; without any, along the whole loop."""
         loop = domain.loops[number]
-        arcs = distinct(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
+        arcs, length = sizes_by_bend(loop, loop.length / COLUMNS, TURN)
         gap = _gaps(domain, number, arcs)
-        length = np.minimum(loop.length / COLUMNS, TURN / np.maximum(wall_bend(loop, arcs, _WINDOW), 1e-300))
         length = graded(np.minimum(length, gap / CELLS_IN_GAP), arcs, loop.length, ALONG)
         on = np.full(len(arcs), not stretches)
         first = np.full(len(arcs), settings.first if stretches else settings.at(loop.names).first)
@@ -110,8 +106,7 @@ class RowSizes:
     def metric(self, scale: float, settings: LayerSettings) -> SizeMetric:
         """Return the sizes of cells beyond the layers."""
         on, along = self.on, np.maximum(scale * self.length, self.first)
-        thick, tangent = self.thickness(scale, settings), self.loop.tangent(self.arcs)
-        normals = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
+        thick, normals = self.thickness(scale, settings), turned_left(self.loop.tangent(self.arcs))
         across = np.minimum(last_layers(thick, self.rows(scale, settings), settings, self.first), along)
         points = self.loop.at(self.arcs) + thick[:, None] * normals
         return SizeMetric(points[on], normals[on], across[on], along[on], np.inf)
@@ -119,7 +114,7 @@ class RowSizes:
     def wake_metric(self, wake: Floats, scale: float, settings: LayerSettings) -> SizeMetric:
         """Return the sizes of cells next to a wake (k, 2), from the sharp edge on."""
         tangent = np.gradient(wake, axis=0)
-        normals = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1) / np.hypot(*tangent.T)[:, None]
+        normals = turned_left(tangent) / np.hypot(*tangent.T)[:, None]
         away = np.hypot(*(wake - wake[0]).T)
         across = self.thickness_behind(away, scale, settings) * (1.0 - 1.0 / settings.growth) * JOIN
         edge = np.interp(self.loop.corner_arcs[0], self.arcs, self.length)
@@ -133,7 +128,7 @@ def _gaps(domain: Domain, number: int, arcs: Floats) -> Floats:
     points, along = loop.at(arcs), loop.tangent(arcs)
     others = [each for k, each in enumerate(domain.loops) if k != number]
     gap = gaps_in_front(wall_points(others), points, along) if others else np.full(len(arcs), np.inf)
-    own = np.linspace(0.0, loop.length, 2 * _SAMPLES, endpoint=False)
+    own = np.linspace(0.0, loop.length, 2 * SAMPLES, endpoint=False)
     walls = loop.at(own)
     for k, arc in enumerate(arcs.tolist()):
         way = np.abs(np.mod(own - arc + 0.5 * loop.length, loop.length) - 0.5 * loop.length)

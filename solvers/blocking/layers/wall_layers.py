@@ -22,7 +22,14 @@ from meshonet.solvers.blocking.layers.even_line import Measures
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.layers.marched import GAP_PART
 from meshonet.solvers.blocking.layers.near_field import NearField
-from meshonet.solvers.blocking.layers.rings import Ring, march_ring, mirrored, room_between
+from meshonet.solvers.blocking.layers.rings import (
+    COLUMNS,
+    THICKNESS,
+    Ring,
+    march_ring,
+    mirrored,
+    room_between,
+)
 from meshonet.solvers.blocking.layers.row_sizes import RowSizes
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
@@ -30,12 +37,8 @@ from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
 
-COLUMNS = 140
-"""Cells around a loop, if all were as long as the longest."""
-THICKNESS = 0.018
-"""Thickness of layers where there is room, in lengths of their loop."""
 INNER_THICKNESS = 0.12
-"""The same of layers inside an outer loop, in hydraulic diameters: four times the area over the perimeter."""
+"""Thickness of layers inside an outer loop in hydraulic diameters: four times area over perimeter."""
 MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
 ROWS = 3

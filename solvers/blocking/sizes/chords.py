@@ -6,13 +6,14 @@ one count a chord. Edges of periodic sides have those of their partners.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, Indices, distinct
 from meshonet.geometry.cached import cached_property
+from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import exp, log, times
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.ties import nearest_whole
@@ -118,14 +119,17 @@ class Chords:
             step = np.where(step * way < 0, step + way * length, step)
         return places.arc[nodes[0]] + np.concatenate([[0.0], np.cumsum(step)])
 
+    def _walls(self) -> Iterator[tuple[int, Loop, Floats]]:
+        """Yield the number, the loop and the arc lengths (n,) of each wall edge."""
+        mesh = self.layout.mesh
+        for edge in np.flatnonzero(self.wall).tolist():
+            yield edge, mesh.domain.loops[mesh.places.loop[self.edges[edge][0]]], self.arcs(edge)
+
     @cached_property
     def least(self) -> Indices:
         """(chords,) smallest numbers of cells, due to `LEAST`, corners of the domain and `TURNING_DEG`."""
         least = np.full(self.count, LEAST, dtype=np.intp)
-        mesh = self.layout.mesh
-        for edge in np.flatnonzero(self.wall):
-            arcs = self.arcs(int(edge))
-            loop = mesh.domain.loops[mesh.places.loop[self.edges[edge][0]]]
+        for edge, loop, arcs in self._walls():
             ends = np.sort(arcs[[0, -1]])
             turned = float(turning_between(loop, ends[:1], ends[1:])[0])
             cells = int(np.ceil(turned / TURNING_DEG - 1e-9))
@@ -148,11 +152,9 @@ class Chords:
 
     def cut_off(self) -> Floats:
         """Return the absolute areas (e,) between the walls and the cells along each edge."""
-        mesh, lost = self.layout.mesh, np.zeros(len(self.edges))
+        lost = np.zeros(len(self.edges))
         part = np.linspace(0.0, 1.0, 5)
-        for edge in np.flatnonzero(self.wall):
-            arcs = self.arcs(int(edge))
-            loop = mesh.domain.loops[mesh.places.loop[self.edges[edge][0]]]
+        for edge, loop, arcs in self._walls():
             points = loop.at((arcs[:-1, None] + part * np.diff(arcs)[:, None]).ravel())
             z = (points[:, 0] + 1j * points[:, 1]).reshape(-1, len(part))
             z -= z[:, :1]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import distinct
+from meshonet.geometry.arrays import turned_left
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.grading import graded
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
-from meshonet.solvers.blocking.sizes.wall_turning import wall_bend
+from meshonet.solvers.blocking.sizes.wall_turning import sizes_by_bend
 
 TURN = np.radians(20.0)
 """Largest angle by which a wall turns along one cell."""
@@ -22,19 +22,16 @@ INSIDE = 0.2
 """Growth of sizes with the distance from walls."""
 CELLS_ACROSS = 30.0
 """Smallest number of cells across a domain, far from all features."""
-_SAMPLES, _WINDOW = 400, 3  # points around a loop, and those on either side over which its bend is averaged
 
 
 def feature_sizes(domain: Domain) -> SizeMetric:
     """Return isotropic cell sizes that resolve all features of the walls of a domain."""
     points, normals, sizes = [], [], []
     for loop in domain.loops:
-        arcs = distinct(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
-        along, bend = loop.tangent(arcs), wall_bend(loop, arcs, _WINDOW)
-        size = np.minimum(loop.length / CELLS_AROUND, TURN / np.maximum(bend, 1e-300))
+        arcs, size = sizes_by_bend(loop, loop.length / CELLS_AROUND, TURN)
         size = np.minimum(size, wall_gaps(domain, loop, arcs) / CELLS_IN_GAP)
         points.append(loop.at(arcs))
-        normals.append(np.stack([-along[:, 1], along[:, 0]], axis=1))
+        normals.append(turned_left(loop.tangent(arcs)))
         sizes.append(graded(size, arcs, loop.length, ALONG_WALL))
     size = np.concatenate(sizes)
     largest = domain.extent / CELLS_ACROSS

@@ -6,10 +6,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, running_sums
+from meshonet.geometry.arrays import Floats, Indices, distinct, running_sums
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.polygon.corners import turning
+
+SAMPLES, _WINDOW = 400, 3  # points around a loop, and those on either side over which its bend is averaged
 
 
 @lru_cache(maxsize=64)
@@ -49,6 +51,15 @@ def corners_between(loop: Loop, first: float, last: float) -> tuple[Floats, Indi
     if last < first:
         inside = inside[::-1]
     return arcs[inside], cells[inside]
+
+
+def sizes_by_bend(loop: Loop, largest: float, turn: float) -> tuple[Floats, Floats]:
+    """Return arc lengths (n,) around a loop, its corners among them, and lengths of cells there.
+
+    Cells are at most `largest` long, and the wall turns by `turn` radians along one at most.
+    """
+    arcs = distinct(np.append(np.linspace(0.0, loop.length, SAMPLES, endpoint=False), loop.corner_arcs))
+    return arcs, np.minimum(largest, turn / np.maximum(wall_bend(loop, arcs, _WINDOW), 1e-300))
 
 
 def wall_bend(loop: Loop, arcs: Floats, window: int) -> Floats:

@@ -15,7 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, Indices, distinct
+from meshonet.geometry.arrays import Bools, Floats, Indices, distinct, turned_left
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.periodic_sides import following
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
@@ -81,9 +81,8 @@ def _inwards(nodes: Floats, before: Indices, along: Indices, ahead: Indices) -> 
     here, last, coming = nodes[along], nodes[before], nodes[ahead]
     tangent = coming - last
     tangent /= np.hypot(*tangent.T)[:, None]
-    left = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
     shorter = np.minimum(np.hypot(*(here - last).T), np.hypot(*(coming - here).T))
-    return np.asarray(INSET * shorter[:, None] * left)
+    return np.asarray(INSET * shorter[:, None] * turned_left(tangent))
 
 
 def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.arrays import Floats, Indices, turned_left
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.polygon.corners import angle_between
@@ -106,7 +106,7 @@ def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None =
     tangents = np.concatenate([s.tangents for s in samples])
     length = np.concatenate([s.length for s in samples])
     size = np.concatenate([_own_size(s, largest) for s in samples])
-    normals = np.stack([-tangents[:, 1], tangents[:, 0]], axis=1)
+    normals = turned_left(tangents)
     corner = np.concatenate([s.corner for s in samples])
     wall_gaps(points, normals, piece, beside, corner, 1.0 / PER_GAP, CONE, size)
     smallest = FLOOR * np.minimum(largest, OF_LOOP * domain.lengths)

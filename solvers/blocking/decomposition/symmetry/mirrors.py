@@ -14,7 +14,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, along_and_across, norms
+from meshonet.geometry.arrays import Floats, Indices, along_and_across, norms, turned_left
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 
@@ -61,7 +61,7 @@ def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
     ways = _directions(domain, middles, centre)
     counts = (4, 2) if len(ways) > 2 * MOST_MIRRORS + 1 else range(MOST_MIRRORS, 1, -1)
     for along in ways:
-        for way in (along, np.array([-along[1], along[0]])):
+        for way in (along, turned_left(along)):
             first = mirror_about(domain, centre, way)
             if first:
                 several = (_all_about(domain, first, count) for count in counts)
@@ -71,7 +71,7 @@ def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
 
 def _all_about(domain: Domain, first: Mirror, count: int) -> tuple[Mirror, ...]:
     """Return so many mirrors with equal angles between, from the first on; none if one is not there."""
-    across, mirrors = np.array([-first.along[1], first.along[0]]), [first]
+    across, mirrors = turned_left(first.along), [first]
     for k in range(1, count):
         angle = math.pi * k / count
         cosine = 0.0 if 2 * k == count else math.cos(angle)
@@ -147,8 +147,7 @@ def _directions(domain: Domain, middles: Floats, centre: Floats) -> list[Floats]
     arms = ends - centre
     arms = arms[np.abs(norms(arms) - norms(arms[0])) <= near]
     sums, steps = arms[0] + arms, arms[0] - arms
-    quarter = np.stack([-steps[:, 1], steps[:, 0]], axis=1)
-    ways = np.where((norms(sums) > norms(steps))[:, None], sums, quarter)
+    ways = np.where((norms(sums) > norms(steps))[:, None], sums, turned_left(steps))
     ways /= norms(ways)[:, None]
     fits = [
         way for way in ways
