@@ -71,8 +71,8 @@ SHELF = """
 All six families and their splits, with one budget for all models: 300 epochs (9,000 shapes) with the same schedule and
 the same random points in each step, on grids of 51 x 51 nodes. Settings are the defaults of each
 model. Values are the relative L2 distance of the network's output from the test grids, median over the grids, mean ±
-spread over the random seeds 0 and 1; the least of each row is bold. `fno2d` takes 1.3 s per epoch and is left out. The
-budget is a thirtieth of that of the tables of quality above.
+spread over the random seeds 0 and 1; the least of each row is bold. The budget is a thirtieth of that of the tables of
+quality above.
 """
 
 AGAINST = """The paper compares MeshONet's loss with four baselines on one case and makes no claim about WNO, KNO and
