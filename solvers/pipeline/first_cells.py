@@ -97,19 +97,24 @@ def has_walls_on_sides(shape: Shape, request: GridRequest) -> bool:
     They are opposite unless the request has counts of nodes in both directions or asks for one block. Any
     other domain becomes many blocks; so does one that is to be refined, which blocks with layers can be.
 
-    Raises InputError: a four-sided domain has no wall of such a name.
+    Raises InputError: a four-sided domain has no wall of such a name, or not along a whole side of the block.
     """
     heights = request.first_cell if request.y_plus is None else request.y_plus
     off = heights if isinstance(heights, Mapping) else dict.fromkeys(request.walls, 0.0)
     sides = names_of_sides(shape)
-    if not sides or request.refine:
+    one = request.blocks == "single" or request.sampling.nj not in (None, request.sampling.ni)
+    if not sides or (request.refine and not one):
         return False
     known = dict.fromkeys(name for names in sides for name in names)
     check_names(off, known, request.names_walls[0])
-    if not all(off.keys().isdisjoint(names) or len(set(map(off.get, names))) == 1 for names in sides):
+    for names in sides:
+        if off.keys().isdisjoint(names) or len(set(map(off.get, names))) == 1:
+            continue
+        if one:
+            problem = f"{', '.join(names)} are one side of the block, whose first cells are equally high"
+            raise InputError(problem, "give all the same", parameter=request.names_walls[0])
         return False
     with_layers = {k % 2 for k, names in enumerate(sides) if not off.keys().isdisjoint(names)}
-    one = request.blocks == "single" or request.sampling.nj not in (None, request.sampling.ni)
     return one or len(with_layers) == 1
 
 

@@ -103,6 +103,17 @@ def test_an_unknown_wall_is_named_before_anything_else(meshonet: Meshonet) -> No
     assert "--first-cell: there is no wall 'wal'; use axis, " in done.err
 
 
+def test_parts_of_a_side_are_no_walls_of_a_single_block(meshonet: Meshonet) -> None:
+    path = nozzle()
+    path.write_text(
+        path.read_text().replace("0.20000000000000001 0\n\n", "0.1 0\n\n# pin\n0.1 0\n0.2 0\n\n", 1)
+    )
+    words = ("infer", path, "--res", "61x41", "--first-cell", "axis=1e-4", "-o", "g.h5")
+    done = meshonet(*words)
+    assert done.code == 2
+    assert "one side of the block, whose first cells are equally high; give all the same" in done.err
+
+
 def test_a_domain_without_walls_by_their_names_is_refused(meshonet: Meshonet) -> None:
     path = nozzle()
     path.write_text(path.read_text().replace("# wall", "# symmetry"))
