@@ -30,6 +30,7 @@ from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
 from meshonet.solvers.neural.devices import Device
 from meshonet.solvers.neural.inference import infer_many
+from meshonet.solvers.neural.registry import load
 
 HEAD = """# GPU
 
@@ -43,10 +44,10 @@ docs/benchmarks/gpu.md` measures these values in less than eight minutes:
   and without `--amp` and `--compile`; the first epochs are not counted;
 - *operators*: grids per second and peak memory of `airfoil-o`, `quad-general` and `hole-o` in batches, with
   65 x 65 and 200 x 200 nodes, from boundaries in memory to nodes in memory;
-- *layers*: grids per second of `meshonet.layer` for batches of sides in the memory of the device, forward,
-  and forward and backward together; peak memory; whether two runs have the same bits; the largest distance
-  from the compiled solver on the CPU, relative to the domain size. The last rows are single grids of up to
-  3200 x 3200 nodes, without gradients;
+- *layers*: grids per second of `meshonet.layer`, exact solvers beside the network `quad-general`, for batches
+  of sides in the memory of the device, forward, and forward and backward together; peak memory; whether two
+  runs have the same bits; the largest distance from the compiled solver or operator on the CPU, relative to
+  the domain size. The last rows are single grids of 800 x 800 and 3200 x 3200 nodes, without gradients;
 - *equality*: the largest distance between the nodes on the GPU and those of the same operator on the CPU in
   double precision. It must be below 1e-10 of the domain size.
 """
@@ -57,6 +58,8 @@ EQUAL = 1e-10
 
 FAMILIES = {"airfoil-o": "procedural", "quad-general": "four-sided", "hole-o": "bodies"}
 """Operators, and the families of boundaries that they are given."""
+NETWORK = "quad-general"
+"""The network beside exact solvers in the table of layers."""
 TRAINED = {"meshonet": (30, 240), "fno2d": (30, 120), "quad": (16, 64)}
 """Models and the batch sizes that they are trained with."""
 
@@ -102,7 +105,8 @@ def layer_rows(device: Device, batch: int, n: int, large: Sequence[int]) -> Iter
     """Yield the rows of grids as layers: batches of random four-sided domains, and large single grids."""
     yield "| function | nodes | grids | a second | with gradients | MB | same bits | distance |"
     yield "| --- | --- | --- | --- | --- | --- | --- | --- |"
-    jobs = [("winslow", n, batch), ("variational", n, min(batch, 256)), *(("winslow", m, 1) for m in large)]
+    jobs = [(NETWORK, n, batch), ("winslow", n, batch), ("variational", n, min(batch, 256))]
+    jobs += [(name, m, 1) for m in large for name in (NETWORK, "winslow")]
     for name, m, count in jobs:
         try:
             words = " | ".join(layer_words(device, name, shapes_for("quad-general", count, m)))
@@ -113,7 +117,8 @@ def layer_rows(device: Device, batch: int, n: int, large: Sequence[int]) -> Iter
 
 def layer_words(device: Device, name: str, boundaries: Sequence[Boundary]) -> Iterator[str]:
     """Yield rates, memory, equality of two runs and distance from the compiled solver."""
-    function, count = getattr(layer, name), len(boundaries)
+    function = layer.QuadGrids(NETWORK, device=device) if name == NETWORK else getattr(layer, name)
+    count = len(boundaries)
     sides = [
         torch.tensor(np.stack([getattr(b, side) for b in boundaries]), device=device)
         for side in ("south", "north", "west", "east")
@@ -151,7 +156,9 @@ def timed(device: Device, act: Callable[[], Any]) -> tuple[Any, float]:
 
 def from_compiled(name: str, boundary: Boundary, nodes: Floats) -> float:
     """Return the distance of nodes from those of the converged compiled solver, relative to their extent."""
-    if name == "winslow":
+    if name == NETWORK:
+        exact = load(NETWORK).solve([boundary], "off")[0].grid.nodes
+    elif name == "winslow":
         exact = winslow(boundary, tol=1e-12, max_cycles=100).grid.nodes
     else:
         grid = variational(boundary, tol=1e-8, max_cycles=1000).grid
@@ -211,7 +218,7 @@ def page(device: Device, quick: bool) -> str:
     shapes, epochs = (8, 2) if quick else (260, 12)
     with tempfile.TemporaryDirectory() as folder:
         made = list(operator_rows(device, sizes, count))
-        layers = list(layer_rows(device, *((4, 17, (65,)) if quick else (4096, 65, (801, 3200)))))
+        layers = list(layer_rows(device, *((4, 17, (65,)) if quick else (4096, 65, (800, 3200)))))
         fitted = list(training_rows(device, Path(folder), shapes, n, epochs, quick))
     parts = "\n".join(["## Operators\n", *made, "\n## Layers\n", *layers, "\n## Training\n", *fitted])
     return f"{HEAD}\n{machine}, torch {torch.__version__}.\n\n{parts}\n"

@@ -27,12 +27,12 @@ def script(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 def test_it_measures_every_operator_and_model(script: ModuleType, tmp_path: Path) -> None:
     page = script.main(["--device", "cpu", "--quick", "--page", str(tmp_path / "gpu.md")])
     rows = [line for line in page.splitlines() if line.startswith("| `")]
-    layers = ["winslow", "variational", "winslow"]
+    layers = ["quad-general", "winslow", "variational", "quad-general", "winslow"]
     names = [re.findall(r"`([^`]+)`", row)[0] for row in rows]
     assert names == [*script.FAMILIES, *layers, *script.TRAINED]
-    assert all(float(row.split("|")[4]) > 0 for row in rows[:6])
-    assert all(row.split("|")[7].strip() == "yes" for row in rows[3:6])
-    assert all(float(row.split("|")[5]) > 0 for row in rows[6:])
+    assert all(float(row.split("|")[4]) > 0 for row in rows[:8])
+    assert all(row.split("|")[7].strip() == "yes" for row in rows[3:8])
+    assert all(float(row.split("|")[5]) > 0 for row in rows[8:])
     assert "TOO FAR" not in page
     assert (tmp_path / "gpu.md").read_text(encoding="utf-8") == page
 
