@@ -34,6 +34,11 @@ _EVEN = 1.6
 lines pass beside it as beside wings, and many of them are far from it."""
 
 
+_STEEP = 1.12
+"""Growth in s of cells between columns where there is a fin: levels lead from a wing to it, steeply in the
+middle of the way, where cells are longer in space."""
+
+
 @dataclass(frozen=True, eq=False)
 class LevelPlan:
     """Counts that all levels share, and what nose and tail have in common on all of them.
@@ -77,12 +82,13 @@ def planned(
     """Return the counts for the holes in each column, from nose to tail, on some levels from the root on."""
     plans, levels = zip(*(planned_column(each, first, growth) for each in holes), strict=True)
     columns = _with_equal_lines(plans)
+    most, between = WIDEST, list[int]()
     if any(column.fin for column in columns):
-        columns = tuple(column.evened(_EVEN) for column in columns)
-    between = []
+        columns = tuple(column.evened(_EVEN) for column in _level_with_fin(columns, plans))
+        most = _STEEP
     for before, after in pairwise(levels):
         ways = [way for pair in zip(before, after, strict=True) for way in _ways(*pair)]
-        between.append(max(smooth_cells(way, sizes, WIDEST, FEWEST) for way, sizes in ways))
+        between.append(max(smooth_cells(way, sizes, most, FEWEST) for way, sizes in ways))
     nose = [way for level in levels[0] for way in _to_pole(level.sides[0], 0.0)]
     tail = [way for level in levels[-1] for way in _to_pole(level.sides[1], length)]
     lines = columns[0].beside[0] + columns[0].bands, columns[-1].beside[1] + columns[-1].bands
@@ -116,13 +122,29 @@ def _with_equal_lines(plans: Sequence[ColumnPlan]) -> tuple[ColumnPlan, ...]:
     return tuple(plan.with_bands(cells) for plan, cells in zip(plans, bands.tolist(), strict=True))
 
 
+def _level_with_fin(columns: Sequence[ColumnPlan], plans: Sequence[ColumnPlan]) -> list[ColumnPlan]:
+    """Return columns of which those ahead of a fin above a wing have as many lines below as that.
+
+    They keep at least the bands of `plans`.
+    """
+    out = list(columns)
+    for k in range(len(out) - 1, 0, -1):
+        own, after = out[k - 1], out[k]
+        if after.fin_alone or own.fin or not any(column.fin for column in out[k:]):
+            continue
+        wanted = after.collars[0].low + after.collars[0].nose - own.collars[0].edge
+        low = min(max(wanted, plans[k - 1].collars[0].low), own.bands - plans[k - 1].collars[0].top)
+        out[k - 1] = own.with_bands(own.bands, low)
+    return out
+
+
 def level_patches(plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floats]:
     """Return patches (ni, nj, 3) of s, theta and zeta on a level around the holes of columns.
 
     Those of columns, from nose to tail, then the patches between them, then rows and core of the nose, rows
     and core of the tail.
     """
-    levels = [ColumnLevel.of(*each) for each in zip(plan.columns, holes, strict=True)]
+    levels = _beside_fins([ColumnLevel.of(*each) for each in zip(plan.columns, holes, strict=True)])
     patches = [patch for level in levels for patch in level.patches()]
     for cells, before, after in zip(plan.between, levels[:-1], levels[1:], strict=True):
         (start, first), (stop, last) = before.sides[1], after.sides[0]
@@ -133,6 +155,20 @@ def level_patches(plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floa
     back, last = levels[-1].sides[1]
     patches += [_from_tail(patch, plan) for patch in tail.patches(_from_tail(back, plan), last)]
     return patches
+
+
+def _beside_fins(levels: Sequence[ColumnLevel]) -> list[ColumnLevel]:
+    """Return the columns, where those of wings next to fins, and of fins next to wings, differ less."""
+    out = list(levels)
+    for k, level in enumerate(levels):
+        near = [other for other in (k - 1, k + 1) if 0 <= other < len(levels)]
+        if not level.plan.fin:
+            fins = [levels[other] for other in near if levels[other].plan.fin]
+            out[k] = level.beside_fin(fins[0]) if fins else level
+        elif level.plan.fin_alone and near:
+            wing = levels[near[0]]
+            out[k] = level.beside_wing(wing, wing.sides[1 if near[0] < k else 0])
+    return out
 
 
 def _from_tail(nodes: Floats, plan: LevelPlan) -> Floats:

@@ -39,6 +39,10 @@ Side: TypeAlias = tuple[Floats, Floats]
 """Nodes (n, 3) s, theta, zeta on the front or back of a column, from the keel, and cells (n,) there in s."""
 
 
+_FOLLOWING = 0.7
+"""Share of the angles of lines beside a fin in those below it; the rest is of cells that change evenly."""
+
+
 @dataclass(frozen=True, eq=False)
 class ColumnPlan:
     """Counts of a column, which all levels share.
@@ -74,12 +78,12 @@ class ColumnPlan:
         before = sum(n * each.nose for n, each in zip(shares, self.collars, strict=True))
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))
 
-    def with_bands(self, cells: int) -> ColumnPlan:
-        """Return the plan with so many `bands`, in the same proportion."""
+    def with_bands(self, cells: int, low: int | None = None) -> ColumnPlan:
+        """Return the plan with so many `bands`, in the same proportion or with `low` of them at the keel."""
         first, *others = self.collars
         if self.fin_alone:
             return replace(self, collars=(replace(first, low=cells, top=cells),))
-        low = round(first.low * cells / self.bands)
+        low = round(first.low * cells / self.bands) if low is None else low
         top = cells - low
         fins = tuple(replace(each, low=top, top=top) for each in others)
         return replace(self, collars=(replace(first, low=low, top=top), *fins))
@@ -112,16 +116,43 @@ class ColumnLevel:
     ----------
     plan : counts.
     levels : of the collars of its wing and fin.
+    below : theta of lines from the keel to the first collar, if these are not its own.
+    keel, crown : zeta there, if it is not that of the first collar.
     """
 
     plan: ColumnPlan
     levels: tuple[CollarLevel, ...]
+    below: Floats | None = None
+    keel: float | None = None
+    crown: float | None = None
 
     @classmethod
     def of(cls, plan: ColumnPlan, holes: Sequence[Hole]) -> ColumnLevel:
         """Return the level of holes, that of a fin last."""
         levels = (CollarLevel.of(*each) for each in zip(plan.collars, holes, strict=True))
         return cls(plan, tuple(levels))
+
+    def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
+        """Return the column of a wing next to one with a fin: at the crown zeta is the mean of both."""
+        zeta = self.zeta
+        return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
+
+    def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
+        """Return the column of a fin alone next to one of a wing, of whose `side` it nearly has the lines."""
+        own, others = self.low, side[0][:, 1]
+        others = others[: len(own)] * (own[-1] / others[len(own) - 1])
+        keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
+        return replace(self, below=own + _FOLLOWING * (others - own), keel=keel)
+
+    @property
+    def zeta(self) -> float:
+        """Zeta of the first collar."""
+        return self.levels[0].hole.zeta
+
+    @property
+    def low(self) -> Floats:
+        """Theta of the lines from the keel to the first collar."""
+        return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
         """Return the way in space from the wing's collar to that of the fin, and the cells there."""
@@ -130,16 +161,21 @@ class ColumnLevel:
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])
         return (high - low) * rho, (wing.last[2], fin.last[1])
 
-    def _high(self) -> tuple[Floats, Floats]:
-        """Return theta (n,) of lines from the wing's collar to that of the fin, and parts of the way."""
+    def _above(self) -> tuple[Floats, Floats]:
+        """Return theta (n,) of lines from the first collar to that of a fin or the crown, and a fade.
+
+        This goes smoothly from 0 at the first collar to 1.
+        """
+        if len(self.levels) == 1:
+            theta = self.levels[0].low_and_top[1]
+            return theta, _fade(theta)
         wing, fin = self.levels
         way, cells = self.above()
         arcs = smooth_arcs(np.array([way]), cells, wing.plan.top)[0]
         low, high = wing.box.high / float(wing.hole.scale[1]), fin.box.low / float(fin.hole.scale[1])
-        t = arcs / way
-        theta = low + (high - low) * t
+        theta = low + (high - low) * (arcs / way)
         theta[-1] = high
-        return theta, t * t * (3.0 - 2.0 * t)
+        return theta, _fade(theta)
 
     @property
     def sides(self) -> tuple[Side, Side]:
@@ -147,39 +183,54 @@ class ColumnLevel:
         return self._side(0), self._side(1)
 
     def _side(self, which: int) -> Side:
-        first = self.levels[0]
-        low, top = first.low_and_top
-        theta = [low, first.across[which][1:-1], top]
+        first, last = self.levels[0], self.levels[-1]
+        own, keel = (
+            np.array([first.sides[which], zeta, first.ends[which]])
+            for zeta in (self.zeta, self.zeta if self.keel is None else self.keel)
+        )
+        beside = first.across[which]
+        parts = [(self.low, own + (keel - own) * _fade(self.low[::-1])[::-1, None])]
         if self.plan.fin_alone:
-            theta = [low, first.across[which][1:]]
-        values = np.array([[first.sides[which], first.hole.zeta, first.ends[which]]])
-        if len(self.levels) == 2:
-            fin = self.levels[1]
-            high, t = self._high()
-            theta = [low, first.across[which][1:-1], high, fin.across[which][1:]]
-            other = np.array([[fin.sides[which], fin.hole.zeta, fin.ends[which]]])
-            t = np.concatenate([np.zeros(len(low) + len(theta[1])), t, np.ones(len(theta[3]))])[:, None]
-            values = values + (other - values) * t
-        around = np.concatenate(theta)
-        s, zeta, cells = np.broadcast_to(values, (len(around), 3)).T
+            parts.append((beside[1:], np.tile(own, (len(beside) - 1, 1))))
+        else:
+            theta, fade = self._above()
+            high = np.array([last.sides[which], self._high_zeta, last.ends[which]])
+            parts.append((beside[1:-1], np.tile(own, (len(beside) - 2, 1))))
+            parts.append((theta, own + (high - own) * fade[:, None]))
+            if last is not first:
+                beside = last.across[which][1:]
+                parts.append((beside, np.tile(high, (len(beside), 1))))
+        around = np.concatenate([theta for theta, _ in parts])
+        s, zeta, cells = np.concatenate([values for _, values in parts]).T
         return np.stack([s, around, zeta], axis=1), cells
+
+    @property
+    def _high_zeta(self) -> float:
+        """Zeta of a fin above a wing, or of the crown."""
+        if len(self.levels) == 2:
+            return self.levels[1].hole.zeta
+        return self.zeta if self.crown is None else self.crown
 
     def patches(self) -> list[Floats]:
         """Return patches (ni, nj, 3): a collar, those above and below it, the collar of a fin above."""
-        first = self.levels[0]
-        low, top = first.low_and_top
-        below, above = first.long_sides
-        zeta = first.hole.zeta
-        patches = [_on(first.collar(), zeta)]
-        if len(self.levels) == 2:
-            fin = self.levels[1]
-            theta, t = self._high()
-            s = above[:, None] + (fin.long_sides[0] - above)[:, None] * t
-            patches.append(_lattice(s, theta, zeta + (fin.hole.zeta - zeta) * t))
-        elif not self.plan.fin:
-            patches.append(_lattice(above[:, None], top, zeta))
-        patches.append(_lattice(below[::-1, None], low, zeta))
+        below, above = self.levels[0].long_sides
+        zeta = self.zeta
+        patches = [_on(self.levels[0].collar(), zeta)]
+        if not self.plan.fin_alone:
+            theta, fade = self._above()
+            end = self.levels[1].long_sides[0] if len(self.levels) == 2 else above
+            s = above[:, None] + (end - above)[:, None] * fade
+            patches.append(_lattice(s, theta, zeta + (self._high_zeta - zeta) * fade))
+        keel = zeta if self.keel is None else self.keel
+        fade = _fade(self.low[::-1])[::-1]
+        patches.append(_lattice(below[::-1, None], self.low, zeta + (keel - zeta) * fade))
         return [*patches, *(_on(each.collar(), each.hole.zeta) for each in self.levels[1:])]
+
+
+def _fade(theta: Floats) -> Floats:
+    """Return what goes smoothly from 0 at the first of angles (n,) to 1 at the last."""
+    t = (theta - theta[0]) / (theta[-1] - theta[0])
+    return np.asarray(t * t * (3.0 - 2.0 * t))
 
 
 def _lattice(s: Floats, theta: Floats, zeta: Floats | float) -> Floats:

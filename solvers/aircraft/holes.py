@@ -19,6 +19,8 @@ from meshonet.solvers.rows.span_spacing import SAMPLES
 
 _CLEAR = 0.35
 """Least way between neighbouring wings, over the shorter of their chords there."""
+_CLEAR_FIN = 0.9
+"""The same for a fin with a column of its own: levels lead steeply from a long wing to a fin close to it."""
 _PART = 2.0 / 3.0
 """Part of this way within which a collar takes half."""
 
@@ -50,7 +52,7 @@ def columns_of(
 
 def _near(one: _Along, other: _Along) -> bool:
     """Return whether none of two wings is before the other on all levels, with enough room between them."""
-    rooms = _room(one, other), _room(other, one)
+    rooms = _room(one, other, _CLEAR_FIN), _room(other, one, _CLEAR_FIN)
     return not any(bool((gaps >= needed).all()) for gaps, needed in rooms)
 
 
@@ -86,10 +88,10 @@ def _along(space: BodyMap, wing: WingLines, sections: Floats) -> _Along:
     return _Along(s.min(axis=1), s.max(axis=1), _scales(space, wing, sections)[:, 0])
 
 
-def _room(before: _Along, after: _Along) -> tuple[Floats, Floats]:
+def _room(before: _Along, after: _Along, clear: float = _CLEAR) -> tuple[Floats, Floats]:
     """Return the gaps between two wings on levels (k,), and those that are needed."""
     gaps = (after.front - before.back) * np.minimum(before.scale, after.scale)
-    return gaps, _CLEAR * np.minimum(before.chord, after.chord)
+    return gaps, clear * np.minimum(before.chord, after.chord)
 
 
 def holes_of(

@@ -69,11 +69,20 @@ def test_lines_leave_the_tip_of_a_fin_upwards(grid: Grid) -> None:
         assert np.percentile(away[..., 1], 5) > 0.999
 
 
-@pytest.mark.parametrize("changes", [{"x": 7.6, "sweep": 0.0}, {"x": 8.2, "sweep": 45.0}, {"height": 3.0}])
+@pytest.mark.parametrize(
+    "changes",
+    [{"x": 7.6, "sweep": 0.0}, {"x": 8.2, "sweep": 45.0}, {"height": 3.0}],
+)
 def test_fins_without_a_tail_plane_are_made(changes: dict[str, float]) -> None:
     made, _ = aircraft_grid(replace(aircraft(), others=(fin(**changes),)), SMALL)
     assert folded(made) == 0
     assert measure_volumes(made)["scaled_jacobian"].min > 0.05
+
+
+def test_a_fin_close_behind_the_wing_is_in_its_column() -> None:
+    made, _ = aircraft_grid(replace(aircraft(), others=(fin(x=6.6, sweep=0.0),)), SMALL)
+    assert folded(made) == 0
+    assert "wing-to-fin" not in made.provenance["zones"]
 
 
 def test_a_fin_may_be_the_only_wing() -> None:
