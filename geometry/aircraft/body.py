@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, arc_lengths
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.elementary import cos, sin
@@ -151,6 +151,19 @@ class Body:
             if (s == before).all():  # as would be all that follow
                 break
         return np.asarray(s)
+
+    def arcs_near(self, points: Floats) -> Floats:
+        """Return the arc lengths (n,) of the meridian next to points (n, 2) in order from nose to tail.
+
+        Unlike x, places are well defined at a blunt nose too.
+        """
+        s = arc_lengths(points)
+        s *= self.length / s[-1]
+        for _ in range(_STEPS):  # Newton's method for the foot of each point
+            off, along = points - self._spline(s), self._spline.slope(s)
+            s = np.clip(s + (off * along).sum(axis=1) / (along * along).sum(axis=1), 0.0, self.length)
+        s[0], s[-1] = 0.0, self.length
+        return s
 
     def outside(self, points: Floats) -> Floats:
         """Return how far points (n, 3) are from the surface along the radius, negative inside."""

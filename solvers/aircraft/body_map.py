@@ -51,11 +51,9 @@ class BodyMap:
         outer = table[:, -1] - [0.5 * float(table[0, -1, 0] + table[-1, -1, 0]), 0.0]
         turns = body.length * (1.0 - arctan2(outer[:, 1], outer[:, 0]) / math.pi)
         turns[0], turns[-1] = 0.0, body.length
-        arcs = body.arc_at(table[:, 0, 0])
-        arcs[0], arcs[-1] = 0.0, body.length
         even = np.linspace(0.0, body.length, _LINES)
         self.table = CubicTable(table, turns)(even)
-        self._arcs = monotone_cubic(turns, arcs, even)[:, None, None]
+        self._arcs = monotone_cubic(turns, body.arcs_near(table[:, 0]), even)[:, None, None]
 
     def points(self, places: Floats) -> Floats:
         """Return points (..., 3) at places (..., 3) of s, theta, zeta."""

@@ -139,6 +139,15 @@ def test_places_around_a_body_are_those_of_the_points_there() -> None:
     assert np.abs(cosine[(places[:, 0] > 1) & (places[:, 0] < 9)]).max() < 0.02, "a right angle at the body"
 
 
+@pytest.mark.parametrize("points", [9, 41])
+def test_places_on_a_blunt_nose_are_even_for_few_points_of_a_meridian_too(points: int) -> None:
+    x = np.linspace(-1.0, 1.0, points)
+    space = BodyMap(Body(np.stack([5.0 * x, 0.6 * np.sqrt(1.0 - x * x)], axis=1)), 20.0)
+    s = np.linspace(0.0, 0.02 * space.body.length, 9)
+    steps = np.linalg.norm(np.diff(space.meridional(s, np.zeros(9)), axis=0), axis=1)
+    assert steps[1:] / steps[:-1] == pytest.approx(1.0, abs=0.12)
+
+
 @pytest.mark.parametrize("name", ["fuselage", "wing"])
 def test_lines_leave_the_walls_at_right_angles_away_from_the_junction(grid: Grid, name: str) -> None:
     """The wing lies low on the body and is swept: lines along it are 20 degrees and more off the normal."""
