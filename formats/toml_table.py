@@ -152,7 +152,9 @@ def toml_table(source: Source) -> Table:
     try:
         return Table(tomllib.loads(source.text_bytes().decode("utf-8")))
     except (ValueError, RecursionError) as error:  # also integers of more digits than Python reads
-        raise InputError(f"is no TOML: {printable(str(error))}", "correct it, or give another file") from None
+        value = "Invalid value" in str(error)
+        remedy = "write numbers as 0.5, texts in quotes" if value else "correct it, or give another file"
+        raise InputError(f"is no TOML: {printable(str(error))}", remedy) from None
 
 
 def _shown(value: Any) -> str:

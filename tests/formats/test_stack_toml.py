@@ -68,7 +68,8 @@ def test_files_of_sections_are_looked_for_beside_the_stack(tmp_path):
     [
         ("about = 0.3", "sections: are not 2 or more tables; write [[sections]] above each"),
         (ROOT, "sections: are not 2 or more tables"),
-        ("a = = 1", "is no TOML: "),
+        ("a = 1 = 2", "is no TOML: "),
+        (ROOT + TIP.replace("0.5", ".5"), "write numbers as 0.5"),
         (ROOT + TIP + "colour = 1", "sections[1].colour: is not known; use airfoil, "),
         ('shape = "wing"\n' + ROOT + TIP, "shape: is not known; use kind, "),
         ('kind = "kite"\n' + ROOT + TIP, "kind: 'kite' is not known; use wing, blade, duct"),
