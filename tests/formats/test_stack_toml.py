@@ -69,7 +69,6 @@ def test_files_of_sections_are_looked_for_beside_the_stack(tmp_path):
         ("about = 0.3", "sections: are not 2 or more tables; write [[sections]] above each"),
         (ROOT, "sections: are not 2 or more tables"),
         ("a = 1 = 2", "is no TOML: "),
-        (ROOT + TIP.replace("0.5", ".5"), "write numbers as 0.5"),
         (ROOT + TIP + "colour = 1", "sections[1].colour: is not known; use airfoil, "),
         ('shape = "wing"\n' + ROOT + TIP, "shape: is not known; use kind, "),
         ('kind = "kite"\n' + ROOT + TIP, "kind: 'kite' is not known; use wing, blade, duct"),
@@ -94,3 +93,8 @@ def test_what_is_wrong_is_named_with_its_key(tmp_path, text, problem):
     assert message.startswith(f"{tmp_path / 'wing.toml'}: {problem}")
     assert "; " in message
     assert "\n" not in message
+
+
+def test_numbers_that_begin_with_a_point_are_refused_with_how_to_write_them(tmp_path):
+    with pytest.raises(InputError, match=r"is no TOML: .*; write numbers as 0\.5"):
+        read(tmp_path, ROOT + TIP.replace("0.5", ".5"))
