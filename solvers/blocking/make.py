@@ -152,7 +152,9 @@ def _settings(request: BlockRequest, height: AtWalls) -> LayerSettings:
     heights = height if isinstance(height, Mapping) else {}
     first = min(heights.values()) if isinstance(height, Mapping) else height
     constant = request.constant_layers or 1
-    return LayerSettings(first, request.growth or GROWTH, constant, request.multiple, heights)
+    return LayerSettings.limited(
+        first, request.growth or GROWTH, constant=constant, multiple=request.multiple, heights=heights
+    )
 
 
 def _outside_layers(domain: Domain, request: BlockRequest, height: AtWalls, layout: Layout | None) -> Layout:

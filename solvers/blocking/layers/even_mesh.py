@@ -22,16 +22,16 @@ import numpy as np
 
 from meshonet.geometry.arrays import Bools, Complexes, Floats, Indices
 from meshonet.geometry.blocks.shared_nodes import joined_labels
-from meshonet.geometry.elementary import angle, arctan2, log, modulus, times
+from meshonet.geometry.elementary import angle, modulus, times
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.kernels._native import line_neighbours
 from meshonet.solvers.blocking.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
+from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.blocking.sizes.on_loops import on_loops
 from meshonet.solvers.least_squares import NormalEquations, Residuals
 
-ANGLE, MOVE = 2.0, 1e-3
+ANGLE, MOVE = 6.0, 1e-3
 """ν, σ."""
-MARGIN = 0.03
+MARGIN = 0.008
 """How far below the limit, in logarithms, ratios are to come."""
 AROUND, REACH = 5, 1.0
 """Cells around ratios that exceed the limit in which nodes move, and more for each cell of excess."""
@@ -39,35 +39,33 @@ ROUNDS, STEPS = 8, 3
 """How often it is looked which nodes move, and the steps for each such set."""
 RAIL = 1e9
 """What holds nodes that slide on their tangent, by σ."""
-WORTH, FEW = 0.7, 5e-4
+WORTH, FEW = 0.8, 5e-4
 """Part of what exceeds the limit that a round may leave for another one, and share of ratios that are few."""
 _ANGLES = np.radians(60.0), np.radians(120.0)  # limits of θ0, so that bad corners improve
 
 
-def evened_mesh(mesh: QuadMesh, held: Bools, limit: float) -> QuadMesh:
-    """Return the mesh with nodes moved where edges along grid lines grow too fast.
+def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines) -> QuadMesh:
+    """Return the mesh with nodes moved where edges along its grid lines grow too fast.
 
     `held` (n,) nodes are fixed.
 
-    Other nodes on loops slide along them, except corners and periodic sides. `limit` is the logarithm
-    of the largest ratio of neighbouring edges. If it cannot be reached, it is exceeded as little as good
-    angles permit.
+    Other nodes on loops slide along them, except corners and periodic sides. Where a limit cannot be
+    reached, it is exceeded as little as good angles permit.
     """
-    lines = consecutive_edges(mesh)
     sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0)
     sliding[_periodic(mesh)] = False  # both nodes of a pair would have to move alike
     fixed = held | (mesh.wall_nodes & ~sliding)
     weight, before = EXCESS, np.inf
     for _ in range(ROUNDS):
         z = mesh.nodes[:, 0] + 1j * mesh.nodes[:, 1]
-        growth = growth_along(z, lines)
-        free = _near(mesh, lines, growth, limit) & ~fixed
-        excess = np.maximum(np.abs(growth) - limit, 0.0).sum()
-        many = np.count_nonzero(np.abs(growth) > limit) > FEW * len(lines)
+        growth = lines.growth(z)
+        free = _near(mesh, lines, growth) & ~fixed
+        excess = np.maximum(np.abs(growth) - lines.limit, 0.0).sum()
+        many = np.count_nonzero(np.abs(growth) > lines.limit) > FEW * len(growth)
         if not free.any() or (many and excess > WORTH * before):
             break
         before = excess
-        z, weight = _Patch.of(mesh, lines, z, free, _tangents(mesh, sliding & free), limit).evened(z, weight)
+        z, weight = _Patch.of(mesh, lines, z, free, _tangents(mesh, sliding & free)).evened(z, weight)
         mesh = on_loops(mesh.with_nodes(np.stack([z.real, z.imag], axis=1)), sliding & free)
     return mesh
 
@@ -88,51 +86,15 @@ def _tangents(mesh: QuadMesh, sliding: Bools) -> Complexes:
     return tangents
 
 
-def consecutive_edges(mesh: QuadMesh) -> Indices:
-    """Return the nodes (k, 3) of all pairs of consecutive edges along grid lines."""
-    edges = np.arange(len(mesh.edges))
-    beside, _ = line_neighbours(
-        np.ascontiguousarray(mesh.quads), mesh.edge_of, np.arange(len(mesh.nodes)), edges
-    )
-    first, second = np.repeat(edges, beside.shape[1]), beside.ravel()
-    one, other = mesh.edges[first[first < second]], mesh.edges[second[first < second]]
-    parts = []
-    for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
-        meet = one[:, i] == other[:, j]
-        parts.append(np.stack([one[meet, 1 - i], one[meet, i], other[meet, 1 - j]], axis=1))
-    return np.concatenate([*parts, _around_irregular(mesh)])
-
-
-def _around_irregular(mesh: QuadMesh) -> Indices:
-    """Return the nodes (k, 3) of edges at irregular vertices inside that have one edge between them.
-
-    Cells on both sides of a block's side that ends there are as large, then, as at its other nodes.
-    """
-    parts = [np.empty((0, 3), dtype=np.intp)]
-    for vertex in np.flatnonzero(mesh.irregular & ~mesh.wall_nodes).tolist():
-        ends = mesh.edges[(mesh.edges == vertex).any(axis=1)]
-        ends = ends.sum(axis=1) - vertex
-        away = mesh.nodes[ends] - mesh.nodes[vertex]
-        ends = ends[np.argsort(arctan2(away[:, 1], away[:, 0]), kind="stable")]
-        parts.append(np.stack([ends, np.full(len(ends), vertex), np.roll(ends, -2)], axis=1))
-    return np.concatenate(parts)
-
-
-def growth_along(z: Complexes, lines: Indices) -> Floats:
-    """Return the logarithms (k,) of the ratios of the edges between the nodes of `lines` (k, 3)."""
-    before, after = z[lines[:, 1]] - z[lines[:, 0]], z[lines[:, 2]] - z[lines[:, 1]]
-    return np.asarray(log(modulus(after) / modulus(before)))
-
-
-def _near(mesh: QuadMesh, lines: Indices, growth: Floats, limit: float) -> Bools:
-    """Return which nodes (n,) are near the middle ones of `lines` (k, 3) whose growth (k,) exceeds the limit.
+def _near(mesh: QuadMesh, lines: GrowthLines, growth: Floats) -> Bools:
+    """Return which nodes (n,) are near the middle ones of lines whose growth (k,) exceeds the limit.
 
     That is within `AROUND` cells, and `REACH` more for each cell that it takes to grow so much.
     """
-    uneven = np.abs(growth) > limit
+    uneven = np.abs(growth) > lines.limit
     near = np.zeros(len(mesh.nodes), dtype=bool)
-    reach = AROUND + np.floor(REACH * (np.abs(growth[uneven]) / limit - 1.0)).astype(np.intp)
-    middle = lines[uneven, 1]
+    reach = AROUND + np.floor(REACH * (np.abs(growth[uneven]) / lines.limit[uneven] - 1.0)).astype(np.intp)
+    middle = lines.nodes[uneven, 1]
     for cells in range(int(reach.max(initial=0)), 0, -1):
         near[middle[reach >= cells]] = True
         near[mesh.quads[near[mesh.quads].any(axis=1)]] = True
@@ -145,8 +107,7 @@ class _Patch:
 
     nodes: Indices
     """(m,) those that move."""
-    lines: Indices
-    """(k, 3) nodes of edges that follow each other."""
+    lines: GrowthLines
     corners: Indices
     """(c, 3) corners of cells, the nodes after and before them."""
     growth: GrowthLimit
@@ -165,11 +126,9 @@ class _Patch:
     """(n,) number of the part of the patch that a node is in, -1 for none; parts do not change each other."""
 
     @classmethod
-    def of(
-        cls, mesh: QuadMesh, lines: Indices, z: Complexes, free: Bools, tangents: Complexes, limit: float
-    ) -> _Patch:
+    def of(cls, mesh: QuadMesh, lines: GrowthLines, z: Complexes, free: Bools, tangents: Complexes) -> _Patch:
         nodes = np.flatnonzero(free)
-        lines = lines[free[lines].any(axis=1)]
+        lines = lines.some(np.asarray(free[lines.nodes].any(axis=1)))
         quads = mesh.quads[free[mesh.quads].any(axis=1)]
         corners = np.concatenate(
             [np.stack([quads[:, k], quads[:, (k + 1) % 4], quads[:, k - 1]], axis=1) for k in range(4)]
@@ -181,14 +140,14 @@ class _Patch:
             np.minimum.at(shortest, end, length)
         unknown = np.full((len(z), 2), -1, dtype=np.intp)
         unknown[nodes] = np.arange(2 * len(nodes)).reshape(-1, 2)
-        kinds = [unknown[of].reshape(len(of), 6) for of in (lines, corners)]
+        kinds = [unknown[of].reshape(len(of), 6) for of in (lines.nodes, corners)]
         return cls(
             nodes, lines, corners,
-            GrowthLimit.at(growth_along(z, lines), limit - MARGIN),
+            GrowthLimit.at(lines.growth(z), lines.limit - MARGIN),
             np.clip(_angles(z, corners), *_ANGLES),
             z[nodes], MOVE / shortest[nodes] ** 2,
             np.where(tangents == 0, 1.0, tangents), np.where(tangents[nodes] == 0, 1.0, RAIL),
-            NormalEquations(2 * len(nodes), kinds), _parts(free, (lines, quads)),
+            NormalEquations(2 * len(nodes), kinds), _parts(free, (lines.nodes, quads)),
         )  # fmt: skip
 
     def evened(self, z: Complexes, weight: float) -> tuple[Complexes, float]:
@@ -199,7 +158,7 @@ class _Patch:
             z[self.nodes] += damped(
                 partial(self._values, z, weight), z[self.nodes], self._step(z, weight), part
             )
-            if (np.abs(growth_along(z, self.lines)) <= self.growth.limit + MARGIN).all():
+            if (np.abs(self.lines.growth(z)) <= self.lines.limit).all():
                 break
         return z, weight
 
@@ -209,26 +168,27 @@ class _Patch:
         z[self.nodes] = at
         angles = _angles(z, self.corners)
         turned = np.where(angles > 0.0, ANGLE * (angles - self.angles) ** 2, np.inf)
-        grown = self.growth.values(growth_along(z, self.lines), weight)
+        grown = self.growth.values(self.lines.growth(z), weight)
         moved = self.stiffness * modulus(at - self.start) ** 2
         count = int(self.part.max()) + 1
         value = np.bincount(self.part[self.nodes], moved, count)
-        value += np.bincount(self.part[self.lines].max(axis=1), grown, count)
+        value += np.bincount(self.part[self.lines.nodes].max(axis=1), grown, count)
         value += np.bincount(self.part[self.corners].max(axis=1), turned, count)
         return np.asarray(value, dtype=np.float64)
 
     def _step(self, z: Complexes, weight: float) -> Complexes:
         """Return by how much nodes (m,) move in a step of Gauss-Newton."""
-        before, after = (z[self.lines[:, k + 1]] - z[self.lines[:, k]] for k in (0, 1))
+        nodes = self.lines.nodes
+        before, after = (z[nodes[:, k + 1]] - z[nodes[:, k]] for k in (0, 1))
         along, back = (z[self.corners[:, k]] - z[self.corners[:, 0]] for k in (1, 2))
         by_line = np.stack([1.0 / before, -1.0 / before - 1.0 / after, 1.0 / after], axis=1)
         by_corner = np.stack([1.0 / along - 1.0 / back, -1.0 / along, 1.0 / back], axis=1)
-        growth, turned = growth_along(z, self.lines), _angles(z, self.corners) - self.angles
+        growth, turned = self.lines.growth(z), _angles(z, self.corners) - self.angles
         axes = self.axes[self.nodes]
         pull = times(np.conj(axes) * self.stiffness, (z[self.nodes] - self.start))
         step = self.equations.step(
             [
-                self.growth.residuals(growth, _by_coordinates(times(self.axes[self.lines], by_line)), weight),
+                self.growth.residuals(growth, _by_coordinates(times(self.axes[nodes], by_line)), weight),
                 Residuals(
                     _by_coordinates(times(times(-1j, self.axes[self.corners]), by_corner)),
                     np.full(len(turned), ANGLE),

@@ -12,6 +12,7 @@ from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
+from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.energy.quads import optimise
 
@@ -42,11 +43,14 @@ def evened(layout: Layout, settings: LayerSettings, held: Bools | None = None) -
 
     Nodes `held` (n,) are fixed.
     """
-    held = np.zeros(len(layout.mesh.nodes), dtype=bool) if held is None else held.copy()
+    places = layout.mesh.places
+    held = np.zeros(len(places.loop), dtype=bool) if held is None else held.copy()
     for number in layout.layers:
         held[layout.blocks[number][:, : settings.constant + 1]] = True
+    walls = (places.loop > 0) | (held & (places.loop == 0) & ~layout.mesh.tied)
     try:
-        mesh = evened_mesh(layout.mesh, held, settings.steepest)
+        lines = GrowthLines.from_walls(layout, walls, settings.steepest, settings.elsewhere)
+        mesh = evened_mesh(layout.mesh, held, lines)
     except SolverError:  # nodes that coincide
         return layout
     return replace(layout, mesh=made_symmetric(mesh))

@@ -37,13 +37,13 @@ Numbers = TypeVar("Numbers", Floats, Complexes)
 
 @dataclass(frozen=True, eq=False)
 class GrowthLimit:
-    """The term for logarithms of ratios (k,): `limit` is L, `wanted` (k,) is ρ0."""
+    """The term for logarithms of ratios (k,): `limit` is L, one or (k,), `wanted` (k,) is ρ0."""
 
-    limit: float
+    limit: float | Floats
     wanted: Floats
 
     @classmethod
-    def at(cls, growth: Floats, limit: float) -> GrowthLimit:
+    def at(cls, growth: Floats, limit: float | Floats) -> GrowthLimit:
         """Return the term of a limit for initial logarithms `growth` (k,) of the ratios."""
         return cls(limit, np.clip(growth, -limit, limit))
 

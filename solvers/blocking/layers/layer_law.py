@@ -13,13 +13,14 @@ STEEPER = 0.2
 
 
 def layer_arcs(
-    length: Floats, first: float | Floats, last: Floats, cells: int, constant: int = 1, growth: float = 1.0
-) -> Floats:
+    length: Floats, first: float | Floats, last: Floats, cells: int, constant: int = 1, growth: float = 1.0,
+    steeper: float = STEEPER,
+) -> Floats:  # fmt: skip
     """Return distances (k, cells + 1) from 0 to `length` (k,) of cells that start at the wall.
 
     The first `constant` cells have the height `first`, a number or (k,). The logarithm of the others is a
     quadratic function of their index. It ends at about `last` (k,), or at the value for a constant ratio if
-    that is infinite. Neighbouring cells grow by at most `growth`, or by a fifth more, in logarithms, than
+    that is infinite. Neighbouring cells grow by at most `growth`, or by `steeper` more, in logarithms, than
     with a constant ratio. They do not shrink.
     """
     rows = cells - constant + 1  # the last constant cell and those that grow
@@ -27,7 +28,7 @@ def layer_arcs(
     rest = length - (constant - 1) * first
     growths = np.empty((len(length), rows))
     slope = np.where(np.isfinite(last), log(np.maximum(last, first) / first), np.inf)
-    layer_law(rest / first, slope, (rows - 1) * math.log(growth), STEEPER, growths)
+    layer_law(rest / first, slope, (rows - 1) * math.log(growth), steeper, growths)
     steps = first[:, None] * growths
     steps[:, 1:] *= ((rest - first) / steps[:, 1:].sum(axis=1))[:, None]  # the last digits
     steps = np.concatenate([np.repeat(first[:, None], constant - 1, axis=1), steps], axis=1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -15,16 +16,20 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.spacing.growth import cells_for_growth
 from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes, spaced
-from meshonet.solvers.blocking.layers.layer_law import layer_arcs
+from meshonet.solvers.blocking.layers.layer_law import STEEPER, layer_arcs
 from meshonet.solvers.blocking.layers.rings import Ring
-from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
+from meshonet.solvers.blocking.sizes.size_metric import GRADING, SizeMetric
 
 JOIN = 1.1
 """Ratio of the first cell outside a ring to the last one inside."""
-MARGIN = 1.21
-"""By how much cells may differ in the end, in logarithms, over the growth of layers."""
-MOST_GROWTH = 1.25
-"""Ratio of neighbouring cells that is allowed in any case."""
+NOMINAL, STEEPEST = 0.9, 0.97
+"""Mean and largest growth of layers over the limit, in logarithms: the rest is left for what follows."""
+ELSEWHERE, MOST_GROWTH = 1.21, 1.25
+"""By how much cells may differ along walls, in logarithms, over the limit, and ratio that is allowed in any
+case there.
+"""
+SPREAD = 0.65
+"""Largest growth of edge lengths per distance, over the growth from one cell to the next."""
 _WINDOW = 4  # columns to either side over which lengths along fronts are averaged
 
 
@@ -39,6 +44,8 @@ class LayerSettings:
     constant : number of cells with the height of the first one.
     multiple : divisor of the number of layers, so that coarser grids are nested.
     heights : first-cell heights of walls by name.
+    limit : largest ratio of neighbouring cells along lines from walls; 0 for that of layers, `growth`, and
+        a fifth more, in logarithms, where columns differ.
     """
 
     first: float
@@ -46,6 +53,12 @@ class LayerSettings:
     constant: int = 1
     multiple: int = 1
     heights: Mapping[str, float] = field(default_factory=dict)
+    limit: float = 0.0
+
+    @classmethod
+    def limited(cls, first: float, limit: float, **others: Any) -> LayerSettings:
+        """Return layers whose cells, and those beyond, do not grow faster than a limit."""
+        return cls(first, math.exp(NOMINAL * math.log(limit)), limit=limit, **others)
 
     def at(self, names: Collection[str]) -> LayerSettings:
         """Return the layers of a wall that consists of stretches with some `names`.
@@ -67,8 +80,34 @@ class LayerSettings:
 
     @property
     def steepest(self) -> float:
-        """Logarithm of the ratio by which neighbouring cells anywhere may differ in the end."""
-        return max(MARGIN * math.log(self.growth), math.log(MOST_GROWTH))
+        """Logarithm of the ratio by which neighbouring cells along lines from walls may differ in the end."""
+        return math.log(self.limit) if self.limit else self.elsewhere
+
+    @property
+    def elsewhere(self) -> float:
+        """The same along walls."""
+        return max(ELSEWHERE * math.log(self.limit or self.growth), math.log(MOST_GROWTH))
+
+    @property
+    def join(self) -> float:
+        """Ratio of the first cell beyond the layers to the last one of them."""
+        return min(JOIN, math.sqrt(self.limit)) if self.limit else JOIN
+
+    @property
+    def grading(self) -> float:
+        """Growth of cells outside of layers with the distance from walls."""
+        return min(GRADING, SPREAD * (self.limit - 1.0)) if self.limit else GRADING
+
+    def below(self, growth: float) -> float:
+        """Return a growth of cells outside of layers, `growth` unless that is too close to the limit."""
+        return min(growth, 1.0 + NOMINAL * (self.limit - 1.0)) if self.limit else growth
+
+    def arcs(self, length: Floats, first: float | Floats, last: Floats, cells: int) -> Floats:
+        """Return distances (k, cells + 1) from walls, as `layer_arcs`, that grow no faster than the limit."""
+        most, steeper = self.growth, STEEPER
+        if self.limit:
+            most, steeper = math.exp(STEEPEST * math.log(self.limit)), STEEPEST / NOMINAL - 1.0
+        return layer_arcs(length, first, last, cells, self.constant, most, steeper)
 
     def rows(self, thickness: float) -> int:
         """Return the number of layers that fill a thickness."""
@@ -99,7 +138,7 @@ def last_layers(
     """Return the heights (n,) of the first cells beyond `rows` layers with the total `thickness` (n,)."""
     none = np.full_like(thickness, np.inf)
     arcs = layer_arcs(thickness, settings.first if first is None else first, none, rows, settings.constant)
-    return np.asarray(JOIN * (arcs[:, -1] - arcs[:, -2]))
+    return np.asarray(settings.join * (arcs[:, -1] - arcs[:, -2]))
 
 
 def ring_rows(
@@ -126,10 +165,7 @@ def layer_lines(
     """
     columns = columns + arc_parts(columns)[..., None] * (ends - columns[:, -1])[:, None]
 
-    def law(length: Floats) -> Floats:
-        return layer_arcs(length, first, inner / JOIN, rows, settings.constant, settings.growth)
-
-    lines = spaced(columns, law)
+    lines = spaced(columns, lambda length: settings.arcs(length, first, inner / settings.join, rows))
     exact(lines, first)
     return lines
 

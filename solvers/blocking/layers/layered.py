@@ -30,6 +30,7 @@ from meshonet.solvers.blocking.layers.attach import attach
 from meshonet.solvers.blocking.layers.even_line import evened_loops
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
 from meshonet.solvers.blocking.layers.finished import finished, unfolded
+from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, heights_inside, ring_rows
 from meshonet.solvers.blocking.layers.outside import found_outside, taken_outside
 from meshonet.solvers.blocking.layers.placed_rows import held_nodes, layers_of, with_layers
@@ -136,7 +137,8 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
             if smallest_jacobian(even.mesh.nodes, even.mesh.quads) > 0.0:
                 coarse = _optimised(even, walls, rows, counts, ITERATIONS, on)
                 break
-        coarse = replace(coarse, mesh=evened_mesh(coarse.mesh, on | coarse.mesh.tied, times * EVEN))
+        lines = GrowthLines.of(coarse.mesh, times * EVEN, _factors(coarse, walls, rows, times))
+        coarse = replace(coarse, mesh=evened_mesh(coarse.mesh, on | coarse.mesh.tied, lines))
         coarse = walls.symmetric(coarse)
     with stage("refine", timings):
         chords = Chords.of(coarse, node_images(coarse.mesh, walls.mirrors))
@@ -155,6 +157,17 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
         moved = walls.symmetric(evened_loops(fine, walls.measures, EVEN, most=FEW_STEPS))
         fine = moved if smallest_jacobian(moved.mesh.nodes, moved.mesh.quads) > 0.0 else fine
         return _tied(walls.symmetric(with_layers(fine, rows, walls.of_rows)))
+
+
+def _factors(layout: Layout, walls: WallLayers, rows: WallRows, times: int) -> Floats:
+    """Return factors of edges (e,): those across rows of layers stand for the cell beyond the last layer."""
+    factors = np.ones(len(layout.mesh.edges))
+    for row, settings in enumerate(walls.of_rows):
+        last = settings.join * (1.0 - 1.0 / settings.growth)  # cell beyond the layers over their thickness
+        for table in rows.columns(layout, row):
+            across = layout.mesh.edges_between(table[:, :-1], table[:, 1:])
+            factors[across] = times * (table.shape[1] - 1) * last
+    return factors
 
 
 def _tied(layout: Layout) -> Layout:
@@ -210,7 +223,7 @@ def _joined(walls: WallLayers, rows: WallRows, layout: Layout) -> Layout:
         for number, ring in walls.rings.items()
     ]
     if walls.near is not None:
-        attached.append(walls.near.rows(mesh, heights_inside(layout, 0), settings.multiple))
+        attached.append(walls.near.rows(mesh, heights_inside(layout, 0), settings))
     whole = attach(layout, walls.domain, attached)
     whole = replace(whole, mesh=made_symmetric(whole.mesh))
     held = np.zeros(len(whole.mesh.nodes), dtype=bool)

@@ -17,6 +17,7 @@ from meshonet.geometry.spacing.growth import growing_steps
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
 from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
 from meshonet.solvers.blocking.layers.even_line import evened_steps
+from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 
 FAR = 4.0
 """Distance of an outer loop, relative to the circle around all bodies, above which it counts as distant."""
@@ -74,17 +75,18 @@ class NearField:
         circle = Loop(curve, (), outer.names[:1])
         return cls(circle, centre, NEAR * reach, outer, angles, radii, arcs)
 
-    def cells(self, first: float, multiple: int) -> int:
-        """Return the number of cells in a row to the outer loop, a multiple of `multiple`."""
+    def cells(self, first: float, settings: LayerSettings) -> int:
+        """Return the number of cells in a row to the outer loop."""
+        growth, multiple = settings.below(GROWTH), settings.multiple
         distance = float(self.radii.mean()) - self.radius
-        cells = max(2, math.ceil(math.log1p(distance / first * (GROWTH - 1.0)) / math.log(GROWTH)))
+        cells = max(2, math.ceil(math.log1p(distance / first * (growth - 1.0)) / math.log(growth)))
         return -(-cells // multiple) * multiple
 
-    def rows(self, mesh: QuadMesh, heights: Floats, multiple: int) -> Rows:
+    def rows(self, mesh: QuadMesh, heights: Floats, settings: LayerSettings) -> Rows:
         """Return straight rows from the nodes of the circle, loop 0 of `mesh`, to the outer loop.
 
         `heights` (k,) are those of the cells inside the circle. The rows start with these heights and grow by
-        at most `GROWTH`; their number is a multiple of `multiple`.
+        at most `GROWTH`, or less than the limit of the layers.
         """
         order = loop_nodes(mesh, 0)
         start = mesh.nodes[order]
@@ -95,10 +97,10 @@ class NearField:
         arcs = np.interp(angle, closed, np.append(self.arcs, self.arcs[0] + self.outer.length))
         end = self.outer.at(arcs)
         length = np.hypot(*(end - start).T)
-        wanted = evened_steps(heights, math.log(_EVEN)) * GROWTH**0.5
+        wanted = evened_steps(heights, math.log(_EVEN)) * math.sqrt(settings.below(GROWTH))
         mean = math.exp(log(wanted).mean())
         wanted = np.clip(wanted, mean / _UNLIKE, _UNLIKE * mean)
-        cells = self.cells(mean, multiple)
+        cells = self.cells(mean, settings)
         whole = np.stack([_shares(first, cells) for first in (mean / length).tolist()])
         # each row begins with its own cell and becomes like the others: their angles stay right
         own = np.clip(1.0 - np.arange(cells) / (_OWN * cells), 0.0, 1.0) ** 2

@@ -15,18 +15,13 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.algebraic.tfi import interpolate, parameters
 from meshonet.solvers.blocking.layers.attach import spaced
-from meshonet.solvers.blocking.layers.layer_law import layer_arcs
-from meshonet.solvers.blocking.layers.layer_rows import JOIN, LayerSettings, exact
+from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, exact
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
 from meshonet.solvers.blocking.sizes.on_loops import on_loops
 
-GROWING_COLUMNS = 50
+GROWING_COLUMNS = 75
 """Percentage of the columns of a row that layers fill without growing too fast: thicker ones become thinner
 as growth is evened.
-"""
-SPREADING = 1.1
-"""Growth of layers that end at walls of a body over that of other cells, in logarithms: at its corners the
-angles of the cells beyond are better.
 """
 SHORT_COLUMNS = 20
 """Percentage of columns that may be too short for so many first cells; cells shrink away from the wall
@@ -38,11 +33,7 @@ _STEPS = 50  # of bisection, to round-off
 
 
 def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings) -> int:
-    """Return the number of layers of a row that fill most columns without growing too fast.
-
-    Layers that end at walls must fit the cells beyond as they are, because nodes of walls stay: there are
-    fewer of them, which grow as fast as any cells may, or faster around a body, from which lines spread.
-    """
+    """Return the number of layers of a row that fill most columns without growing too fast."""
     blocks = np.nonzero(rows.across == row)[0]
     columns = np.concatenate(
         [
@@ -55,8 +46,6 @@ def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings)
     room = norms(np.diff(layout.mesh.nodes[columns], axis=1)).sum(axis=1) / first
     on = layout.mesh.places.loop[columns[:, 0]] == rows.loops[row]  # a wake has as many
     rise = math.log(settings.growth)
-    if (layout.mesh.domain.loops[rows.loops[row]].corner_cells == 1).any():
-        rise = settings.steepest * (SPREADING if rows.loops[row] else 1.0)
     wanted = extra + log(1.0 + math.expm1(rise) * np.maximum(room[on] - extra, 1.0)) / rise
     count = int(np.ceil(percentiles_of(wanted, (GROWING_COLUMNS,))[0]))
     count = min(count, int(percentiles_of(room, (SHORT_COLUMNS,))[0]))
@@ -157,15 +146,14 @@ def _lines(columns: Floats, beyond: Floats, opened: Floats, settings: LayerSetti
 
     def law(length: Floats) -> Floats:
         short = length < 1.02 * rows * first
-        arcs = layer_arcs(
-            np.where(short, 1.05 * rows * first, length), first, beyond / JOIN, rows, settings.constant,
-            settings.growth,
-        )  # fmt: skip
+        arcs = settings.arcs(
+            np.where(short, 1.05 * rows * first, length), first, beyond / settings.join, rows
+        )
         if short.any():
             arcs[short] = _by_one_ratio(length[short], np.full(int(short.sum()), first), rows)
         wide = opened > 0.0
         if wide.any():
-            last = np.minimum(beyond[wide] / JOIN, (1.0 - 1.0 / settings.growth) * length[wide])
+            last = np.minimum(beyond[wide] / settings.join, (1.0 - 1.0 / settings.growth) * length[wide])
             even = np.diff(_by_one_ratio(length[wide], last, rows), axis=1)[:, ::-1]
             steps = log(np.diff(arcs[wide], axis=1))
             steps = exp(steps + opened[wide, None] * (log(even) - steps))
@@ -200,7 +188,7 @@ def _wall_arcs(loop: Loop, arcs: Floats, beside: Floats, settings: LayerSettings
     column = np.hypot(*np.diff(beside, axis=0).T)
     length = np.array([abs(way)])
     last = length * column[-1] / column.sum()
-    away = layer_arcs(length, settings.first, last, len(arcs) - 1, settings.constant, settings.growth)[0]
+    away = settings.arcs(length, settings.first, last, len(arcs) - 1)[0]
     return np.concatenate([np.mod(arcs[0] + np.copysign(away[:-1], way), loop.length), arcs[-1:]])
 
 

@@ -12,11 +12,11 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import gaps_in_front, wall_points
 from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
-from meshonet.solvers.blocking.layers.layer_rows import JOIN, LayerSettings, last_layers
+from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, last_layers
 from meshonet.solvers.blocking.layers.marched import GAP_PART, SLOPE, check_room
 from meshonet.solvers.blocking.layers.rings import COLUMNS, place
 from meshonet.solvers.blocking.layers.stretches import Stretch
-from meshonet.solvers.blocking.sizes.size_metric import GRADING, SizeMetric
+from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.blocking.sizes.wall_turning import SAMPLES, sizes_by_bend
 
 TURN = np.radians(3.5)
@@ -116,9 +116,9 @@ class RowSizes:
         tangent = np.gradient(wake, axis=0)
         normals = turned_left(tangent) / np.hypot(*tangent.T)[:, None]
         away = np.hypot(*(wake - wake[0]).T)
-        across = self.thickness_behind(away, scale, settings) * (1.0 - 1.0 / settings.growth) * JOIN
+        across = self.thickness_behind(away, scale, settings) * (1.0 - 1.0 / settings.growth) * settings.join
         edge = np.interp(self.loop.corner_arcs[0], self.arcs, self.length)
-        along = scale * edge + GRADING * min(scale, 1.0) * away
+        along = scale * edge + settings.grading * min(scale, 1.0) * away
         return SizeMetric(wake, normals, across, np.maximum(along, across), np.inf)
 
 

@@ -151,8 +151,9 @@ class WallLayers:
             along = metric.along * max(size / metric.along.max(), 1.0) ** 0.5
             return replace(metric, along=np.minimum(along, size), largest=size)
         finer = min(scale, 1.0)  # as sizes at walls are, so that sizes grow alike at any count of cells
+        grading = min(metric.grading, self.settings.grading * max(scale, 1.0))  # with few cells, no less
         largest = self.rest.extent / 12.0 * scale**0.5
-        return replace(metric, largest=largest, grading=finer * metric.grading)
+        return replace(metric, largest=largest, grading=finer * grading)
 
     @property
     def measures(self) -> dict[int, Measures]:
@@ -173,7 +174,7 @@ class WallLayers:
         total = sum(along[number] * self.ring_rows(number) for number in self.rings)
         if self.near is not None:
             first = 2.0 * np.pi * self.near.radius / max(along[0], 1)
-            total += along[0] * self.near.cells(first, self.settings.multiple)
+            total += along[0] * self.near.cells(first, self.settings)
         return total
 
 

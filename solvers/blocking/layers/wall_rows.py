@@ -23,7 +23,7 @@ from meshonet.solvers.blocking.decomposition.quads.padding import pad_span
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
 from meshonet.solvers.blocking.decomposition.symmetry.symmetric import cut_on_mirrors
-from meshonet.solvers.blocking.layers.even_mesh import consecutive_edges, growth_along
+from meshonet.solvers.blocking.layers.growth_lines import consecutive_edges, growth_along
 from meshonet.solvers.blocking.layers.sheet import with_sheet
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.sizes.chords import Chords

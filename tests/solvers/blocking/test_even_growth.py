@@ -8,7 +8,8 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.solvers.blocking.layers.even_line import Measures, evened_places, evened_steps
-from meshonet.solvers.blocking.layers.even_mesh import consecutive_edges, evened_mesh, growth_along
+from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
+from meshonet.solvers.blocking.layers.growth_lines import GrowthLines, consecutive_edges, growth_along
 
 LIMIT = np.log(1.2)
 
@@ -89,7 +90,7 @@ def growth_of(mesh, free):
 
 def test_nodes_of_a_mesh_move_until_cells_grow_by_no_more_than_the_limit(mesh):
     held = np.isin(mesh.nodes[:, 1], [0.0, 1.0])  # nodes of the other sides slide
-    new = evened_mesh(mesh, held, np.log(1.25))
+    new = evened_mesh(mesh, held, GrowthLines.of(mesh, np.log(1.25)))
     assert growth_of(mesh, ~held) > 3.9
     assert growth_of(new, ~held) <= 1.25
     np.testing.assert_array_equal(new.nodes[held], mesh.nodes[held])
@@ -99,12 +100,14 @@ def test_nodes_of_a_mesh_move_until_cells_grow_by_no_more_than_the_limit(mesh):
 
 def test_a_mesh_that_grows_evenly_is_not_changed(mesh):
     held = np.zeros(625, dtype=bool)
-    np.testing.assert_array_equal(evened_mesh(mesh, held, np.log(4.5)).nodes, mesh.nodes)
+    np.testing.assert_array_equal(
+        evened_mesh(mesh, held, GrowthLines.of(mesh, np.log(4.5))).nodes, mesh.nodes
+    )
 
 
 def test_a_mesh_that_cannot_be_even_stays_valid(mesh):
     held = mesh.places.loop == 0  # sides keep their jumps, so cells beside them must
-    new = evened_mesh(mesh, held, np.log(1.25))
+    new = evened_mesh(mesh, held, GrowthLines.of(mesh, np.log(1.25)))
     corners = new.nodes[new.quads]
     edge = np.roll(corners, -1, axis=1) - corners
     before = np.roll(edge, 1, axis=1)

@@ -29,7 +29,7 @@ def counted(domain: Domain, **parameters: object) -> Counter[str]:
     return cells
 
 
-@pytest.mark.parametrize("count", [{"inlet": 40}, {"inlet": 31, "outlet": 20, "tube": 61}], ids=str)
+@pytest.mark.parametrize("count", [{"inlet": 40}, {"inlet": 31, "outlet": 24, "tube": 61}], ids=str)
 @pytest.mark.parametrize("more", [{}, {"cells": 9000}, LAYERS], ids=["few", "interpolated", "layers"])
 def test_sides_have_the_cells_given_for_them(count: dict[str, int], more: dict[str, object]) -> None:
     cells = counted(CHANNEL, count=count, **more)

@@ -1,0 +1,148 @@
+"""Pairs of consecutive edges along the grid lines of a mesh, and the limits of their ratios.
+
+The limit is strict along lines that start at walls and across the sides of blocks::
+
+    wall |--|---|----|-----|------| ...     through all blocks that the line crosses
+
+Elsewhere, for example along walls, another limit applies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from meshonet.geometry.arrays import Bools, Complexes, Floats, Indices
+from meshonet.geometry.blocks.shared_nodes import joined_labels
+from meshonet.geometry.elementary import arctan2, log, modulus
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.kernels._native import line_neighbours
+
+
+@dataclass(frozen=True, eq=False)
+class GrowthLines:
+    """Pairs of consecutive edges along grid lines.
+
+    Parameters
+    ----------
+    nodes : (k, 3) nodes of each pair.
+    limit : (k,) logarithms of the largest ratios.
+    offset : (k,) what is added to the logarithms of the ratios before they are compared with the limits.
+    """
+
+    nodes: Indices
+    limit: Floats
+    offset: Floats
+
+    @classmethod
+    def of(cls, mesh: QuadMesh, limit: float, factors: Floats | None = None) -> Self:
+        """Return all pairs of a mesh with one limit, for edges longer than these by `factors` (e,)."""
+        nodes = consecutive_edges(mesh)
+        offset = np.zeros(len(nodes))
+        if factors is not None:
+            before, after = _edges_of(mesh, nodes)
+            offset = log(factors[after] / factors[before])
+        return cls(nodes, np.full(len(nodes), limit), offset)
+
+    @classmethod
+    def from_walls(cls, layout: Layout, walls: Bools, limit: float, elsewhere: float) -> Self:
+        """Return all pairs of a layout, with a `limit` along lines from `walls` and across sides of blocks.
+
+        `walls` (n,) is a mask of nodes. The limit of the others, and around irregular vertices, is
+        `elsewhere`.
+        """
+        mesh = layout.mesh
+        nodes = consecutive_edges(mesh)
+        before, after = _edges_of(mesh, nodes)
+        leaving = _leaving(layout, walls)
+        strict = leaving[before] | leaving[after]
+        side = np.zeros(len(mesh.edges), dtype=bool)
+        for line in _sides(layout):
+            side[mesh.edges_between(line[:-1], line[1:])] = True
+        on_side, vertex = (np.zeros(len(mesh.nodes), dtype=bool) for _ in range(2))
+        on_side[mesh.edges[side]] = True
+        vertex[layout.vertices] = True
+        middle = nodes[:, 1]
+        strict |= vertex[middle] | (on_side[middle] & ~side[before])
+        strict &= ~mesh.irregular[middle] | mesh.wall_nodes[middle]
+        return cls(nodes, np.where(strict, limit, elsewhere), np.zeros(len(nodes)))
+
+    def some(self, which: Bools) -> Self:
+        """Return the pairs `which` (k,)."""
+        return type(self)(self.nodes[which], self.limit[which], self.offset[which])
+
+    def growth(self, z: Complexes) -> Floats:
+        """Return the logarithms (k,) of the ratios of edges between nodes `z` (n,), with the offset."""
+        return growth_along(z, self.nodes) + self.offset
+
+
+def growth_along(z: Complexes, lines: Indices) -> Floats:
+    """Return the logarithms (k,) of the ratios of the edges between the nodes of `lines` (k, 3)."""
+    before, after = z[lines[:, 1]] - z[lines[:, 0]], z[lines[:, 2]] - z[lines[:, 1]]
+    return np.asarray(log(modulus(after) / modulus(before)))
+
+
+def consecutive_edges(mesh: QuadMesh) -> Indices:
+    """Return the nodes (k, 3) of all pairs of consecutive edges along grid lines."""
+    edges = np.arange(len(mesh.edges))
+    beside, _ = line_neighbours(
+        np.ascontiguousarray(mesh.quads), mesh.edge_of, np.arange(len(mesh.nodes)), edges
+    )
+    first, second = np.repeat(edges, beside.shape[1]), beside.ravel()
+    one, other = mesh.edges[first[first < second]], mesh.edges[second[first < second]]
+    parts = []
+    for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        meet = one[:, i] == other[:, j]
+        parts.append(np.stack([one[meet, 1 - i], one[meet, i], other[meet, 1 - j]], axis=1))
+    return np.concatenate([*parts, _around_irregular(mesh)])
+
+
+def _around_irregular(mesh: QuadMesh) -> Indices:
+    """Return the nodes (k, 3) of edges at irregular vertices inside that have one edge between them.
+
+    Cells on both sides of a block's side that ends there are as large, then, as at its other nodes.
+    """
+    parts = [np.empty((0, 3), dtype=np.intp)]
+    for vertex in np.flatnonzero(mesh.irregular & ~mesh.wall_nodes).tolist():
+        ends = mesh.edges[(mesh.edges == vertex).any(axis=1)]
+        ends = ends.sum(axis=1) - vertex
+        away = mesh.nodes[ends] - mesh.nodes[vertex]
+        ends = ends[np.argsort(arctan2(away[:, 1], away[:, 0]), kind="stable")]
+        parts.append(np.stack([ends, np.full(len(ends), vertex), np.roll(ends, -2)], axis=1))
+    return np.concatenate(parts)
+
+
+def _edges_of(mesh: QuadMesh, nodes: Indices) -> tuple[Indices, Indices]:
+    """Return the first and the second edge (k,) of pairs with these `nodes` (k, 3)."""
+    return mesh.edges_between(nodes[:, 0], nodes[:, 1]), mesh.edges_between(nodes[:, 1], nodes[:, 2])
+
+
+def _sides(layout: Layout) -> list[Indices]:
+    """Return the nodes of the four sides of each block: two that end its lines along i, two along j."""
+    return [side for block in layout.blocks for side in (block[0], block[-1], block[:, 0], block[:, -1])]
+
+
+def _leaving(layout: Layout, walls: Bools) -> Bools:
+    """Return which edges (e,) are along a direction of a block whose lines start at walls, or continue such.
+
+    `walls` (n,) is a mask of nodes. Lines continue across periodic sides.
+    """
+    mesh, sides = layout.mesh, _sides(layout)
+    partner = mesh.places.partner
+    image = np.where(partner >= 0, partner, np.arange(len(partner)))
+    sizes = [len(side) - 1 for side in sides]
+    ends = np.concatenate([np.stack([side[:-1], side[1:]], axis=1) for side in sides])
+    ends = np.sort(image[ends], axis=1)
+    number = np.repeat(np.arange(len(sides)) // 2, sizes)  # of the direction: 2 for each block
+    _, edge = np.unique(ends[:, 0] * len(partner) + ends[:, 1], return_inverse=True)
+    label = joined_labels(2 * len(layout.blocks) + len(ends), [(number, 2 * len(layout.blocks) + edge)])
+    starts = {int(label[k // 2]) for k, side in enumerate(sides) if walls[side].all()}
+    leaving = np.zeros(len(mesh.edges), dtype=bool)
+    for k, block in enumerate(layout.blocks):
+        for axis, table in enumerate((block, block.T)):
+            if int(label[2 * k + axis]) in starts:
+                leaving[mesh.edges_between(table[:-1], table[1:])] = True
+    return leaving
