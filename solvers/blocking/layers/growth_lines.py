@@ -51,14 +51,15 @@ class GrowthLines:
     def from_walls(cls, layout: Layout, walls: Bools, limit: float, elsewhere: float) -> Self:
         """Return all pairs of a layout, with a `limit` along lines from `walls` and across sides of blocks.
 
-        `walls` (n,) is a mask of nodes. The limit of the others, and around irregular vertices, is
-        `elsewhere`.
+        `walls` (n,) is a mask of nodes. The limit of the others, around irregular vertices, and along walls
+        in the blocks beside them, is `elsewhere`, or the ratio on the wall, whose nodes stay.
         """
         mesh = layout.mesh
         nodes = consecutive_edges(mesh)
         before, after = _edges_of(mesh, nodes)
         leaving = _leaving(layout, walls)
-        strict = leaving[before] | leaving[after]
+        beside = _beside(layout, walls)
+        along = beside[before] & beside[after]
         side = np.zeros(len(mesh.edges), dtype=bool)
         for line in _sides(layout):
             side[mesh.edges_between(line[:-1], line[1:])] = True
@@ -66,9 +67,13 @@ class GrowthLines:
         on_side[mesh.edges[side]] = True
         vertex[layout.vertices] = True
         middle = nodes[:, 1]
-        strict |= vertex[middle] | (on_side[middle] & ~side[before])
+        strict = (vertex[middle] | (on_side[middle] & ~side[before])) & ~along
+        strict |= leaving[before] | leaving[after]
         strict &= ~mesh.irregular[middle] | mesh.wall_nodes[middle]
-        return cls(nodes, np.where(strict, limit, elsewhere), np.zeros(len(nodes)))
+        limits = np.where(strict, limit, elsewhere)
+        own = along & ~strict
+        limits[own] = np.maximum(elsewhere, _growth_of_walls(layout, walls, nodes)[middle[own]])
+        return cls(nodes, limits, np.zeros(len(nodes)))
 
     def some(self, which: Bools) -> Self:
         """Return the pairs `which` (k,)."""
@@ -146,3 +151,28 @@ def _leaving(layout: Layout, walls: Bools) -> Bools:
             if int(label[2 * k + axis]) in starts:
                 leaving[mesh.edges_between(table[:-1], table[1:])] = True
     return leaving
+
+
+def _beside_walls(layout: Layout, walls: Bools) -> list[Indices]:
+    """Return the nodes (k, m) of blocks beside walls, from these on; `walls` (n,) is a mask of nodes."""
+    tables = [t for block in layout.blocks for t in (block, block[:, ::-1], block.T, block.T[:, ::-1])]
+    return [table for table in tables if walls[table[:, 0]].all()]
+
+
+def _beside(layout: Layout, walls: Bools) -> Bools:
+    """Return which edges (e,) run along walls in the blocks beside them."""
+    beside = np.zeros(len(layout.mesh.edges), dtype=bool)
+    for table in _beside_walls(layout, walls):
+        beside[layout.mesh.edges_between(table[:-1], table[1:])] = True
+    return beside
+
+
+def _growth_of_walls(layout: Layout, walls: Bools, nodes: Indices) -> Floats:
+    """Return the growth (n,) along walls at nodes on them, and at those of the lines that start there."""
+    growth = np.zeros(len(layout.mesh.nodes))
+    on = nodes[walls[nodes].all(axis=1)]
+    z = layout.mesh.nodes[:, 0] + 1j * layout.mesh.nodes[:, 1]
+    np.maximum.at(growth, on[:, 1], np.abs(growth_along(z, on)))
+    for table in _beside_walls(layout, walls):
+        growth[table] = np.maximum(growth[table], growth[table[:, :1]])
+    return growth
