@@ -204,6 +204,7 @@ bench: $(VENV)/.developing
 	$(BIN)/python benchmarks/bench_quads.py --page docs/benchmarks/quad-operator.md
 	$(BIN)/python benchmarks/bench_bodies.py --page docs/benchmarks/body-operator.md
 	$(BIN)/python benchmarks/bench_confidence.py --page docs/benchmarks/confidence.md
+	$(BIN)/python benchmarks/bench_layers.py --page docs/benchmarks/layers.md
 	$(BIN)/python benchmarks/yardstick entries build/yardstick --page docs/benchmarks/yardstick.md
 	$(BIN)/python benchmarks/bench_variational.py --page docs/benchmarks/variational.md
 	$(BIN)/python benchmarks/bench_hyperbolic.py $(if $(FILES),--files $(FILES)) --page docs/benchmarks/marching.md

@@ -31,6 +31,7 @@ SCRIPTS = {
     "kershaw": "kershaw",
     "blocks": "blocks",
     "confidence": "confidence",
+    "layers": "layers",
 }
 """Page to script, benchmarks/bench_NAME.py."""
 

@@ -1,0 +1,143 @@
+"""Layers on a CPU: distance from the compiled solvers, folds, time of gradients.
+
+    python benchmarks/bench_layers.py [--count 1000] [--nodes 65] [--page docs/benchmarks/layers.md]
+
+The shapes are random four-sided domains, and random airfoils around which the far field is at 15 chords.
+"""
+
+from __future__ import annotations
+
+import os
+
+for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import torch
+from clock import clocked
+from page import arguments, publish
+from shapes import random_airfoils, random_domains
+
+import meshonet
+from meshonet import layer
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import MeshonetError
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.solvers.algebraic.tfi import tfi
+from meshonet.solvers.conformal.solve import solve as conformal
+from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.energy.variational import solve as variational
+
+HEAD = """# Layers
+
+<!-- made by python benchmarks/bench_layers.py --page docs/benchmarks/layers.md -->
+
+Use this page to see how exactly [`meshonet.layer`](../guide/layers.md) solves what the compiled
+solvers solve, and what a gradient costs. Each function computes one batch, in double precision and, from
+sides rounded to single precision, in single precision. *Distance* is the largest one of a node from that of
+the compiled solver, relative to the domain size, over all members. Grids in single precision are compared
+with those of the compiled solver inside the rounded sides; their nodes are themselves rounded, to 6e-8.
+*Folded* counts members with folded cells, *more* those of them that the compiled solver does not fold.
+*Backward* is the time of a gradient of all boundary nodes over that of the grids. Times are processor time
+of one thread.
+"""
+
+TAIL = """
+The compiled variational solver stops before the optimum. There the distance is that from the nodes to which
+Newton's method on the compiled gradient moves them. Winslow's equations themselves fold grids at sharp
+corners; `solve-pde` repairs these. `conformal` refuses airfoils for which Picard's iteration has not settled
+after 12 steps; they are left out here.
+"""
+
+FUNCTIONS = "transfinite,winslow,variational,conformal"
+
+
+def exact(name: str, boundary: Boundary, nodes: Floats) -> Floats:
+    """Return the nodes of the compiled solver; `nodes` are those of the layer."""
+    if name == "transfinite":
+        return tfi(boundary).nodes
+    if name == "winslow":
+        return winslow(boundary, tol=1e-12, max_cycles=100).grid.nodes
+    if name == "conformal":
+        return conformal([boundary], 12)[0].grid.nodes
+    grid = variational(boundary, tol=1e-8, max_cycles=1000).grid
+    return meshonet.optimum_derivative(grid.with_nodes(nodes)).grid.nodes
+
+
+def rows(count: int, n: int, functions: Sequence[str]) -> Iterator[str]:
+    """Yield the table."""
+    yield "| function | precision | grids | distance | folded | more | ms a grid | backward |"
+    yield "| --- | --- | --- | --- | --- | --- | --- | --- |"
+    domains = [shape.make(1) for shape in random_domains(count, n)]
+    airfoils = [shape.make(1) for shape in random_airfoils(count, n)]
+    for name in functions:
+        drawn, names = domains, ("south", "north", "west", "east")
+        function: Callable[..., Any] = getattr(layer, name)
+        if name == "conformal":
+            names, function = names[:2], lambda *sides: layer.conformal(*sides, n)
+            drawn = [b for b in airfoils if converges(function, b)]
+        for dtype in (torch.float64, torch.float32):
+            sides = [torch.tensor(np.stack([getattr(b, side) for b in drawn]), dtype=dtype) for side in names]
+            yield f"| `{name}` | {str(dtype)[-2:]} bits | {' | '.join(words(name, function, sides, drawn))} |"
+
+
+def converges(function: Callable[..., Any], body: Boundary) -> bool:
+    """Return whether there is a grid around a body."""
+    try:
+        function(torch.tensor(body.south), torch.tensor(body.north))
+    except MeshonetError:
+        return False
+    return True
+
+
+def words(
+    name: str, function: Callable[..., Any], sides: Sequence[Any], drawn: Sequence[Boundary]
+) -> Iterator[str]:
+    """Yield the cells of a row."""
+    yield str(len(drawn))
+    for side in sides:
+        side.requires_grad_()
+    function(*(side[:1] for side in sides))  # loads what torch loads late
+    forward, nodes = clocked(partial(function, *sides))
+    backward, _ = clocked(nodes.double().square().sum().backward)
+    grids = nodes.detach().double().numpy()
+    far, folded, more = 0.0, 0, 0
+    for k, own in enumerate(grids):
+        given = [side[k].detach().double().numpy() for side in sides]
+        compiled = exact(name, within(given, drawn[k]), own)
+        far = max(far, float(np.abs(compiled - own).max() / np.ptp(own, axis=(0, 1)).max()))
+        folds = count_folded(own) > 0
+        folded, more = folded + folds, more + (folds and not count_folded(compiled))
+    yield f"{far:.0e} | {folded} | {more} | {1e3 * forward / len(grids):.1f} | {backward / forward:.2f}"
+
+
+def within(sides: Sequence[Floats], like: Boundary) -> Boundary:
+    """Return the boundary with four sides, or with the body and the far field of one `like` it."""
+    if len(sides) == 4:
+        return Boundary(*sides)
+    cut = np.linspace(sides[0][0], sides[1][0], like.nj)
+    return replace(like, south=sides[0], north=sides[1], west=cut, east=cut)
+
+
+def main() -> None:
+    """Print the page, or write it."""
+    parser = arguments(__doc__)
+    parser.add_argument("--count", type=int, default=1000, help="seeds of domains, and airfoils")
+    parser.add_argument("--nodes", type=int, default=65, help="along a side")
+    parser.add_argument("--functions", default=FUNCTIONS, help="some of these, separated by commas")
+    options = parser.parse_args()
+    torch.set_num_threads(1)
+    publish(
+        "\n".join([HEAD, *rows(options.count, options.nodes, options.functions.split(",")), TAIL]),
+        options.page,
+    )
+
+
+if __name__ == "__main__":
+    main()
