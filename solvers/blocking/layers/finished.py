@@ -49,7 +49,10 @@ def evened(layout: Layout, settings: LayerSettings, held: Bools | None = None) -
         held[layout.blocks[number][:, : settings.constant + 1]] = True
     walls = (places.loop > 0) | (held & (places.loop == 0) & ~layout.mesh.tied)
     try:
-        lines = GrowthLines.from_walls(layout, walls, settings.steepest, settings.elsewhere)
+        if settings.limit:
+            lines = GrowthLines.from_walls(layout, walls, settings.steepest, settings.elsewhere)
+        else:
+            lines = GrowthLines.of(layout.mesh, settings.elsewhere)
         mesh = evened_mesh(layout.mesh, held, lines)
     except SolverError:  # nodes that coincide
         return layout
