@@ -39,7 +39,7 @@ ROUNDS, STEPS = 8, 3
 """How often it is looked which nodes move, and the steps for each such set."""
 RAIL = 1e9
 """What holds nodes that slide on their tangent, by σ."""
-WORTH, FEW = 0.8, 5e-4
+WORTH, FEW = 0.7, 5e-4
 """Part of what exceeds the limit that a round may leave for another one, and share of ratios that are few."""
 _ANGLES = np.radians(60.0), np.radians(120.0)  # limits of θ0, so that bad corners improve
 
