@@ -48,7 +48,7 @@ def test_results_are_made_of_meshonet_commands(tmp_path: Path) -> None:
         for seed in (0, 1, 2):
             assert re.search(rf"train \S+ --model {model} --epochs 1000 --seed {seed} ", text)
     assert len(re.findall(r"--epochs 15000 ", text)) == 22
-    assert len(re.findall(r"train \S+\.fewer\.h5 --model \S+ --epochs 300 --seed [01] ", text)) == 9 * 12 * 2
+    assert len(re.findall(r"train \S+\.fewer\.h5 --model \S+ --epochs 300 --seed [01] ", text)) == 10 * 12 * 2
     assert len(re.findall(r"meshonet-hard --set modes=24 --points 300 --epochs 3000 ", text)) == 2
     words = "--set within=true --set modes=24 --points 300 --rate 0.003 --schedule cosine --epochs 15000 "
     assert text.count(words) == 2

@@ -200,7 +200,7 @@ def test_counts_with_which_cells_stay_folded_are_named(meshonet: Meshonet) -> No
     geometry = {"type": "Polygon", "coordinates": [channel, ellipse.tolist()]}
     text = json.dumps({"type": "Feature", "properties": properties, "geometry": geometry})
     Path("channel.geojson").write_text(text)
-    counts = "body=48,inlet=24,floor=60"
+    counts = "body=24,inlet=24,floor=60"
     done = meshonet("infer", "channel.geojson", "--first-cell", "5e-3", "--count", counts, "-o", "g.h5")
     assert done.code == 3
-    assert "leave --count body=48, inlet=24, floor=60 out, or give numbers nearer to" in done.err
+    assert "leave --count body=24, inlet=24, floor=60 out, or give numbers nearer to" in done.err

@@ -11,7 +11,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.solvers.blocking.layers.even_mesh import consecutive_edges, growth_along
+from meshonet.solvers.blocking.layers.growth_lines import consecutive_edges, growth_along
 from meshonet.solvers.energy.quad_problem import Problem, smallest_jacobian, unknowns_of
 from meshonet.solvers.energy.quads import SIZED, minimise, optimise
 from meshonet.solvers.energy.walls import turned, walls_of
