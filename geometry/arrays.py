@@ -112,6 +112,11 @@ def arc_parts(line: Floats) -> Floats:
     return np.asarray(arcs / arcs[..., -1:])
 
 
+def smooth_step(t: Floats) -> Floats:
+    """Return t² (3 - 2 t): from 0 at 0 to 1 at 1, with slope 0 at both."""
+    return np.asarray(t * t * (3.0 - 2.0 * t))
+
+
 def running_sums(values: Floats, count: int) -> Floats:
     """Return the sums (n - count + 1,) of each `count` consecutive `values` (n,)."""
     last = len(values) - count + 1

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Side, distinct, norms
+from meshonet.geometry.arrays import Floats, Side, arc_parts, distinct
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
@@ -95,8 +95,7 @@ def resample_patches(
     def moved(patch: Patch) -> Patch:
         marks = along_xi if patch.side in _AROUND else along_eta
         start, stop = (round(float(np.interp(k, *marks))) for k in (patch.start, patch.stop))
-        start = min(start, marks[1][-1] - 1)
-        return replace(patch, start=start, stop=max(stop, start + 1))
+        return _with_cell(patch, start, stop, marks[1][-1])
 
     return tuple(moved(patch) for patch in patches)
 
@@ -108,15 +107,14 @@ def patches_in_place(had: Boundary, has: Boundary) -> tuple[Patch, ...]:
     """
 
     def moved(patch: Patch) -> Patch:
-        before, after = (_parts(getattr(edges, patch.side)) for edges in (had, has))
+        before, after = (arc_parts(getattr(edges, patch.side)) for edges in (had, has))
         start, stop = (int(np.abs(after - before[k]).argmin()) for k in (patch.start, patch.stop))
-        start = min(start, len(after) - 2)
-        return replace(patch, start=start, stop=max(stop, start + 1))
+        return _with_cell(patch, start, stop, len(after) - 1)
 
     return tuple(moved(patch) for patch in had.patches)
 
 
-def _parts(edge: Floats) -> Floats:
-    """Return the arc lengths (n,) of nodes (n, 2) along an edge, over its length."""
-    arcs = np.concatenate([[0.0], np.cumsum(norms(np.diff(edge, axis=0)))])
-    return np.asarray(arcs / arcs[-1])
+def _with_cell(patch: Patch, start: int, stop: int, last: int) -> Patch:
+    """Return a patch from `start` to `stop`, with a cell at least, on a side whose last node is `last`."""
+    start = min(start, last - 1)
+    return replace(patch, start=start, stop=max(stop, start + 1))

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, norms, smooth_step
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.elementary import arctan2, power
 
@@ -148,7 +148,7 @@ def _row_places(rim: Floats, first: float, length: float, last: float) -> tuple[
     t = np.concatenate([[0.0], np.cumsum(steps)])[:, None]
     t /= t[-1]
     even = np.linspace(0.0, 1.0, len(rim))
-    fade = t * t * (3.0 - 2.0 * t)
+    fade = smooth_step(t)
     turn = rim[:, 1].copy()
     turn[-1] = 1.0
     return rim[:, 0] + t * (1.0 - rim[:, 0]), (1.0 - fade) * turn + fade * even

@@ -8,13 +8,13 @@ half is the mirror image.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from itertools import islice, pairwise
 
 import numpy as np
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.aircraft.dimensions import aircraft_dimensions
-from meshonet.geometry.arrays import Floats, Indices, norms
+from meshonet.geometry.arrays import Floats, Indices, arc_lengths, arc_parts, norms
 from meshonet.geometry.blocks.block import Block, face_of
 from meshonet.geometry.blocks.find_connections import find_connections
 from meshonet.geometry.blocks.grid import Grid
@@ -30,7 +30,7 @@ from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.aircraft.tip_cells import last_cells
 from meshonet.solvers.aircraft.wall_normals import off_body, off_tip, off_wing
 from meshonet.solvers.blocking.layers.attach import sampled
-from meshonet.solvers.rows.columns import arcs_of, resampled, with_first
+from meshonet.solvers.rows.columns import resampled, with_first
 from meshonet.solvers.rows.span_lines import SpanLines
 from meshonet.solvers.rows.span_spacing import (
     SAMPLES,
@@ -146,9 +146,7 @@ def _level(space: BodyMap, plan: AircraftPlan, k: int, first: float) -> list[Flo
 
 def _fade(columns: Floats) -> Floats:
     """Return 1 at the first to 0 at the last of the nodes of columns (n, m, 2 or 3), by arc length."""
-    steps = norms(np.diff(columns, axis=1))
-    arcs = arcs_of(steps)
-    return np.asarray(1.0 - arcs / arcs[:, -1:])
+    return np.asarray(1.0 - arc_parts(columns))
 
 
 def _along_wings(
@@ -188,7 +186,7 @@ def _spaced(space: BodyMap, places: Floats, ends: Ends, growth: float) -> Floats
 
 def _arcs(space: BodyMap, lines: Floats) -> Floats:
     """Return the arc lengths (p, k) in space at places (p, k, 3) on lines."""
-    return arcs_of(norms(np.diff(space.points(lines), axis=1)))
+    return arc_lengths(space.points(lines))
 
 
 def _resampled(lines: Floats, arcs: Floats, ends: Ends, growth: float, cells: int) -> Floats:
@@ -238,13 +236,10 @@ def _names(plan: AircraftPlan, aircraft: Aircraft) -> list[str]:
     wings = [wing.name for wing in plan.wings]
     names, firsts, members = list[str](), list[str](), iter(wings)
     for column in plan.levels.columns:
-        first = next(members)
+        first, *fins = islice(members, len(column.collars))
         firsts.append(first)
-        names += [f"{first}-{part}" for part in ("collar", "above", "below")]
-        if column.fin_alone:
-            names.remove(f"{first}-above")
-        elif column.fin:
-            names.append(f"{next(members)}-collar")
+        parts = ("collar", "below") if column.fin_alone else ("collar", "above", "below")
+        names += [*(f"{first}-{part}" for part in parts), *(f"{name}-collar" for name in fins)]
     names += [f"{before}-to-{after}" for before, after in pairwise(firsts)]
     names += [f"{body}-{part}" for part in ("nose", "nose-core", "tail", "tail-core")]
     return [*names, *(f"{tips[name]}-{part}" for name in wings for part in ("ring", "core"))]
@@ -262,16 +257,15 @@ def _patches(blocks: tuple[Block, ...], plan: AircraftPlan, tip: int, aircraft: 
     """Yield the patches: body, wings, tips, far field and plane of symmetry."""
     tips = dict(aircraft.patches)
     names = [wing.name for wing in plan.wings]
+    collars = dict(zip(plan.levels.collar_patches, names, strict=True))
     for number, block in enumerate(blocks):
         ni, nj, nk = (count - 1 for count in block.counts)
         inside = number - plan.levels.patches
         name = aircraft.body.name if inside < 0 else tips[names[inside // 2]]
         yield Patch(name, "bottom", 0, ni, (0, nj), number, "wall")
         yield Patch("farfield", "top", 0, ni, (0, nj), number)
-        if number in plan.levels.collar_patches:
-            yield Patch(
-                names[plan.levels.collar_patches.index(number)], "south", 0, ni, (0, tip), number, "wall"
-            )
+        if number in collars:
+            yield Patch(collars[number], "south", 0, ni, (0, tip), number, "wall")
         for side in ("west", "east", "south", "north"):
             if not face_of(block.nodes[..., 2], side).any():
                 yield Patch("symmetry", side, 0, ni if side in ("south", "north") else nj, (0, nk), number)

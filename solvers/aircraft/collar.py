@@ -19,7 +19,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, arc_lengths, norms
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.cubic import CubicTable, cubic_spline
 from meshonet.geometry.elementary import exp, power
@@ -213,7 +213,7 @@ def _lines(root: Floats, outer: Floats, straight: float = 0.0) -> tuple[Floats, 
         middle = root + _BENT * norms(outer - root)[:, None] * _normals(root)
         ends = root[:, None] * (1.0 - u) ** 2 + outer[:, None] * u**2
         lines += straight * (ends + middle[:, None] * (2.0 * u * (1.0 - u)) - lines)
-    return arcs_of(norms(np.diff(lines, axis=1))), lines
+    return arc_lengths(lines), lines
 
 
 def _normals(loop: Floats) -> Floats:

@@ -13,10 +13,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, norms
+from meshonet.geometry.arrays import Floats, Indices, arc_lengths, norms
 from meshonet.geometry.elementary import exp
 from meshonet.solvers.aircraft.wing_lines import WingLines
-from meshonet.solvers.rows.columns import arcs_of
 
 _WAY = 0.6
 """Length over which a line is moved, over its distance from another wall."""
@@ -33,7 +32,7 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
     """
     turned = (normal - points[1]) / first
     turned[points[0, :, 2] == 0.0, 2] = 0.0
-    away = [arcs_of(norms(np.diff(points[0, ring], axis=1))) for ring in rings]
+    away = [arc_lengths(points[0, ring]) for ring in rings]
     most = min(float(apart[:, -1].min()) for apart in away)
     beside = np.full(points.shape[1], most)
     for ring, apart in zip(rings, away, strict=True):
@@ -53,7 +52,7 @@ def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Fl
     span /= norms(span)[..., None]
     square = away - (away * span).sum(axis=-1)[..., None] * span
     turned = square / norms(square)[..., None] - away
-    arcs = arcs_of(norms(np.diff(wall, axis=0)).T).T
+    arcs = arc_lengths(wall.swapaxes(0, 1)).T
     beside = np.minimum(arcs, arcs[-1] - arcs)
     beside[[0, 1, -2, -1]] = 0.0
     shape = lines.shape
@@ -75,7 +74,7 @@ def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Flo
     `cap` (c,) are the columns that fill the last section, `ring` (n, m) those of its collar. Lines of the
     collar turn with those of the wing, the less the farther out they are.
     """
-    apart = arcs_of(norms(np.diff(points[0, ring], axis=1)))
+    apart = arc_lengths(points[0, ring])
     fade = 1.0 - apart / apart[:, -1:]
     columns = np.concatenate([cap, ring.ravel()])
     away = points[1, columns] - points[0, columns]
@@ -93,7 +92,7 @@ def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Flo
 
 def _moved(lines: Floats, beside: Floats) -> Floats:
     """Return how far nodes of lines (k, p, 3) move by a unit of turn, given distances (p,) beside them."""
-    arcs = arcs_of(norms(np.diff(lines, axis=0)).T).T
+    arcs = arc_lengths(lines.swapaxes(0, 1)).T
     way = np.where(beside > 0.0, _WAY * beside, 1.0)
     fade = 1.0 - arcs / arcs[-1]
     return np.where(beside > 0.0, arcs * exp(-arcs / way) * fade * fade, 0.0)

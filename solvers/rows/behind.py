@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.arrays import Floats, Indices, smooth_step
 from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.rows.key_sections import KeySection
@@ -73,8 +73,7 @@ def _moved(section: KeySection, moved: Indices, wanted: Floats, part: Floats) ->
 
 
 def _smooth(t: Floats) -> Floats:
-    t = np.clip(t, 0.0, 1.0)
-    return np.asarray(t * t * (3.0 - 2.0 * t))
+    return smooth_step(np.clip(t, 0.0, 1.0))
 
 
 def _cells_from(mesh: QuadMesh, columns: Indices) -> Floats:

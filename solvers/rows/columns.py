@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, arc_parts, norms
+from meshonet.geometry.arrays import Floats, Indices, arc_parts, norms, smooth_step
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.layers.attach import sampled
@@ -32,7 +32,7 @@ def straight_near(lines: Floats, away: Floats) -> Floats:
     """
     thickness = norms(np.diff(lines, axis=1)).sum(axis=1).max()
     t = np.clip((_MARCHED - away / thickness) / (_MARCHED - _STRAIGHT), 0.0, 1.0)
-    part = t * t * (3.0 - 2.0 * t)
+    part = smooth_step(t)
     straight = lines[:, :1] + arc_parts(lines)[..., None] * (lines[:, -1:] - lines[:, :1])
     return np.asarray(lines + part[:, None, None] * (straight - lines))
 
