@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, norms, smooth_step
 from meshonet.geometry.ties import first_least
 from meshonet.solvers.aircraft.collar import (
     Rectangle,
@@ -66,10 +66,23 @@ class Hole:
     fin: bool = False
     below: float = 0.0
 
-    @property
+    @cached_property
     def box(self) -> Rectangle:
         """The rectangle around it, in lengths in space."""
         return rectangle(self.section, self.within, self.scale)
+
+    @property
+    def plane(self) -> Floats:
+        """(n, 2) nodes around it, in lengths in space."""
+        return self.section * self.scale
+
+    @property
+    def bands(self) -> tuple[float, float]:
+        """Lengths in space from the rectangle to keel and crown, or to the next wing's part."""
+        bottom, top = (theta * float(self.scale[1]) for theta in (self.below, self.within[1][1]))
+        if self.fin:
+            top = self.box.high + self.box.low - bottom
+        return self.box.low - bottom, top - self.box.high
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,9 +113,7 @@ class CollarPlan:
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
     """Return the nodes from the middles of trailing edge and nose to the corners, a mean over `holes`."""
-    boxes = [hole.box for hole in holes]
-    planes = [hole.section * hole.scale for hole in holes]
-    corners = [corner_nodes(plane, box, _CORNER) for plane, box in zip(planes, boxes, strict=True)]
+    corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
     return edge, nose
 
@@ -111,13 +122,11 @@ def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> tuple[CollarPlan, list[CollarLevel]]:
     """Return the plan for some `holes` of a wing, from the root on, and their levels, with narrow bands."""
-    boxes = [hole.box for hole in holes]
-    planes = [hole.section * hole.scale for hole in holes]
     edge, nose = corners
     plan = CollarPlan(edge, nose, 4, FEWEST, FEWEST, first)
-    for plane, box in zip(planes, boxes, strict=True):
-        away = float(lengths(plane, outer_loop(plane, box, (edge, nose))).max())
-        last = min(outer_cells(box, (edge, nose)))
+    for hole in holes:
+        away = float(lengths(hole.plane, outer_loop(hole.plane, hole.box, corners)).max())
+        last = min(outer_cells(hole.box, corners))
         plan = replace(plan, rows=max(plan.rows, smooth_cells(away, (first, last), growth, 4)))
     tried: list[tuple[CollarPlan, list[CollarLevel]]] = []
     for straight in _STRAIGHT:
@@ -128,7 +137,7 @@ def planned_collar(
             break
     plan, levels = first_least(tried, lambda each: -each[0].sine)
     low, top = (
-        max(smooth_cells(level.bands[k], (level.last[1 + k], None), WIDEST, FEWEST) for level in levels)
+        max(smooth_cells(level.hole.bands[k], (level.last[1 + k], None), WIDEST, FEWEST) for level in levels)
         for k in (0, 1)
     )
     return replace(plan, low=low, top=low if holes[0].fin else top), levels
@@ -140,7 +149,7 @@ class CollarLevel:
 
     Parameters
     ----------
-    plan, hole, box : counts, the section, the rectangle.
+    plan, hole : counts, the section.
     ring : (n, rows + 1, 2) the collar, in lengths in space.
     between : least sine of an angle between its lines before they are turned to the normals.
     last : lengths in space of its outermost cells at the front, below, above and at the back.
@@ -148,7 +157,6 @@ class CollarLevel:
 
     plan: CollarPlan
     hole: Hole
-    box: Rectangle
     ring: Floats
     between: float
     last: tuple[float, float, float, float]
@@ -156,16 +164,14 @@ class CollarLevel:
     @classmethod
     def of(cls, plan: CollarPlan, hole: Hole) -> CollarLevel:
         """Return the level of a hole."""
-        scale = hole.scale
-        plane = hole.section * scale
-        box = hole.box
+        plane, box = hole.plane, hole.box
         edge, nose, half = plan.edge, plan.nose, (len(plane) - 1) // 2
         outer = outer_loop(plane, box, (edge, nose))
         behind, before = outer_cells(box, (edge, nose))
         share = np.abs(np.arange(len(plane)) - half) / half
         last = before + (behind - before) * share
         for way, side, cells in zip(
-            _bands(hole, box),
+            hole.bands,
             (slice(half + nose, -edge), slice(edge, half - nose + 1)),
             (plan.low, plan.top),
             strict=True,
@@ -181,7 +187,7 @@ class CollarLevel:
             step[edge + 1 : half - nose + 1], np.concatenate([step[:edge], step[-edge:]]),
         )  # fmt: skip
         outer_steps = tuple(float(np.median(part)) for part in parts)
-        return cls(plan, hole, box, ring, between, outer_steps)  # type: ignore[arg-type]
+        return cls(plan, hole, ring, between, outer_steps)  # type: ignore[arg-type]
 
     @property
     def sine(self) -> float:
@@ -192,7 +198,7 @@ class CollarLevel:
     def sides(self) -> tuple[float, float]:
         """Least and largest s of the rectangle."""
         unit = float(self.hole.scale[0])
-        return self.box.front / unit, self.box.back / unit
+        return self.hole.box.front / unit, self.hole.box.back / unit
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -200,24 +206,21 @@ class CollarLevel:
 
         They lie between those of the collar and those of the bands above and below it.
         """
-        behind, before = outer_cells(self.box, (self.plan.edge, self.plan.nose))
+        behind, before = outer_cells(self.hole.box, (self.plan.edge, self.plan.nose))
         unit = float(self.hole.scale[0])
         ahead, aft = (math.sqrt(a * b) for a, b in ((self.last[0], before), (self.last[3], behind)))
         return ahead / unit, aft / unit
-
-    @property
-    def bands(self) -> tuple[float, float]:
-        """Lengths in space from the rectangle to keel and crown, or to the next wing's part."""
-        return _bands(self.hole, self.box)
 
     @cached_property
     def low_and_top(self) -> tuple[Floats, Floats]:
         """Theta of the lines from the keel to the rectangle, and from there to the crown."""
         out = []
-        for cells, way, step in zip((self.plan.low, self.plan.top), self.bands, self.last[1:3], strict=True):
+        for cells, way, step in zip(
+            (self.plan.low, self.plan.top), self.hole.bands, self.last[1:3], strict=True
+        ):
             out.append(smooth_arcs(np.array([way]), (step, None), cells)[0])
         rho = float(self.hole.scale[1])
-        low, top = (self.box.low - out[0][::-1]) / rho, (self.box.high + out[1]) / rho
+        low, top = (self.hole.box.low - out[0][::-1]) / rho, (self.hole.box.high + out[1]) / rho
         low[0], top[-1] = 0.0, np.pi
         return low, top
 
@@ -251,14 +254,6 @@ class CollarLevel:
         return ring
 
 
-def _bands(hole: Hole, box: Rectangle) -> tuple[float, float]:
-    """Return the lengths in space from the low and from the high side of a rectangle to the end in theta."""
-    bottom, top = (theta * float(hole.scale[1]) for theta in (hole.below, hole.within[1][1]))
-    if hole.fin:
-        top = box.high + box.low - bottom
-    return box.low - bottom, top - box.high
-
-
 def _graded(sizes: Floats) -> Floats:
     """Return sizes (n,) around a closed loop, made smaller until neighbours differ little."""
     for _ in range(len(sizes)):
@@ -274,6 +269,6 @@ def lines_between(along: Floats, before: Floats, after: Floats) -> Floats:
     """
     begin, end = float(along[:, 0].max()), float(along[:, -1].min())
     t = np.clip((along - begin) / (end - begin), 0.0, 1.0)[..., None]
-    across = before[:, None, 1:] + (after - before)[:, None, 1:] * (t * t * (3.0 - 2.0 * t))
+    across = before[:, None, 1:] + (after - before)[:, None, 1:] * smooth_step(t)
     s = np.broadcast_to(along[..., None], (*across.shape[:2], 1))
     return np.concatenate([s, across], axis=-1)

@@ -23,7 +23,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, smooth_step
 from meshonet.solvers.aircraft.collar_level import (
     FEWEST,
     WIDEST,
@@ -157,9 +157,15 @@ class ColumnLevel:
     def above(self) -> tuple[float, tuple[float, float]]:
         """Return the way in space from the wing's collar to that of the fin, and the cells there."""
         wing, fin = self.levels
-        low, high = wing.box.high / float(wing.hole.scale[1]), fin.box.low / float(fin.hole.scale[1])
+        low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])
         return (high - low) * rho, (wing.last[2], fin.last[1])
+
+    @property
+    def _gap(self) -> tuple[float, float]:
+        """Theta where the wing's rectangle ends and where that of the fin begins."""
+        wing, fin = (each.hole for each in self.levels)
+        return wing.box.high / float(wing.scale[1]), fin.box.low / float(fin.scale[1])
 
     def _above(self) -> tuple[Floats, Floats]:
         """Return theta (n,) of lines from the first collar to that of a fin or the crown, and a fade.
@@ -169,10 +175,8 @@ class ColumnLevel:
         if len(self.levels) == 1:
             theta = self.levels[0].low_and_top[1]
             return theta, _fade(theta)
-        wing, fin = self.levels
-        way, cells = self.above()
-        arcs = smooth_arcs(np.array([way]), cells, wing.plan.top)[0]
-        low, high = wing.box.high / float(wing.hole.scale[1]), fin.box.low / float(fin.hole.scale[1])
+        (way, cells), (low, high) = self.above(), self._gap
+        arcs = smooth_arcs(np.array([way]), cells, self.levels[0].plan.top)[0]
         theta = low + (high - low) * (arcs / way)
         theta[-1] = high
         return theta, _fade(theta)
@@ -185,8 +189,7 @@ class ColumnLevel:
     def _side(self, which: int) -> Side:
         first, last = self.levels[0], self.levels[-1]
         own, keel = (
-            np.array([first.sides[which], zeta, first.ends[which]])
-            for zeta in (self.zeta, self.zeta if self.keel is None else self.keel)
+            np.array([first.sides[which], zeta, first.ends[which]]) for zeta in (self.zeta, self._keel_zeta)
         )
         beside = first.across[which]
         parts = [(self.low, own + (keel - own) * _fade(self.low[::-1])[::-1, None])]
@@ -205,6 +208,11 @@ class ColumnLevel:
         return np.stack([s, around, zeta], axis=1), cells
 
     @property
+    def _keel_zeta(self) -> float:
+        """Zeta at the keel."""
+        return self.zeta if self.keel is None else self.keel
+
+    @property
     def _high_zeta(self) -> float:
         """Zeta of a fin above a wing, or of the crown."""
         if len(self.levels) == 2:
@@ -221,16 +229,14 @@ class ColumnLevel:
             end = self.levels[1].long_sides[0] if len(self.levels) == 2 else above
             s = above[:, None] + (end - above)[:, None] * fade
             patches.append(_lattice(s, theta, zeta + (self._high_zeta - zeta) * fade))
-        keel = zeta if self.keel is None else self.keel
         fade = _fade(self.low[::-1])[::-1]
-        patches.append(_lattice(below[::-1, None], self.low, zeta + (keel - zeta) * fade))
+        patches.append(_lattice(below[::-1, None], self.low, zeta + (self._keel_zeta - zeta) * fade))
         return [*patches, *(_on(each.collar(), each.hole.zeta) for each in self.levels[1:])]
 
 
 def _fade(theta: Floats) -> Floats:
     """Return what goes smoothly from 0 at the first of angles (n,) to 1 at the last."""
-    t = (theta - theta[0]) / (theta[-1] - theta[0])
-    return np.asarray(t * t * (3.0 - 2.0 * t))
+    return smooth_step((theta - theta[0]) / (theta[-1] - theta[0]))
 
 
 def _lattice(s: Floats, theta: Floats, zeta: Floats | float) -> Floats:
