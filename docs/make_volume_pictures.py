@@ -75,22 +75,11 @@ def wing() -> None:
     surface = [(block.nodes[:, :, 0], colour) for block, colour in zip(volume.blocks, colours, strict=True)]
     root = volume.blocks[0].nodes[:, 0]
     plane = near(root, np.array([0.5, 0.0, 0.0]), 0.9)
-    fig = plt.figure(figsize=(8.0, 8.0))
-    ax = fig.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
-    draw(ax, [(plane, "#dddddd"), *surface])
-    show(
-        ax,
-        np.concatenate([patch.reshape(-1, 3) for patch, _ in [(plane, ""), *surface]]),
-        (38.0, -150.0),
-        1.0,
-    )
-    left = image(fig)
+    left = view([(plane, "#dddddd"), *surface], (38.0, -150.0), inches=8.0)
     tip = surface[0][0][:, -9:]
-    fig = plt.figure(figsize=(9.0, 9.0))
-    ax = fig.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
-    draw(ax, [(tip, colours[0]), *surface[1:]], 0.4)
-    show(ax, np.concatenate([tip.reshape(-1, 3), surface[1][0].reshape(-1, 3)]), (14.0, 35.0), 1.0)
-    save([left, image(fig)], "wing.png")
+    around = [(tip, ""), surface[1]]
+    right = view([(tip, colours[0]), *surface[1:]], (14.0, 35.0), around=around, width=0.4)
+    save([left, right], "wing.png")
 
 
 def pipe() -> None:
@@ -106,12 +95,8 @@ def pipe() -> None:
         for block, colour in zip(volume.blocks, colours, strict=True)
         for k in (0, -1)
     ]
-    fig = plt.figure(figsize=(7.5, 7.5))
-    ax = fig.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
     shown = [(patch[..., [0, 2, 1]], colour) for patch, colour in wall + ends]  # z upwards
-    draw(ax, shown)
-    show(ax, np.concatenate([patch.reshape(-1, 3) for patch, _ in shown]), (35.0, -150.0), 1.0)
-    save([image(fig)], "pipe.png")
+    save([view(shown, (35.0, -150.0), inches=7.5)], "pipe.png")
 
 
 def aircraft() -> None:
@@ -134,14 +119,8 @@ def aircraft() -> None:
     ]
     levels = [(volume.blocks[0].nodes[:, :, k], "#dddddd") for k in (0, 14, 22)]
     wings = [(patch, colour) for patch, colour in walls if colour == colours["wing"]]
-    images = []
-    for shown, angles in ((walls, (40.0, -240.0)), ([*levels, *wings], (48.0, -150.0))):
-        fig = plt.figure(figsize=(9.0, 9.0))
-        ax = fig.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
-        draw(ax, shown)
-        show(ax, np.concatenate([patch.reshape(-1, 3) for patch, _ in shown]), angles, 0.9)
-        images.append(image(fig))
-    save(images, "aircraft.png")
+    views = (walls, (40.0, -240.0)), ([*levels, *wings], (48.0, -150.0))
+    save([view(*each, 0.9) for each in views], "aircraft.png")
 
 
 def fin() -> None:
@@ -162,14 +141,20 @@ def fin() -> None:
     ]
     beside = [block.nodes[:, :, 14] for block in beside if block.counts[2] > volume.blocks[-1].counts[2]]
     levels = [(patch, "#dddddd") for patch in beside if patch[..., 0].max() < AHEAD]
-    images = []
-    for shown, angles in ((walls, (28.0, 125.0)), ([*levels, *walls], (28.0, 60.0))):
-        fig = plt.figure(figsize=(9.0, 9.0))
-        ax = fig.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
-        draw(ax, shown)
-        show(ax, np.concatenate([patch.reshape(-1, 3) for patch, _ in walls]), angles, 1.0)
-        images.append(image(fig))
-    save(images, "fin.png")
+    views = (walls, (28.0, 125.0)), ([*levels, *walls], (28.0, 60.0))
+    save([view(*each, around=walls) for each in views], "fin.png")
+
+
+def view(
+    shown: list[tuple[Floats, str]], angles: tuple[float, float], zoom: float = 1.0, *,
+    around: list[tuple[Floats, str]] | None = None, inches: float = 9.0, width: float = 0.25,
+) -> Image.Image:  # fmt: skip
+    """Return an image of patches; the view is `around` some patches, by default all of them."""
+    fig = plt.figure(figsize=(inches, inches))
+    ax = fig.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
+    draw(ax, shown, width)
+    show(ax, np.concatenate([patch.reshape(-1, 3) for patch, _ in around or shown]), angles, zoom)
+    return image(fig)
 
 
 def image(fig: plt.Figure) -> Image.Image:
