@@ -58,7 +58,10 @@ class GrowthLines:
         nodes = consecutive_edges(mesh)
         before, after = _edges_of(mesh, nodes)
         leaving = _leaving(layout, walls)
-        beside = _beside(layout, walls)
+        rows = _beside_walls(layout, walls)
+        beside = np.zeros(len(mesh.edges), dtype=bool)  # along walls in the blocks beside them
+        for table in rows:
+            beside[mesh.edges_between(table[:-1], table[1:])] = True
         along = beside[before] & beside[after]
         side = np.zeros(len(mesh.edges), dtype=bool)
         for line in _sides(layout):
@@ -72,7 +75,7 @@ class GrowthLines:
         strict &= ~mesh.irregular[middle] | mesh.wall_nodes[middle]
         limits = np.where(strict, limit, elsewhere)
         own = along & ~strict
-        limits[own] = np.maximum(elsewhere, _growth_of_walls(layout, walls, nodes)[middle[own]])
+        limits[own] = np.maximum(elsewhere, _growth_of_walls(mesh, walls, nodes, rows)[middle[own]])
         return cls(nodes, limits, np.zeros(len(nodes)))
 
     def some(self, which: Bools) -> Self:
@@ -159,20 +162,12 @@ def _beside_walls(layout: Layout, walls: Bools) -> list[Indices]:
     return [table for table in tables if walls[table[:, 0]].all()]
 
 
-def _beside(layout: Layout, walls: Bools) -> Bools:
-    """Return which edges (e,) run along walls in the blocks beside them."""
-    beside = np.zeros(len(layout.mesh.edges), dtype=bool)
-    for table in _beside_walls(layout, walls):
-        beside[layout.mesh.edges_between(table[:-1], table[1:])] = True
-    return beside
-
-
-def _growth_of_walls(layout: Layout, walls: Bools, nodes: Indices) -> Floats:
-    """Return the growth (n,) along walls at nodes on them, and at those of the lines that start there."""
-    growth = np.zeros(len(layout.mesh.nodes))
+def _growth_of_walls(mesh: QuadMesh, walls: Bools, nodes: Indices, rows: list[Indices]) -> Floats:
+    """Return the growth (n,) along walls at nodes on them, and at those of the lines of `rows` from there."""
+    growth = np.zeros(len(mesh.nodes))
     on = nodes[walls[nodes].all(axis=1)]
-    z = layout.mesh.nodes[:, 0] + 1j * layout.mesh.nodes[:, 1]
+    z = mesh.nodes[:, 0] + 1j * mesh.nodes[:, 1]
     np.maximum.at(growth, on[:, 1], np.abs(growth_along(z, on)))
-    for table in _beside_walls(layout, walls):
+    for table in rows:
         growth[table] = np.maximum(growth[table], growth[table[:, :1]])
     return growth
