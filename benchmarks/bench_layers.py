@@ -109,8 +109,8 @@ def words(
     grids = nodes.detach().double().numpy()
     far, folded, more = 0.0, 0, 0
     for k, own in enumerate(grids):
-        given = [side[k].detach().double().numpy() for side in sides]
-        compiled = exact(name, within(given, drawn[k]), own)
+        edges = [side[k].detach().double().numpy() for side in sides]
+        compiled = exact(name, within(edges, drawn[k]), own)
         far = max(far, float(np.abs(compiled - own).max() / np.ptp(own, axis=(0, 1)).max()))
         folds = count_folded(own) > 0
         folded, more = folded + folds, more + (folds and not count_folded(compiled))

@@ -23,7 +23,7 @@ class FirstCells:
     """First-cell heights, and the layers that start with them."""
 
     # height off walls, or off each named one: around a body in chords, else in the unit of the domain
-    asked: FirstCell
+    prescribed: FirstCell
     walls: tuple[str, ...] = ()  # names of the walls of a four-sided domain; empty for `wall_sides`
     # heights off single sides of four-sided domains, in their unit
     sides: Mapping[str, float] = field(default_factory=dict)
@@ -34,15 +34,15 @@ class FirstCells:
 
     def in_chords(self) -> float:
         """Return the height off a body. Raises InputError: none, or heights of single walls."""
-        return self.asked.height() or 0.0
+        return self.prescribed.height() or 0.0
 
     def heights(self, boundary: Boundary) -> Heights:
         """Return the heights in the unit of `boundary`. Raises InputError: no side is a wall by its name."""
         off: dict[str, float] = {}
-        if self.asked.at_walls and boundary.around_body:
+        if self.prescribed.at_walls and boundary.around_body:
             off = {"south": self.in_chords() * boundary.chord}
-        elif self.asked.at_walls:
-            heights = self.asked.heights(boundary.chord)
+        elif self.prescribed.at_walls:
+            heights = self.prescribed.heights(boundary.chord)
             if isinstance(heights, Mapping):
                 off = {side: heights[name] for name in heights for side in sides_called(boundary, name)}
             elif heights is not None:
@@ -55,9 +55,10 @@ class FirstCells:
     def note(self, boundary: Boundary) -> str:
         """Return how the heights follow from y+, as text; empty without one."""
         if boundary.around_body:
-            return self.asked.height_note(f"and x/c {self.asked.chord_fraction:g}", in_unit=" chords")
+            where = f"and x/c {self.prescribed.chord_fraction:g}"
+            return self.prescribed.height_note(where, in_unit=" chords")
         where = f"on a length of {boundary.chord:.6g}, the extent of south,"
-        return self.asked.height_note(where, boundary.chord)
+        return self.prescribed.height_note(where, boundary.chord)
 
 
 def sides_called(boundary: Boundary, name: str) -> list[Side]:

@@ -64,7 +64,7 @@ class Layered(Wrapper):
                 "use {first_cell}",
                 parameter=f"spacing_{next(iter(self.cells.sides))}",
             )
-        if self.cells.asked.at_walls and boundary.topology in self.marched:
+        if self.cells.prescribed.at_walls and boundary.topology in self.marched:
             return self._march(boundary)
         heights = self.cells.heights(boundary)
         if heights.any and "refine" in self.chosen:

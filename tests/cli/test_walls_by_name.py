@@ -47,11 +47,11 @@ def test_no_layers_are_at_sides_that_are_no_walls_by_their_names(
     meshonet: Meshonet, command: str, turned: bool
 ) -> None:
     words = ("--res", "61x41", "--first-cell", FIRST, "-o", "g.h5", "--json")
-    told = meshonet(command, nozzle(turned=turned), *words).only
+    report = meshonet(command, nozzle(turned=turned), *words).only
     heights = first_cells("g.h5")
     assert heights["wall"] == pytest.approx(FIRST, rel=1e-8)
     assert min(heights[name] for name in ("axis", "inlet", "outlet")) > 3 * FIRST
-    assert (told["ni"], told["nj"], told["folded"]) == (61, 41, 0)
+    assert (report["ni"], report["nj"], report["folded"]) == (61, 41, 0)
 
 
 @pytest.mark.parametrize("words", ["--first-cell wall=1e-4", "--walls wall --first-cell 1e-4"])
@@ -73,28 +73,29 @@ def test_xi_runs_along_walls_that_are_not_the_lowest_edge(meshonet: Meshonet) ->
     names = ["inlet", "right wall", "outlet", "left wall"]
     text = f'{{"type": "Feature", "properties": {{"names": [{names}]}}, "geometry": '.replace("'", '"')
     Path("up.geojson").write_text(text + f'{{"type": "Polygon", "coordinates": [{corners}]}}}}')
-    told = meshonet(
+    report = meshonet(
         "infer", "up.geojson", "--res", "41x31", "--first-cell", "1e-3", "-o", "g.h5", "--json"
     ).only
     (grid,) = read_grids("g.h5")
     assert {p.name: p.side for p in grid.patches} == {
         "right wall": "south", "outlet": "east", "left wall": "north", "inlet": "west",
     }  # fmt: skip
-    assert (told["ni"], told["nj"]) == (41, 31)
+    assert (report["ni"], report["nj"]) == (41, 31)
     assert np.ptp(grid.nodes[:, 0, 1]) == 2.0
     heights = first_cells("g.h5")
     assert heights["left wall"] == pytest.approx(1e-3)
     assert heights["right wall"] == pytest.approx(1e-3)
-    assert any("xi runs along the walls" in note for note in told["notes"])
+    assert any("xi runs along the walls" in note for note in report["notes"])
 
 
 def test_walls_on_neighbouring_sides_make_many_blocks_unless_one_is_asked_for(meshonet: Meshonet) -> None:
     words = ("--first-cell", "wall=1e-4,inlet=1e-4", "-o", "g.h5", "--json")
     assert meshonet("infer", nozzle(), *words).only["topology"] == "blocks"
     assert meshonet("infer", nozzle(), *words, "--blocks", "single").only["topology"] == "quad"
-    told = meshonet("infer", nozzle(), *words, "--res", "61x41").only
-    assert told["topology"] == "quad"
-    assert told["quality"]["max_angle"]["max"] < 125.0  # sources at the inlet turned lines at the wall to 140
+    report = meshonet("infer", nozzle(), *words, "--res", "61x41").only
+    assert report["topology"] == "quad"
+    # sources at the inlet turned lines at the wall to 140
+    assert report["quality"]["max_angle"]["max"] < 125.0
 
 
 def test_an_unknown_wall_is_named_before_anything_else(meshonet: Meshonet) -> None:
@@ -147,8 +148,8 @@ def test_holes_that_are_no_walls_by_their_names_have_no_layers(meshonet: Meshone
 
 def test_y_plus_of_a_duct_names_its_length(meshonet: Meshonet) -> None:
     words = ("--y-plus", "30", "--reynolds", "1e6", "--res", "61x41", "-o", "g.h5", "--json")
-    told = meshonet("infer", nozzle(), *words).only
-    note = next(note for note in told["notes"] if note.startswith("y+"))
+    report = meshonet("infer", nozzle(), *words).only
+    note = next(note for note in report["notes"] if note.startswith("y+"))
     height = first_cells("g.h5")["wall"]
     assert f"y+ 30 at Re 1e+06 on a length of 0.2, the extent of south, is {height:.6g}:" in note
     assert "chord" not in note

@@ -67,19 +67,19 @@ def _names(chords: Chords, edge: int) -> list[str]:
 
 def suited(
     chords: Chords, counts: Indices, least: Indices, *, finer: int = 1, multiple: int = 1,
-    fixed: Mapping[int, int] = _NONE, given: bool = True,
+    fixed: Mapping[int, int] = _NONE, named: bool = True,
 ) -> Indices:  # fmt: skip
     """Return the counts (chords,) nearest to `counts`, at least `least`, that suit the sides of the domain.
 
-    They are alike along periodic sides and, if `given`, add up to the numbers given along others. `finer`
-    cells are made of each of them later, with their number adjusted: if it is not 1 counts may be off these
-    numbers by less than one. All are a multiple of `multiple`, as the given ones are then. Chords `fixed`
-    stay.
+    They are alike along periodic sides and, if `named`, add up to the numbers given for names of sides.
+    `finer` cells are made of each of them later, with their number adjusted: if it is not 1 counts may be off
+    these numbers by less than one. All are a multiple of `multiple`, as the given ones are then. Chords
+    `fixed` stay.
 
     Raises InputError: given counts that exclude each other, or that are too few; BlockingError: no counts are
     alike along periodic sides.
     """
-    sums, alike = sums_of(chords) if given else {}, _alike(chords)
+    sums, alike = sums_of(chords) if named else {}, _alike(chords)
     if not sums and not alike:
         return counts
     least = least.copy()
@@ -97,7 +97,7 @@ def suited(
         return np.asarray(around * nearest_whole(counts / around, np.ceil(least / around), rows))
 
     try:
-        found = solved(sums)
+        nearest = solved(sums)
     except BlockingError:
         try:
             counts = solved(()) if alike else counts
@@ -108,8 +108,8 @@ def suited(
     else:
         if sums:
             cause, remedy = "so many cells along sides", "give fewer"
-            check_reach(chords.cells(found) * float(finer) ** 2, "cells", cause, remedy, parameter="count")
-        return found
+            check_reach(chords.cells(nearest) * float(finer) ** 2, "cells", cause, remedy, parameter="count")
+        return nearest
     for size in (1, 2):
         for names in combinations(sums, size):
             try:
@@ -150,7 +150,7 @@ def check_sides(layout: Layout) -> None:
         if (mesh.valence[ends] != mesh.places.cells[ends]).any():
             raise BlockingError(_unmatched(each))
     chords = Chords.of(layout)
-    suited(chords, chords.counts, chords.least, given=False)
+    suited(chords, chords.counts, chords.least, named=False)
 
 
 def _unmatched(sides: Periodic) -> str:

@@ -195,8 +195,8 @@ def _optimised(
     if not optimum.valid:
         remedy = "use more {cells} or a lower first cell"
         if walls.domain.counts:
-            given = ", ".join(f"{name}={count}" for name, count in walls.domain.counts.items())
-            remedy = f"leave {{count}} {given} out, or give numbers nearer to those of the grid without them"
+            sides = ", ".join(f"{name}={count}" for name, count in walls.domain.counts.items())
+            remedy = f"leave {{count}} {sides} out, or give numbers nearer to those of the grid without them"
         raise NoValidGridError(f"cells outside the layers stay folded; {remedy}")
     return walls.symmetric(replace(layout, mesh=optimum.mesh))
 

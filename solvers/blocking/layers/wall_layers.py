@@ -270,5 +270,5 @@ def wanted_counts(
     least = -(-chords.least // chords.multiple)
     coarse = chords.multiple * np.maximum(least, np.round(counts / around).astype(np.intp))
     fixed = {int(chord): ROWS for chord in np.flatnonzero(~inner)}
-    coarse = suited(chords, np.where(inner, coarse, ROWS), chords.least, fixed=fixed, given=False)
+    coarse = suited(chords, np.where(inner, coarse, ROWS), chords.least, fixed=fixed, named=False)
     return Counts(coarse, stride, times, scale, metric)

@@ -116,8 +116,8 @@ def _of_sector(
 ) -> QuadMesh:  # fmt: skip
     """Return the mesh of a sector, from a mirror on, and its turned copies."""
     part = sector_of(domain, mirrors, start)
-    found = base_complex(find(part.domain, len(mirrors), spans_between(part.domain.loops[0])))
-    return with_copies(symmetric_blocks(found, find, optimised, score, worth=np.inf).mesh, part)
+    blocks = base_complex(find(part.domain, len(mirrors), spans_between(part.domain.loops[0])))
+    return with_copies(symmetric_blocks(blocks, find, optimised, score, worth=np.inf).mesh, part)
 
 
 def _trial(way: Way, mirrors: Sequence[Mirror], optimised: Optimised) -> BaseComplex | None:
