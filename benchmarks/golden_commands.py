@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import product
 
-from meshonet.formats.registry import formats
+from meshonet.formats.table import TABLE
 from meshonet.geometry.families.draw import RANDOM
 from meshonet.geometry.families.family import FAMILIES
 from meshonet.geometry.quality.profiles import PROFILES
@@ -23,7 +23,7 @@ from meshonet.solvers.pipeline.methods import METHODS
 
 # of the tables of this checkout, so that what is added to one is compared too
 FORMATS = [
-    row for row in formats() if row.write_grids and row.name not in ("png", "svg", "pdf", "html", "hdf5")
+    row for row in TABLE.values() if row.write_grids and row.name not in ("png", "svg", "pdf", "html", "hdf5")
 ]
 ENDINGS = [ending for row in FORMATS for ending in row.suffixes]
 WORDS = [(row, word) for row in FORMATS for words in row.choices for word in words]

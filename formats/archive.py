@@ -24,11 +24,6 @@ _IN_ARCHIVE = re.compile(r"\.zip/", re.IGNORECASE)
 """Where the name of an archive ends and that of a member begins."""
 
 
-def is_archive(path: str) -> bool:
-    """Return whether a path is a zip archive, by its extension."""
-    return path.lower().endswith(".zip") and Path(path).is_file()
-
-
 def member_names(path: str) -> Iterator[str]:
     """Return an iterator over the names of an archive's files, in order.
 

@@ -1,7 +1,7 @@
 """The capabilities of all formats as a table."""
 
 from meshonet.formats.format import Format
-from meshonet.formats.registry import formats
+from meshonet.formats.table import TABLE
 
 _HEAD = ("format", "endings", "reads", "writes", "names", "3D", "blocks", "many", "what it is", "options")
 """Headings of the table's columns."""
@@ -9,7 +9,7 @@ _HEAD = ("format", "endings", "reads", "writes", "names", "3D", "blocks", "many"
 
 def rows() -> list[dict[str, str]]:
     """Return a row for each format, by the table's headings."""
-    return [dict(zip(_HEAD, _row(record), strict=True)) for record in formats()]
+    return [dict(zip(_HEAD, _row(record), strict=True)) for record in TABLE.values()]
 
 
 def plain() -> str:
@@ -18,7 +18,7 @@ def plain() -> str:
     def short(words: str, most: int = 40) -> str:
         return words if len(words) <= most else words[: words.rindex(" ", 0, most - 4)] + " ..."
 
-    lines = [_HEAD, *(tuple(map(short, _row(record)[:2])) + _row(record)[2:] for record in formats())]
+    lines = [_HEAD, *(tuple(map(short, _row(record)[:2])) + _row(record)[2:] for record in TABLE.values())]
     widths = [max(len(line[k]) for line in lines) for k in range(len(_HEAD))]
     return "\n".join(
         "  ".join(f"{word:<{n}}" for word, n in zip(line, widths, strict=True)).rstrip() for line in lines

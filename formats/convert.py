@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from meshonet.formats.registry import format_for_output, format_of, formats, read_grids, read_shapes
+from meshonet.formats.registry import format_for_output, format_of, read_grids, read_shapes
 from meshonet.formats.source import LARGEST, open_source
+from meshonet.formats.table import TABLE
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.copies import copied
 from meshonet.geometry.blocks.extrude import extruded
@@ -101,7 +102,7 @@ class Conversion:
         record = format_for_output(output, to_format)
         write = record.write_grids
         if write is None or "volumes" not in record.space:
-            able = ", ".join(each.name for each in formats() if "volumes" in each.space)
+            able = ", ".join(each.name for each in TABLE.values() if "volumes" in each.space)
             raise InputError(f"{record.name} holds flat grids only", f"write one of {able}", source=output)
         return lambda path, grids: write(path, map(solid, grids))
 

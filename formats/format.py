@@ -117,12 +117,8 @@ class Format:
         return frozenset(words)
 
 
-def later(function: str, **settings: Any) -> Callable[..., Any]:
-    """Return a function that imports `function`, ``package.module:name``, and calls it with `settings`."""
-    return partial(_call, function, **settings)  # which another process can have
-
-
-def _call(function: str, /, *args: Any, **settings: Any) -> Any:
+def later(function: str, /, *args: Any, **settings: Any) -> Any:
+    """Import `function`, ``package.module:name``, and call it: a `partial` of this loads nothing itself."""
     module, _, name = function.partition(":")
     return getattr(importlib.import_module(module), name)(*args, **settings)
 

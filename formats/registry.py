@@ -53,11 +53,6 @@ def format_named(name: str) -> Format:
     raise InputError(f"format {name!r} is not known", remedy)
 
 
-def formats() -> tuple[Format, ...]:
-    """Return all formats."""
-    return tuple(TABLE.values())
-
-
 def format_of(source: Source, fmt: str | None = None) -> Format:
     """Return the format of a source to be read.
 
@@ -129,7 +124,7 @@ def read_shapes(text: str, fmt: str | None = None, *, surfaces: bool = False) ->
         if fmt:
             format_named(fmt)
         word, _, rest = text.partition(":")
-        return iter([later(_DESIGNATIONS[f"{word.lower()}:"])(rest)])
+        return iter([later(_DESIGNATIONS[f"{word.lower()}:"], rest)])
     source = source_of(text)
     record = format_of(source, fmt)
     if source.split or source.rows:
@@ -186,6 +181,13 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
 def is_designation(text: str) -> bool:
     """Return whether `text` is the designation of a shape, ``naca:2412`` or ``circle:0.5``, not a file."""
     return text.lower().startswith(tuple(_DESIGNATIONS)) and not Path(text).exists()
+
+
+def names_many(text: str) -> bool:
+    """Return whether `text` stands for many inputs: a list ``@FILE``, a zip archive or a folder."""
+    if text.startswith("@") or (text.lower().endswith(".zip") and Path(text).is_file()):
+        return True
+    return not is_designation(text) and Path(text).is_dir()
 
 
 class _Records(Iterator[T]):

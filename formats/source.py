@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from meshonet.formats.archive import read_member, split_member
 from meshonet.geometry.errors import InputError, in_source, meant
 
 HEAD_BYTES = 65536
@@ -181,6 +180,8 @@ def _opened(text: str) -> Source:
     try:
         mode = path.stat().st_mode
     except NotADirectoryError:
+        from meshonet.formats.archive import read_member, split_member  # which few files need
+
         member = split_member(text)
         if member is None:
             raise

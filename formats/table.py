@@ -38,7 +38,7 @@ def begins(pattern: bytes, head: bytes) -> bool:
 def _format(name: str, endings: str, description: str, functions: str, **more: Any) -> Format:
     """Return a record; `functions`, ``module:field``, are loaded when they are called."""
     for function in functions.split():
-        more[function.partition(":")[2]] = later(__package__ + f".{function}")
+        more[function.partition(":")[2]] = partial(later, __package__ + f".{function}")
     if "write_grids" in more:
         more["write_grids"] = partial(_write, more["write_grids"], name)
     return Format(name, tuple(endings.split()), description, **more)
@@ -94,7 +94,7 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "vtu", ".vtu", "VTK XML unstructured grid, seams merged, patches by number",
-        "", write_grids=partial(_write, later("meshonet.formats.meshio_export:write_vtu"), "vtu"),
+        "", write_grids=partial(_write, partial(later, "meshonet.formats.meshio_export:write_vtu"), "vtu"),
         blocks="merged", space=_BOTH,
     ),
     _format(
@@ -139,16 +139,17 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "step", ".step .stp", "STEP, faces become patches of a surface (needs the extra cad)", "",
-        read_shapes=later("meshonet.formats.cad.read:read_step"), sniff=partial(begins, rb"\s*ISO-10303-21"),
+        read_shapes=partial(later, "meshonet.formats.cad.read:read_step"),
+        sniff=partial(begins, rb"\s*ISO-10303-21"),
     ),
     _format(
         "brep", ".brep .brp", "B-rep of Open Cascade, as STEP", "",
-        read_shapes=later("meshonet.formats.cad.read:read_brep"),
+        read_shapes=partial(later, "meshonet.formats.cad.read:read_brep"),
         sniff=partial(begins, rb"\s*(DBRep_DrawableShape|CASCADE Topology)"),
     ),
     _format(
         "wkt", ".wkt", "outlines as well-known text", "", sniff=partial(begins, _WKT), many=True,
-        read_shapes=later("meshonet.formats.outlines.vector:read_wkt"),
+        read_shapes=partial(later, "meshonet.formats.outlines.vector:read_wkt"),
     ),
     _format(
         "layout", ".json", "layout of blocks as JSON; read as its coarse grid or its domain",
@@ -157,7 +158,7 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "geojson", ".geojson .json", "outlines as GeoJSON", "", sniff=partial(begins, rb'\s*\{.*"type"'),
-        read_shapes=later("meshonet.formats.outlines.vector:read_geojson"), many=True,
+        read_shapes=partial(later, "meshonet.formats.outlines.vector:read_geojson"), many=True,
     ),
     _format(
         "airfoil", ".dat", "airfoil coordinates, Selig or Lednicer",
@@ -167,17 +168,20 @@ _FORMATS: tuple[Format, ...] = (
         "points", ".csv .txt .xy", "points of a closed curve or of four edges",
         "text.points:read_shapes text.points:sniff",
     ),
-    _format("png", ".png", "picture of a grid", "", write_grids=later(_DRAW, kind="png")),
+    _format("png", ".png", "picture of a grid", "", write_grids=partial(later, _DRAW, kind="png")),
     _format(
         "svg", ".svg", "picture of a grid, lines as vectors; read as outlines, ids as names",
-        "outlines.svg:read_shapes", write_grids=later(_DRAW, kind="svg"), many=True,
+        "outlines.svg:read_shapes", write_grids=partial(later, _DRAW, kind="svg"), many=True,
         sniff=partial(holds, (b"<svg",)),
     ),
     _format(
         "html", ".html .htm", "interactive page of a grid, for browsers", "figure.page.page:write_grids",
         blocks="kept", space=_BOTH,
     ),
-    _format("pdf", ".pdf", "picture of a grid, lines as vectors", "", write_grids=later(_DRAW, kind="pdf")),
+    _format(
+        "pdf", ".pdf", "picture of a grid, lines as vectors", "",
+        write_grids=partial(later, _DRAW, kind="pdf"),
+    ),
     _format(
         "meshio", " ".join(_MESHIO), "surfaces of viewers, decks of solid mechanics, without patches",
         "meshio_export:write_grids", blocks="merged", suffix_options=_MESHIO,

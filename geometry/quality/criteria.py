@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Criteria:
-    """Gates and names of profiles; false if there are none.
+    """Gates and names of profiles, at least one of both; what judges nothing has None in their place.
 
     Parameters
     ----------
@@ -25,9 +25,6 @@ class Criteria:
 
     gates: tuple[Gate, ...] = ()
     profiles: tuple[str, ...] = ()
-
-    def __bool__(self) -> bool:
-        return bool(self.gates or self.profiles)
 
     @property
     def percentiles(self) -> bool:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, TypeAlias, TypeVar
 
 from meshonet.formats.format import Format
-from meshonet.formats.inputs import Inputs, readable_suffixes
+from meshonet.formats.inputs import Inputs
 from meshonet.formats.output import whole_file
 from meshonet.formats.registry import (
     Kind,
@@ -62,7 +62,7 @@ def inputs(
     """
     words = (names,) if isinstance(names, str | Path) else names
     patterns = (pick,) if isinstance(pick, str) else tuple(pick)
-    every = Inputs(tuple(map(str, words)), readable_suffixes(), patterns, shard)
+    every = Inputs(tuple(map(str, words)), pick=patterns, shard=shard)
     return (_readable(each.text) for each in every.own())
 
 

@@ -62,15 +62,14 @@ class GateOptions:
         "documentation lists the thresholds. Repeatable.",
     )] = None
 
-    def criteria(self, more: Sequence[str] = ()) -> "Criteria":
-        """Return gates and profiles; gates may refer to the names in `more` too.
+    def criteria(self, more: Sequence[str] = ()) -> "Criteria | None":
+        """Return gates and profiles, None if none is given; gates may refer to the names in `more` too.
 
         Raises InputError: an invalid gate.
         """
-        from meshonet.geometry.quality.criteria import Criteria
-
         if not (self.fail_on or self.profile):
-            return Criteria()
+            return None
+        from meshonet.geometry.quality.criteria import Criteria
         from meshonet.geometry.quality.gates import parse_gates
 
         return Criteria(

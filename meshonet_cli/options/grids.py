@@ -35,7 +35,4 @@ class GridOptions(RunOptions, SamplingOptions, LayerOptions, CheckOptions, GateO
         for block in blocks:
             more |= vars(block)
         given = {name: value for name, value in settings.items() if value is not None}
-        percentiles = self.criteria().percentiles
-        return GridRequest(
-            self.placed(more), method, given, percentiles=percentiles, threads=self.threads, **more
-        )
+        return GridRequest(self.placed(more), method, given, threads=self.threads, **more)

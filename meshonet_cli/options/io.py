@@ -111,10 +111,10 @@ class InputOptions(PrintOptions):
 
         Raises InputError: as `Inputs`; an invalid shard.
         """
-        from meshonet.formats.inputs import Inputs, readable_suffixes
+        from meshonet.formats.inputs import Inputs
 
-        endings = frozenset(suffixes) or readable_suffixes(grids_only=grids)
-        return Inputs(tuple(words), endings, tuple(self.pick or ()), self.part() if self.shard else (1, 1))
+        shard = self.part() if self.shard else (1, 1)
+        return Inputs(tuple(words), frozenset(suffixes), tuple(self.pick or ()), shard, grids)
 
     def part(self) -> tuple[int, int]:
         """Return K and N of the shard, 1 and 1 for all inputs. Raises InputError: an invalid shard."""

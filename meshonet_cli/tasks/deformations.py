@@ -23,18 +23,22 @@ from meshonet_cli.tasks.grids import reported
 
 
 def write_deformed(
-    batch: Batch, walls: Mapping[str, NewWall] | NewWall, criteria: Criteria, *, allow_invalid: bool,
+    batch: Batch, walls: Mapping[str, NewWall] | NewWall, criteria: Criteria | None, *, allow_invalid: bool,
     threads: int | None,
 ) -> int:  # fmt: skip
     """Deform the grids of the inputs to their new `walls`, write them, and return the exit code."""
-    request = DeformRequest(allow_invalid, criteria.percentiles, batch.engine.threads(threads))
-    batch.session.judges = bool(criteria)
+    percentiles = criteria is not None and criteria.percentiles
+    request = DeformRequest(allow_invalid, percentiles, batch.engine.threads(threads))
+    batch.session.judges = criteria is not None
     make = each(_deformed, walls=walls, request=request, criteria=criteria)
     return batch.run(BatchTask(partial(read_grids, fmt=batch.files.from_format), make))
 
 
 def _deformed(
-    item: Item[Grid], walls: Mapping[str, NewWall] | NewWall, request: DeformRequest, criteria: Criteria
+    item: Item[Grid],
+    walls: Mapping[str, NewWall] | NewWall,
+    request: DeformRequest,
+    criteria: Criteria | None,
 ) -> tuple[Grid, Report]:
     return reported(item, make_deformed(item.what, walls, request), criteria)
 

@@ -6,11 +6,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from operator import attrgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.criteria import Criteria
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ
 from meshonet.solvers.pipeline.choose_method import method_of
@@ -23,11 +22,14 @@ from meshonet_cli.batch.provenance import provenance
 from meshonet_cli.batch.run import Batch, BatchTask
 from meshonet_cli.report.grid import Report
 
+if TYPE_CHECKING:
+    from meshonet.geometry.quality.criteria import Criteria
+
 SHARED = 16  # members that one of several processes gets at a time at the most, fewer of large grids
 
 
 def _grids(
-    members: Iterable[Item[Shape]], request: GridRequest, criteria: Criteria, detailed: bool
+    members: Iterable[Item[Shape]], request: GridRequest, criteria: Criteria | None, detailed: bool
 ) -> Iterator[Pair]:
     """Yield each member with its grid and report, or with its error."""
     for member, result in make_grids_of(members, request, attrgetter("what")):
@@ -40,7 +42,7 @@ def _grids(
 
 
 def reported(
-    member: Item[Any], result: Result, criteria: Criteria, *, detailed: bool = True
+    member: Item[Any], result: Result, criteria: Criteria | None, *, detailed: bool = True
 ) -> tuple[Grid, Report]:
     """Return the grid of `member`, the command and the verdict in its provenance, and its report.
 
@@ -72,7 +74,7 @@ def reported(
 
 
 def write_grids(
-    batch: Batch, request: GridRequest, criteria: Criteria, *, history: str | None = None,
+    batch: Batch, request: GridRequest, criteria: Criteria | None, *, history: str | None = None,
     assemble: bool = False,
 ) -> int:  # fmt: skip
     """Make a grid from every boundary of the inputs and return the exit code.
@@ -80,9 +82,10 @@ def write_grids(
     With `assemble` the inputs form one domain. The exit code is 1 if a grid does not meet the `criteria`.
     Cycles are written to the file `history`.
     """
-    request = replace(request, threads=batch.engine.threads(request.threads))
+    percentiles = criteria is not None and criteria.percentiles
+    request = replace(request, threads=batch.engine.threads(request.threads), percentiles=percentiles)
     session, sampling = batch.session, request.sampling
-    session.judges = bool(criteria)
+    session.judges = criteria is not None
     nodes = (sampling.ni or DEFAULT_NI) * (sampling.nj or DEFAULT_NJ)
     alone = method_of(request).together is None
     task = BatchTask(

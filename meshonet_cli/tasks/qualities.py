@@ -23,7 +23,7 @@ from meshonet_cli.terminal.session import Session
 
 
 def measure_grids(
-    inputs: Inputs, session: Session, *, fmt: str | None = None, criteria: Criteria = Criteria(),
+    inputs: Inputs, session: Session, *, fmt: str | None = None, criteria: Criteria | None = None,
     compare: str | None = None, pairing: Pairing = "auto", summary: bool = False,
     plot: str | None = None, html: str | None = None, per_cell: str | None = None,
     reynolds: float | None = None, length: float | None = None,
@@ -34,8 +34,8 @@ def measure_grids(
     grids. `plot`, `per_cell` and `html` are files for pictures, metrics and the report. The Reynolds
     number and its length are those for y+.
     """
-    gates = criteria.gates
-    session.summary, session.judges = summary, bool(criteria)
+    gates, profiles = (criteria.gates, criteria.profiles) if criteria else ((), ())
+    session.summary, session.judges = summary, criteria is not None
     outputs = [_picture_file(plot)] if plot else []
     outputs += [_metrics_file(per_cell)] if per_cell else []
     for destination in outputs:
@@ -54,10 +54,10 @@ def measure_grids(
                     reference = references.match(item.name)
             with stage("quality", seconds):
                 report = quality(
-                    item.what, profile=criteria.profiles, compare=reference, reynolds=reynolds, length=length
+                    item.what, profile=profiles, compare=reference, reynolds=reynolds, length=length
                 ).under(gates)
                 judgement = report.judgement(gates)
-            measured = Measured(item, report, judgement, judged=bool(criteria))
+            measured = Measured(item, report, judgement, judged=criteria is not None)
             measured.seconds |= seconds
             for destination in outputs:
                 if not item.only:

@@ -41,13 +41,13 @@ VOLUME_NODES = 1_000_000
 
 
 def write_stacks(
-    batch: Batch, parameters: Mapping[str, Any], criteria: Criteria, *, tip: Tip | None, surface: bool
+    batch: Batch, parameters: Mapping[str, Any], criteria: Criteria | None, *, tip: Tip | None, surface: bool
 ) -> int:
     """Write the volumes or surfaces of the stacks and return the exit code."""
-    chosen = _shared(parameters, batch) | {"percentiles": criteria.percentiles}
+    chosen = _shared(parameters, batch, criteria)
     if surface and criteria:
         raise InputError("{fail_on} and {profile} judge cells, and a surface has none", "leave them out")
-    batch.session.judges = bool(criteria)
+    batch.session.judges = criteria is not None
     volumes = each(_stacked, parameters=chosen, criteria=criteria)
     make = each(_surface, parameters=chosen) if surface else volumes
     space: Space = "surfaces" if surface else "volumes"
@@ -59,7 +59,9 @@ def _stack(source: str, tip: Tip | None, surface: bool) -> Iterator[Sections]:
     return iter([with_tip(stack_of(source), tip, surface=surface)])
 
 
-def _stacked(item: Item[Sections], parameters: Mapping[str, Any], criteria: Criteria) -> tuple[Grid, Report]:
+def _stacked(
+    item: Item[Sections], parameters: Mapping[str, Any], criteria: Criteria | None
+) -> tuple[Grid, Report]:
     return reported(item, make_stacked(item.what, **parameters), criteria)
 
 
@@ -73,23 +75,23 @@ def _surface(item: Item[Stack | Aircraft], parameters: Mapping[str, Any]) -> tup
 
 
 def write_sweeps(
-    batch: Batch, path: str | Revolution, section: Mapping[str, Any], settings: Sweep, criteria: Criteria,
-    *, around: int | None = None,
+    batch: Batch, path: str | Revolution, section: Mapping[str, Any], settings: Sweep,
+    criteria: Criteria | None, *, around: int | None = None,
 ) -> int:  # fmt: skip
     """Write the volumes of the sections swept along a path or about an axis, and return the exit code."""
-    parameters = domain_parameters(_shared(section, batch)) | {"percentiles": criteria.percentiles}
+    parameters = domain_parameters(_shared(section, batch, criteria))
     res = parameters.pop("res")
     request = grid_request(res=None if res is None else _counts(res), **parameters)
     way = path_of(path) if isinstance(path, str) else path
-    batch.session.judges = bool(criteria)
+    batch.session.judges = criteria is not None
     make = each(_swept, path=way, request=request, settings=settings, criteria=criteria, around=around)
     read = partial(read_sections, fmt=batch.files.from_format)
     return batch.run(BatchTask(read, make, nodes=VOLUME_NODES, space="volumes"))
 
 
 def _swept(
-    item: Item[Shape], path: Path | Revolution, request: GridRequest, settings: Sweep, criteria: Criteria,
-    around: int | None,
+    item: Item[Shape], path: Path | Revolution, request: GridRequest, settings: Sweep,
+    criteria: Criteria | None, around: int | None,
 ) -> tuple[Grid, Report]:  # fmt: skip
     return reported(item, make_sweep(item.what, path, request, settings, around), criteria)
 
@@ -101,6 +103,8 @@ def _counts(text: str) -> Counts:
     return counts
 
 
-def _shared(parameters: Mapping[str, Any], batch: Batch) -> dict[str, Any]:
-    """Return parameters in which the cores are shared among the workers of the engine."""
-    return {**parameters, "threads": batch.engine.threads(parameters.get("threads"))}
+def _shared(parameters: Mapping[str, Any], batch: Batch, criteria: Criteria | None) -> dict[str, Any]:
+    """Return parameters with percentiles if the criteria need them; workers of the engine share the cores."""
+    percentiles = criteria is not None and criteria.percentiles
+    threads = batch.engine.threads(parameters.get("threads"))
+    return {**parameters, "threads": threads, "percentiles": percentiles}

@@ -117,8 +117,8 @@ class Session:
             self._unwatch()
         if self.as_json:
             self.result(report.as_json())
-        else:
-            self.note(report.line() if self.batch else report.lines())
+        elif not self.quiet:
+            self._write(report.line() if self.batch else report.lines())
         if report.notes:
             self.changed += bool(changes_in(report.notes))
             self._advice |= dict.fromkeys(advice_in(report.notes))

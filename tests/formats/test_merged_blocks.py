@@ -18,8 +18,9 @@ from meshonet.formats.gmsh.geo import write_grids as write_geo
 from meshonet.formats.gmsh.msh import write_grids as write_msh
 from meshonet.formats.mesh.unstructured import unstructured
 from meshonet.formats.openfoam.write import write_grids as write_foam
-from meshonet.formats.registry import format_named, formats
+from meshonet.formats.registry import format_named
 from meshonet.formats.su2 import write_grids as write_su2
+from meshonet.formats.table import TABLE
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
@@ -217,7 +218,7 @@ def test_meshio_reads_one_mesh(ending: str, tmp_path: Path) -> None:
     assert area == pytest.approx(wanted, rel=1e-6)
 
 
-@pytest.mark.parametrize("name", [record.name for record in formats() if record.write_grids])
+@pytest.mark.parametrize("name", [record.name for record in TABLE.values() if record.write_grids])
 def test_a_format_of_one_block_names_those_of_many(name: str, tmp_path: Path) -> None:
     record = format_named(name)
     assert record.write_grids is not None

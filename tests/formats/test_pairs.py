@@ -11,14 +11,15 @@ import pytest
 from format_shapes import VARIANTS, c_grid, channel, ring
 from many_blocks import MANY, by_block, sector
 
-from meshonet.formats.registry import format_named, formats, read_grids, read_shapes
+from meshonet.formats.registry import format_named, read_grids, read_shapes
+from meshonet.formats.table import TABLE
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.find_connections import order
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 
-EVERY = (*formats(), *map(format_named, VARIANTS))
+EVERY = (*TABLE.values(), *map(format_named, VARIANTS))
 BOTH_WAYS = [row.name for row in EVERY if row.write_grids and row.read_grids]
 KEPT = [row.name for row in EVERY if row.blocks == "kept" and row.read_grids]
 MERGED = [row.name for row in EVERY if row.blocks == "merged"]

@@ -15,7 +15,6 @@ from meshonet.formats.registry import (
     format_for_output,
     format_named,
     format_of,
-    formats,
     read_grids,
     read_shapes,
 )
@@ -26,9 +25,9 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
 HEAVY = ("h5py", "meshio", "matplotlib", "shapely", "scipy", "torch", "numba")
-EVERY = (*formats(), *map(format_named, VARIANTS))
+EVERY = (*TABLE.values(), *map(format_named, VARIANTS))
 BOTH_WAYS = [row.name for row in EVERY if row.write_grids and row.read_grids]
-BOUNDARIES = [row.name for row in formats() if row.write_boundaries and row.read_shapes]
+BOUNDARIES = [row.name for row in TABLE.values() if row.write_boundaries and row.read_shapes]
 
 
 def run_python(code: str) -> str:
@@ -66,7 +65,7 @@ def test_a_record_has_a_name_endings_and_a_description(name: str) -> None:
 def test_every_format_can_do_something_and_is_tested() -> None:
     """Formats that no grid is read from have test files with a reader of somebody else's."""
     others = [p.read_text() for p in Path(__file__).parent.glob("test_*.py") if p.name != Path(__file__).name]
-    for record in formats():
+    for record in TABLE.values():
         doings = (record.read_shapes, record.read_grids, record.write_grids, record.write_boundaries)
         assert any(doings), record.name
         if record.write_grids and not record.read_grids:
