@@ -7,7 +7,7 @@ from copy import copy
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, Indices, distinct, read_only
+from meshonet.geometry.arrays import Bools, Floats, Indices, cross2, distinct, read_only
 from meshonet.geometry.curves.spline import checked_points, cubics, spline_slopes
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
@@ -141,3 +141,10 @@ class Curve:
         a, b, c, d = self._cubic[:, i]
         points = np.asarray((a + t * (b + t * (c + t * d))).reshape(-1, 2))
         return points if self.closed else np.concatenate([points, self.points[-1:]])
+
+    def departure(self) -> float:
+        """Return the largest distance of the curve from the polygon through its points."""
+        ends = np.concatenate([self.points, self.points[:1]]) if self.closed else self.points
+        starts, ways = ends[:-1, None], np.diff(ends, axis=0)[:, None]
+        parts = self.polyline(_EDGES[:-1])[: len(ways) * _STEPS].reshape(len(ways), _STEPS, 2) - starts
+        return float((np.abs(cross2(ways, parts)) / np.hypot(ways[..., 0], ways[..., 1])).max())

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, extent_of
+from meshonet.geometry.blocks.patches import may_be_wall
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
@@ -110,6 +111,15 @@ class Domain:
         for number, each in enumerate(self.loops):
             points[loop == number] = each.at(arc[loop == number])
         return points
+
+    @cached_property
+    def layered_loops(self) -> range:
+        """Numbers of the loops that have layers where no wall is named: the holes.
+
+        Without holes it is the outer loop if part of it is an inlet, an axis or the like by its name.
+        """
+        channel = len(self.loops) == 1 and not self.periodic and not all(map(may_be_wall, self.loops[0].names))
+        return range(0 if channel else 1, len(self.loops))
 
     @cached_property
     def extent(self) -> float:

@@ -113,7 +113,7 @@ def _patches(layout: Layout, line: Line, start: int, walls: Collection[str]) -> 
     patches = []
     for name, cells in groupby(names):
         stop = start + len(list(cells))
-        is_wall = name in walls or (number > 0 and may_be_wall(name))
+        is_wall = name in walls or (number in domain.layered_loops and may_be_wall(name))
         kind = kind_of(name, "wall" if is_wall else "other")
         patches.append(Patch(name, side, start, stop, block=block, kind=kind))
         start = stop

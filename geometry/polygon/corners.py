@@ -45,7 +45,8 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
 
     A corner turns sharply while its neighbours do not: by more than `KINK` and five times as much as each
     neighbour, or more than `SHARP` and twice as much, or more than `ALWAYS`; or it is one of two adjacent
-    points that turn by more than `SHARP` and five times as much as the points beyond them. The round end of a
+    points that turn by more than `SHARP`, or `KINK` along an open polygon, and five times as much as the
+    points beyond them. The round end of a
     thin body given by few points also turns by up to 155 degrees at one point, but is no corner: the
     thickness behind it grows like the square root of the distance, behind an edge linearly
     (`growth_exponent`). The two ends of an oblique base, one of which turns as much, are both corners
@@ -65,10 +66,11 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
         | (angle > SHARP) & (polygon | (angle > 2 * beside))
         | (angle > ALWAYS)
     )
-    if closed:  # two adjacent points, as at a base, with little turning beyond them
-        ahead, after = rolled(angle, -1), rolled(angle, -2)
-        pair = (np.minimum(angle, ahead) > SHARP) & (rolled(angle, 1) < 0.2 * angle) & (after < 0.2 * ahead)
-        sharp |= pair | rolled(pair, 1)
+    # two adjacent points, as at a base or a ramp, with little turning beyond them
+    ahead, after = rolled(angle, -1), rolled(angle, -2)
+    both = np.minimum(angle, ahead) > (SHARP if closed else KINK)
+    pair = both & (rolled(angle, 1) < 0.2 * angle) & (after < 0.2 * ahead)
+    sharp |= pair | rolled(pair, 1)
     if polygon:
         return np.flatnonzero(sharp)
     bases = _oblique_bases(points, angle) if closed else np.zeros(len(points), dtype=bool)

@@ -11,6 +11,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Floats, extent_of
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.patches import may_be_wall
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.self_intersection import check_outline
@@ -58,7 +59,8 @@ def channel(walls: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()) 
         north = north.reversed()
     ends = [DrawnEdge(np.stack([p.points[k], q.points[k]]), [p.places[k], q.places[k]], called)
             for p, q, k, called in ((south, north, -1, "outlet"), (north, south, 0, "inlet"))]  # fmt: skip
-    return _sampled([south, ends[0], north.reversed(), ends[1]], name, notes, walls=(south.name, north.name))
+    names = tuple(filter(may_be_wall, (south.name, north.name)))
+    return _sampled([south, ends[0], north.reversed(), ends[1]], name, notes, walls=names)
 
 
 def four_edges(

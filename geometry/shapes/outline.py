@@ -20,11 +20,14 @@ from meshonet.geometry.domain.loop import turns_sharply
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
-from meshonet.geometry.polygon.corners import turning
+from meshonet.geometry.polygon.corners import find_corners, turning
 from meshonet.geometry.polygon.self_intersection import check_outline
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.spacing.along_curve import stretch_arcs
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
+
+_DEPARTURE = 5e-3
+"""Distance in extents beyond which a side is another one than the lines between its points."""
 
 
 class Outline:
@@ -54,7 +57,7 @@ class Outline:
         self.curve = Curve(points, closed=True)
         p = self.curve.points
         if corners is not None:
-            self.curve = Curve(p, closed=True, corners=np.union1d(self.curve.corner_index, np.array(corners)))
+            self.curve = _with_sides(self.curve, corners)
         area, extent = polygon_area(p), extent_of(p)
         if not _on_a_line(p, extent):  # such points run back on themselves, a less helpful message
             check_outline(p, places)
@@ -123,8 +126,7 @@ class Outline:
         ni, nj = sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ
         chosen = sampling.corners or self.corners
         corners = self._ordered_corners(chosen) if chosen is not None else self._sharpest_corners()
-        points = self.curve.points
-        curve = Curve(points, closed=True, corners=np.union1d(self.curve.corner_index, np.array(corners)))
+        points, curve = self.curve.points, _with_sides(self.curve, corners)
         edges = []
         for a, b, n in zip(corners, (*corners[1:], corners[0]), (ni, nj, ni, nj), strict=True):
             begin, end = float(curve.knots[a]), float(curve.knots[b])
@@ -133,7 +135,8 @@ class Outline:
             edge[0], edge[-1] = points[a], points[b]
             edges.append(edge)
         south, east, north, west = edges
-        return Boundary(south, north[::-1], west[::-1], east, topology="quad", name=self.name, sampled=True)
+        sides = south, north[::-1], west[::-1], east
+        return Boundary(*sides, topology="quad", name=self.name, sampled=True, notes=_departure_note(curve))
 
     def _ordered_corners(self, chosen: tuple[int, int, int, int]) -> tuple[int, ...]:
         """Return the given corners, counter-clockwise from the first."""
@@ -225,3 +228,22 @@ def _on_a_line(points: Floats, extent: float) -> bool:
     away = points - points[0]
     u, v = away[int(np.argmax(np.abs(away).sum(axis=1)))]
     return bool(np.abs(away[:, 0] * v - away[:, 1] * u).max() < 1e-12 * extent**2)
+
+
+def _with_sides(curve: Curve, ends: Sequence[int]) -> Curve:
+    """Return the closed curve with corners at the ends of its four sides, and where a side alone has one."""
+    n, order = len(curve.points), sorted(ends)
+    corners = [curve.corner_index, np.array(order)]
+    for first, last in zip(order, (*order[1:], order[0] + n), strict=True):
+        side = np.arange(first, last + 1) % n
+        corners.append(side[find_corners(curve.points[side])])
+    return Curve(curve.points, closed=True, corners=np.concatenate(corners))
+
+
+def _departure_note(curve: Curve) -> tuple[str, ...]:
+    """Return a note if the sides deviate visibly from the straight lines between their points."""
+    off = curve.departure()
+    if not off > _DEPARTURE * extent_of(curve.points):
+        return ()
+    lines = f"up to {off:.2g} away from straight lines between them"
+    return (f"the sides are smooth curves through the points, {lines}; give more points where it matters",)

@@ -23,10 +23,10 @@ Slide = Annotated[bool | None, _option(
 FirstCell = Annotated[str | None, _option(
     "--first-cell", "--wall-spacing", metavar="H|WALL=H,...",
     help="Height of the first cell at every wall node. Around a body the unit is the chord, elsewhere that "
-    "of the input. The walls of a four-sided domain are south and north, but no side called inlet, outlet, "
-    "axis or symmetry; those of a multi-block grid are its holes. --walls names others. WALL=H,WALL=H gives "
-    "each named wall its own height, instead of --walls. Around a body solve-pde and infer then march the "
-    "grid from the wall.",
+    "of the input. The walls of a four-sided domain are south and north, those of a multi-block grid its "
+    "holes, or its sides where it has no holes; but none called inlet, outlet, axis or symmetry. --walls "
+    "names others. WALL=H,WALL=H gives each named wall its own height, instead of --walls. Around a body "
+    "solve-pde and infer then march the grid from the wall.",
 )]
 YPlus = Annotated[float | None, _option(
     "--y-plus", metavar="Y",

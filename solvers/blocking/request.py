@@ -40,7 +40,7 @@ class BlockRequest(FirstCell):
     length : reference length of the Reynolds number; None is the extent of the bodies.
     growth : largest ratio of neighbouring cells away from the wall.
     constant_layers : number of first layers of equal height.
-    walls : names of the stretches with layers; none stands for all holes.
+    walls : names of the stretches with layers; none stands for `Domain.layered_loops`.
     pitch : vector from one blade of a cascade to the next: the domain is the passage around it.
     inlet, outlet : lengths of the passage before and behind the blade, in its axial chords; None is 1.
     periodic : pairs of sides of the outer boundary, by name, that are translated copies of each other.
@@ -106,7 +106,7 @@ class BlockRequest(FirstCell):
 
     @property
     def layered(self) -> tuple[str, ...]:
-        """Names of the walls with layers; none stands for all holes."""
+        """Names of the walls with layers; none stands for `Domain.layered_loops`."""
         return self.by_wall or self.walls
 
     @property

@@ -21,11 +21,11 @@ def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) 
     ----------
     grid : grid of blocks, or of one ring.
     domain : its domain.
-    names : names of the walls with layers; empty for all holes, but those that are no walls by their names.
+    names : names of the walls with layers; empty for those of `Domain.layered_loops`.
     first : prescribed height in the domain's unit.
     """
-    holes = (name for loop in domain.loops[1:] for name in loop.names)
-    layered = set(names) or set(filter(may_be_wall, holes))
+    unnamed = (name for number in domain.layered_loops for name in domain.loops[number].names)
+    layered = set(names) or set(filter(may_be_wall, unnamed))
     patches = tuple(replace(p, kind="wall") if p.name in layered else p for p in grid.patches)
     grid = replace(grid, patches=patches)
     walls = [patch for patch in grid.walls() if patch.name in layered]

@@ -188,6 +188,13 @@ def test_open_lines_are_the_sides_of_a_channel(case: str) -> None:
         assert [patch.kind for patch in edges.patches] == ["wall", "outlet", "wall", "inlet"]
 
 
+@pytest.mark.parametrize("name", ["axis", "symmetry"])
+def test_the_axis_of_a_channel_is_no_wall(name: str) -> None:
+    (shape,) = read_wkt(memory(f"# {name}\n{FLOOR}\n# roof\n{ROOF}".encode(), "nozzle.wkt"))
+    walls = [patch.name for patch in shape.boundary(Sampling(ni=13, nj=7)).patches if patch.may_be_wall]
+    assert walls == ["roof"]
+
+
 def test_features_that_are_open_lines_are_sides_by_their_names() -> None:
     lines = {"floor": [[0, 0], [1, 0.1], [3, 0]], "roof": [[0, 1], [3, 1]]}
     members = [

@@ -30,6 +30,11 @@ def test_a_small_kink_in_a_smooth_line_is_a_corner():
     assert find_corners(line).tolist() == [20]
 
 
+@pytest.mark.parametrize("line", [[[0, 0], [4, 0], [8.7, -1], [12, -1]], [[0, 0], [4, 0], [8, 1], [11, 3]]])
+def test_two_bends_between_straight_pieces_are_corners(line):
+    assert find_corners(np.array(line)).tolist() == [1, 2]
+
+
 @pytest.mark.parametrize("ratio", [0.04, 0.09])
 def test_a_coarse_round_nose_is_no_corner_and_the_trailing_edge_is_one(ratio):
     points = selig(ratio, x=STATIONS)

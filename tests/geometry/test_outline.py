@@ -34,6 +34,12 @@ def test_every_corner_of_the_outline_is_a_node(spacing):
     assert shapely.Polygon(outline).area == pytest.approx(1.4)
 
 
+def test_a_side_of_few_points_between_bends_is_straight():
+    ramp = np.array([[0.0, 0], [4, 0], [8, -1], [12, -1], [12, 1], [0, 1]])
+    b = Outline(ramp, corners=(0, 3, 4, 5)).boundary(Sampling(ni=121, nj=9))
+    assert shapely.Polygon(b.outline()).area == pytest.approx(shapely.Polygon(ramp).area, rel=1e-12)
+
+
 def test_asked_corners_start_at_the_south_west_one_and_go_on_counter_clockwise():
     for points, corners in ((SQUARE, (1, 2, 3, 0)), (SQUARE, (1, 0, 3, 2)), (SQUARE[::-1], (2, 1, 0, 3))):
         b = Outline(points).boundary(Sampling(ni=9, nj=9, corners=corners))

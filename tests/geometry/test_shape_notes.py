@@ -8,7 +8,7 @@ import meshonet
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import naca
-from meshonet.geometry.shapes.airfoil.section_curve import departure
+from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.spacing.sampling import Sampling
 
 
@@ -58,7 +58,7 @@ def test_the_departure_of_a_curve_is_that_of_its_circle() -> None:
 
     angle = np.linspace(0.0, 2.0 * np.pi, 13)[:-1]
     circle = Curve(np.stack([np.cos(angle), np.sin(angle)], axis=1), closed=True)
-    assert departure(circle) == pytest.approx(1.0 - np.cos(np.pi / 12), rel=0.01)
+    assert circle.departure() == pytest.approx(1.0 - np.cos(np.pi / 12), rel=0.01)
 
 
 @pytest.mark.parametrize("settings", [{}, {"te": "round"}, {"topology": "c"}, {"y_plus": 1, "reynolds": 1e6}])
@@ -75,3 +75,11 @@ def test_an_array_that_is_no_airfoil_stays_an_outline() -> None:
     assert meshonet.grid(square, res=(11, 11)).topology == "quad"
     with pytest.raises(meshonet.InputError, match="only an airfoil has a trailing edge"):
         meshonet.grid(square, res=(11, 11), te="round")
+
+
+def test_sides_given_by_few_points_of_an_arc_say_how_far_they_leave_the_lines_between_them() -> None:
+    angle = np.linspace(np.pi, 0.0, 8)
+    arch = np.concatenate([np.stack([np.cos(angle), np.sin(angle)], axis=1), [[2.0, 0.0], [2.0, 3.0], [-1.0, 3.0]]])
+    text = "; ".join(Outline(arch, corners=(0, 8, 9, 10)).boundary(Sampling(ni=31, nj=11)).notes)
+    off = float(text.split("smooth curves through the points, up to ")[1].split()[0])
+    assert off == pytest.approx(1.0 - np.cos(np.pi / 14), rel=0.1)

@@ -120,7 +120,7 @@ def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str,
     count = sign_changes(curve, chord)
     if count >= RIPPLES:
         notes += (f"the outline ripples: its curvature changes sign {count} times; see {{smooth}}",)
-    off = departure(curve) / chord
+    off = curve.departure() / chord
     if off > DEPARTURE:
         note = (
             f"the wall is a smooth curve through the points, up to {off:.2g} chords away from straight lines "
@@ -149,15 +149,6 @@ def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
                 f"degrees off the normal of the chord: both its corners are kept{kept}",
             )
     return ()
-
-
-def departure(curve: Curve) -> float:
-    """Return the largest distance of a curve from the polygon through its points, in its unit."""
-    ends = np.concatenate([curve.points, curve.points[:1]]) if curve.closed else curve.points
-    starts, ways = ends[:-1, None], np.diff(ends, axis=0)[:, None]
-    inside = curve.polyline(_CUTS)[: len(ways) * len(_CUTS)].reshape(len(ways), len(_CUTS), 2) - starts
-    across = ways[..., 0] * inside[..., 1] - ways[..., 1] * inside[..., 0]
-    return float((np.abs(across) / np.hypot(ways[..., 0], ways[..., 1])).max())
 
 
 def base_note(wall: Floats, corner: Floats, base: float, chord: float) -> tuple[str, ...]:

@@ -43,21 +43,22 @@ class Stretch:
 def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int], tuple[Stretch, ...]]:
     """Return the numbers of loops with layers all around, and stretches of other loops, by names of walls.
 
-    Without names, all holes have layers, apart from stretches whose names say that they are no walls.
+    Without names, `Domain.layered_loops` have layers, apart from stretches that are no walls by their names.
     Raises InputError, with the place: there is no such hole; layers would end at a point where the boundary
     is straight or turns away.
     """
     whole: list[int] = []
     stretches: list[Stretch] = []
+    unnamed = domain.layered_loops
     for number, loop in enumerate(domain.loops):
-        on = [name in names if names else number > 0 and may_be_wall(name) for name in loop.names]
+        on = [name in names if names else number in unnamed and may_be_wall(name) for name in loop.names]
         on = on * len(loop.corners) if len(on) == 1 and loop.corners else on
         if all(on) and not (loop.corner_cells == 1).any():
             whole.append(number)
         elif any(on):
             stretches += _stretches(loop, number, on)
     if not whole and not stretches:
-        remedy = "name the walls with {walls}: without names, layers go around holes"
+        remedy = "name the walls with {walls}, or another side inlet, outlet, symmetry or axis"
         inside = [name for loop in domain.loops[1:] for name in loop.names]
         none = f"whose only holes are {', '.join(dict.fromkeys(inside))}" if inside else "without holes"
         raise InputError(f"a first cell in a domain {none}", remedy)

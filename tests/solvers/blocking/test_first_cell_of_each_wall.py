@@ -54,6 +54,18 @@ def test_each_wall_has_the_first_cells_given_for_it(given: dict[str, float]) -> 
     assert min(found["outlet"]) > 2 * max(given.values())  # which has none
 
 
+def test_without_holes_the_walls_are_the_sides_that_no_name_says_are_none() -> None:
+    duct = Domain.of_polygons([BOX], names=[SIDES])
+    grid = meshonet.grid(duct, first_cell=1e-3, cells=2000)
+    found = heights(grid)
+    for name in ("floor", "roof"):
+        np.testing.assert_allclose(found[name], 1e-3, rtol=1e-6)
+    assert min(*found["inlet"], *found["outlet"]) > 1e-2
+    assert {patch.name for patch in grid.walls()} == {"floor", "roof"}
+    with pytest.raises(InputError, match="name the walls"):
+        meshonet.grid(Domain.of_polygons([BOX]), first_cell=1e-3, cells=2000)
+
+
 @pytest.mark.parametrize(
     "layers",
     [
