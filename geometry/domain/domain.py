@@ -118,7 +118,9 @@ class Domain:
 
         Without holes it is the outer loop if part of it is an inlet, an axis or the like by its name.
         """
-        channel = len(self.loops) == 1 and not self.periodic and not all(map(may_be_wall, self.loops[0].names))
+        channel = (
+            len(self.loops) == 1 and not self.periodic and not all(map(may_be_wall, self.loops[0].names))
+        )
         return range(0 if channel else 1, len(self.loops))
 
     @cached_property

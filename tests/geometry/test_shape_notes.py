@@ -79,7 +79,9 @@ def test_an_array_that_is_no_airfoil_stays_an_outline() -> None:
 
 def test_sides_given_by_few_points_of_an_arc_say_how_far_they_leave_the_lines_between_them() -> None:
     angle = np.linspace(np.pi, 0.0, 8)
-    arch = np.concatenate([np.stack([np.cos(angle), np.sin(angle)], axis=1), [[2.0, 0.0], [2.0, 3.0], [-1.0, 3.0]]])
+    arch = np.concatenate(
+        [np.stack([np.cos(angle), np.sin(angle)], axis=1), [[2.0, 0.0], [2.0, 3.0], [-1.0, 3.0]]]
+    )
     text = "; ".join(Outline(arch, corners=(0, 8, 9, 10)).boundary(Sampling(ni=31, nj=11)).notes)
     off = float(text.split("smooth curves through the points, up to ")[1].split()[0])
     assert off == pytest.approx(1.0 - np.cos(np.pi / 14), rel=0.1)
