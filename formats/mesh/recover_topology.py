@@ -9,8 +9,7 @@ from meshonet.geometry.blocks.connection import wake_nodes
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
-from meshonet.geometry.shapes.shape import Shape
-from meshonet.geometry.shapes.spatial_shape import SpatialShape, in_space
+from meshonet.geometry.shapes.shape import Shape, SpatialShape
 
 _SEAM = 1e-6
 """Largest distance between joined sides, relative to their first edge."""
@@ -26,7 +25,7 @@ def boundary_of(grid: Grid) -> Shape:
     Raises InputError: the edges are not a boundary, for example because two neighbouring nodes coincide; as
     `layout_of`.
     """
-    if in_space(grid):
+    if grid.form != "plane":
         return SpatialShape(grid)
     if grid.topology == "blocks":
         from meshonet.geometry.blocks.families import joins_whole_sides

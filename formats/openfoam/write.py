@@ -22,7 +22,6 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.screw import screw_of
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent
-from meshonet.geometry.shapes.spatial_shape import in_space
 
 _DICTIONARIES = {
     "controlDict": "startFrom latestTime;\nstartTime 0;\nstopAt endTime;\nendTime 1000;\ndeltaT 1;\n"
@@ -48,7 +47,7 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     grid = only_one(grids, "a case")
     low, high = grid.box
     check_extent(float((high - low).max()))
-    if not in_space(grid):
+    if grid.form == "plane":
         grid = extruded(grid, (0.0, 1.0))
     apart = node_numbers(grid)
     numbers = with_collapsed(grid, apart)

@@ -20,7 +20,6 @@ from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.shapes.spatial_shape import in_space
 
 _LINE = 4
 """Number of values per line of text."""
@@ -70,7 +69,7 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
         raise InputError("planes are read and not written", "leave the word out")
     rest = iter(grids)
     grids = [at_least_one(rest), *rest]
-    space = any(map(in_space, grids))
+    space = any(grid.form != "plane" for grid in grids)
     if space and "2d" in options:
         raise InputError("nodes of a grid in space have z", "leave the word 2d out")
     # VTK takes a counted flat C binary file of float64 for a solid one of float32

@@ -14,8 +14,9 @@ from meshonet.geometry.arrays import Floats, as_planar, norms, percentiles_of
 from meshonet.geometry.blocks.block import form_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
+from meshonet.geometry.quality import metrics
 from meshonet.geometry.quality.cell_run import FEW, PERCENTS, CellRun, run_over, summary_of
-from meshonet.geometry.quality.metrics import NAMES, QUAD_METRICS, metric_of, metrics_of
+from meshonet.geometry.quality.metrics import NAMES, QUAD_METRICS, metric_of
 from meshonet.geometry.summary import Quality, Summary
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
@@ -100,16 +101,15 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     computed too, by linear interpolation between cells; this takes four times as long as the rest.
     """
     quality = _compiled(grid, percentiles)
-    more = [metric for metric in metrics_of(grid) if metric.cells]
-    if not more:
+    if not metrics.METRICS:
         return quality
-    metrics = dict(quality.metrics)
-    for metric in more:
+    summaries = dict(quality.metrics)
+    for metric in metrics.METRICS:
         summary = summary_of(metric, per_cell_of_blocks(grid, metric.name), percentiles)
-        metrics[metric.name] = (
+        summaries[metric.name] = (
             summary if grid.topology == "blocks" else replace(summary, worst=summary.worst[1:])
         )
-    return replace(quality, metrics=metrics)
+    return replace(quality, metrics=summaries)
 
 
 def _compiled(grid: Grid, percentiles: bool) -> Quality:
@@ -125,17 +125,17 @@ def _compiled(grid: Grid, percentiles: bool) -> Quality:
     cells = (grid.ni - 1) * (grid.nj - 1)
     together = max(1, FEW * len(QUAD_METRICS) // cells) if percentiles else 0
     run = _run(grid, slice(together))
-    metrics = {}
+    summaries = {}
     for k, metric in enumerate(QUAD_METRICS):
-        low, mean, high = (float(value) for value in run.table[k])
+        low, mean, high = run.table[k].tolist()
         i, j = run.where[k, 0 if metric.worst == "min" else 1]
         ends: list[float | None] = [None, None]
         if percentiles:
             if k and k % together == 0:
                 run = _run(grid, slice(k, k + together))
             ends = [*percentiles_of(run.values[k % together], PERCENTS)]
-        metrics[metric.name] = Summary(low, mean, high, (int(i), int(j)), *ends)
-    return Quality(cells, count_folded(grid.nodes), metrics)
+        summaries[metric.name] = Summary(low, mean, high, (int(i), int(j)), *ends)
+    return Quality(cells, count_folded(grid.nodes), summaries)
 
 
 def _run(grid: Grid, kept: slice) -> CellRun:

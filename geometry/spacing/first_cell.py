@@ -70,9 +70,10 @@ class FirstCell:
             if isinstance(given, Mapping) and not (given and all(given)):
                 remedy = "give e.g. tubes=1e-3,floor=5e-3, or one value"
                 raise InputError("a wall without a name", remedy, parameter=name)
-        for height in _values(self.first_cell):
-            check_height(height, "first_cell")
-        self.heights()  # raises for values out of range
+        if self.at_walls:
+            for height in _values(self.first_cell):
+                check_height(height, "first_cell")
+            self.heights()  # raises for values out of range
 
     def heights(self, unit: float = 1.0) -> AtWalls | None:
         """Return the first-cell height, or one for each wall by name.

@@ -22,8 +22,7 @@ from meshonet.geometry.shapes.assembly import assembled
 from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.geometry.shapes.polygon_shape import domain_or_body
-from meshonet.geometry.shapes.shape import Shape, edges_of
-from meshonet.geometry.shapes.spatial_shape import SpatialShape
+from meshonet.geometry.shapes.shape import Shape, SpatialShape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.parameters import SAMPLED, grid_request, sampling_of

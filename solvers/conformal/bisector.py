@@ -13,22 +13,22 @@ from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.conformal.lift import Lift
 from meshonet.geometry.elementary import exp, product, sin
 from meshonet.kernels._native import lift_bisect
-from meshonet.solvers.conformal.evaluate import StripGrid
+from meshonet.solvers.conformal.evaluate import Shift, StripGrid
 
-CELLS = 4.0  # reach of a nudge, in cells either way; with 3 some cells fold
+CELLS = 4.0  # reach of a shift, in cells either way; with 3 some cells fold
 LARGEST = 0.4  # of a cell's width: beyond it the neighbours would suffer
 SWEEPS = 3  # over the corners, which influence each other a little
 
 
-def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> None:
-    """Shift `grid` so that the first grid lines at `corners` are bisectors in the plane.
+def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> Shift | None:
+    """Return the shift of `grid` by which the first grid lines at `corners` are bisectors in the plane.
 
     `wall` (n,) are nodes in the plane, counter-clockwise, and `corners` indices into it.
     """
     if not corners or len(grid.eta) < 4:
-        return
+        return None
     reach, shift = shifts(grid, lift, wall, corners)
-    grid.nudge(product(reach, shift), partial(fading, first=float(grid.eta[1])))
+    return product(reach, shift), partial(fading, first=float(grid.eta[1]))
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:

@@ -14,6 +14,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TypeAlias
 
 import numpy as np
 
@@ -29,6 +30,9 @@ from meshonet.solvers.conformal.strip import MODES, interpolation, wavenumbers
 
 FAINT = 1e-12  # a wall's high modes are followed until their sum is below this (radians in the strip)
 
+Shift: TypeAlias = tuple[Floats, Callable[[Floats], Floats]]
+"""A shift of phi: its amount (n,) along the wall, and the fraction of it as a function of eta."""
+
 
 class StripGrid:
     """A strip solution sampled at the nodes of one grid.
@@ -42,7 +46,6 @@ class StripGrid:
         self.theta = 2.0 * np.pi * np.arange(n) / n
         self.eta = eta
         self._c = c
-        self._nudges: list[tuple[Floats, Callable[[Floats], Floats]]] = []
         psi = wall.real
         height, spread = float(far.real.mean() - psi.mean()), float(psi.max() - psi.min())
         self._near, self._away = _HighModes.of(wall, height), _HighModes.of(far, height)
@@ -61,22 +64,16 @@ class StripGrid:
         )
         return np.asarray(F + 1j * theta)
 
-    def nudge(self, along: Floats, across: Callable[[Floats], Floats]) -> None:
-        """Add the shift `along` (n,) times ``across(eta)`` to phi."""
-        self._nudges.append((along, across))
-
-    def fill(self, lift: Lift, out: Floats, axis: Axis | None = None) -> bool:
+    def fill(self, lift: Lift, out: Floats, axis: Axis | None = None, shift: Shift | None = None) -> bool:
         """Write the grid in the plane to `out` (n + 1, nj, 2), in planar layout, except for its two walls.
 
         Return whether it is finite. The last row repeats the first bitwise. With an `axis`, rows i and n - i
-        are mirror images.
+        are mirror images. A `shift` is added to phi.
         """
         n, nj, begin = len(self.theta), len(self.eta), self._begin
         far = self.eta[self._end : nj - 1]
         eta = np.concatenate([self.eta[1:begin], *(panel.eta for panel in self._panels), far])
-        along, across = np.empty((len(self._nudges), n)), np.empty((len(self._nudges), len(eta)))
-        for k, (rows, profile) in enumerate(self._nudges):
-            along[k], across[k] = rows, profile(eta)
+        along, across = (shift[0][None], shift[1](eta)[None]) if shift else (np.empty((0, n)), eta[None][:0])
         matrix = np.concatenate([np.empty((NODES, 0)), *(panel.matrix for panel in self._panels)], axis=1)
         cuts = np.array([begin, *(panel.stop for panel in self._panels)]) - begin
         order = np.arange(n)

@@ -117,8 +117,7 @@ def _evaluated(boundary: Boundary, body: StripWalls, c: Complexes) -> tuple[Floa
     """Return the nodes of a strip solution, and whether they are finite."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
     grid = StripGrid(c, body.wall, body.far, np.linspace(0.0, 1.0, boundary.nj))
-    halve_corners(grid, body.lift, body.z, body.corners)
-    finite = grid.fill(body.lift, nodes, body.axis)
+    finite = grid.fill(body.lift, nodes, body.axis, halve_corners(grid, body.lift, body.z, body.corners))
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
     return nodes, finite
 

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, TypeVar
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.geometry.shapes.shape import Shape
-from meshonet.geometry.shapes.spatial_shape import SpatialShape
+from meshonet.geometry.shapes.shape import Shape, SpatialShape
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.pipeline.choose_method import method_of
 from meshonet.solvers.pipeline.request import GridRequest

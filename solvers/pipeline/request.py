@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from meshonet.geometry.arrays import SIDES
@@ -12,7 +12,7 @@ from meshonet.geometry.spacing.first_cell import FirstCell
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.check_request import check_request
 from meshonet.solvers.pipeline.methods import METHODS
-from meshonet.solvers.pipeline.uses import FOR_MANY, OF_SURFACE, chosen
+from meshonet.solvers.pipeline.uses import ALWAYS, COUNTED, FOR_MANY, OF_SURFACE, SETTINGS
 
 if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
@@ -33,7 +33,19 @@ class Request(FirstCell):
     @property
     def chosen(self) -> tuple[str, ...]:
         """Names of the options that differ from their defaults, followed by settings."""
-        return chosen(self)
+        names: list[str] = []
+        plain = vars(Sampling())
+        for name, value in vars(self.sampling).items():
+            if value != plain[name]:
+                names.append("res" if name in COUNTED else name)
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if each.name not in ALWAYS and value != each.default and value is not False and value != {}:
+                names.append(each.name)
+        for name, value in self.settings.items():
+            if value != SETTINGS.get(name):
+                names.append(name)
+        return tuple(dict.fromkeys(names))
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,7 @@ import numpy as np
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Advice
-from meshonet.geometry.reach import MOST_REFINED, check_reach
-from meshonet.geometry.shapes.shape import Shape, edges_of
-from meshonet.geometry.shapes.spatial_shape import SpatialShape
+from meshonet.geometry.shapes.shape import Shape, SpatialShape, edges_of
 from meshonet.geometry.spacing.sampling import DEFAULT_FAR_FIELD, DEFAULT_NI, DEFAULT_NJ, Sampling
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.uses import AROUND_BASE, IN_SPACE, ONE, USES, refuse
@@ -88,6 +86,8 @@ def _along_walls(boundary: Boundary, shape: Shape, sampling: Sampling, request: 
 def _check_refined(ni: int, nj: int, halvings: int) -> None:
     """Raise InputError if ni x nj nodes whose cells are halved so often are too many."""
     if halvings:
+        from meshonet.geometry.reach import MOST_REFINED, check_reach
+
         check_reach(
             (ni - 1.0) * (nj - 1.0) * (1 << 2 * halvings), "cells",
             f"a grid of {ni}x{nj} nodes, its cells halved {halvings} times,", "use fewer",

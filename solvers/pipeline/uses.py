@@ -7,14 +7,9 @@ method.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import fields
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.sampling import Sampling
-
-if TYPE_CHECKING:
-    from meshonet.solvers.pipeline.request import Request
 
 
 def _row(*options: str) -> frozenset[str]:
@@ -86,23 +81,6 @@ def counted(res: Counts | None, options: Mapping[str, Any]) -> dict[str, Any]:
         by_growth = options.get("growth") and any(map(options.get, _OFF_WALLS))
         res = (res,) if by_growth else (res, res)
     return dict(zip(COUNTED, res or (), strict=False))
-
-
-def chosen(request: Request) -> tuple[str, ...]:
-    """Return the names of the options that differ from their defaults, followed by settings."""
-    names: list[str] = []
-    plain = vars(Sampling())
-    for name, value in vars(request.sampling).items():
-        if value != plain[name]:
-            names.append("res" if name in COUNTED else name)
-    for each in fields(request):
-        value = getattr(request, each.name)
-        if each.name not in ALWAYS and value != each.default and value is not False and value != {}:
-            names.append(each.name)
-    for name, value in request.settings.items():
-        if value != SETTINGS.get(name):
-            names.append(name)
-    return tuple(dict.fromkeys(names))
 
 
 def refuse(options: Iterable[str], way: str) -> None:

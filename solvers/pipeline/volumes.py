@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from importlib import import_module
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.shapes.spatial_shape import SpatialShape
+from meshonet.geometry.shapes.shape import SpatialShape
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.request import Volume
 from meshonet.solvers.pipeline.uses import INSIDE, JOINED, OFF_SURFACE, refuse

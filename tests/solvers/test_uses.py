@@ -26,7 +26,6 @@ from meshonet.solvers.pipeline.uses import (
     MANY,
     ONE,
     USES,
-    chosen,
     refuse,
 )
 from meshonet.solvers.rows.request import RowRequest
@@ -115,11 +114,11 @@ def test_every_option_of_a_command_that_makes_grids_is_a_field(command: str) -> 
 
 
 def test_what_is_chosen_is_what_is_not_by_default() -> None:
-    assert chosen(GridRequest()) == ()
+    assert GridRequest().chosen == ()
     request = GridRequest(
         Sampling(9, 9, te="wedge"), "winslow", {"tol": 1e-3, "blending": "arclength"}, refine=1
     )
-    assert chosen(request) == ("res", "te", "refine", "tol")
+    assert request.chosen == ("res", "te", "refine", "tol")
 
 
 def test_an_option_of_no_use_is_refused_by_name() -> None:

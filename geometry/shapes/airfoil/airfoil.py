@@ -244,13 +244,14 @@ class Airfoil:
             remedy = "leave {base_nodes} out"
             raise InputError("the trailing edge has no base", remedy, parameter="base_nodes")
         if topology == "auto":
-            sharp = not (body.blunt or body._round) and body.wedge <= _WIDEST_WEDGE
-            topology = "c" if sampling.viscous and sharp else "o"
+            sharp = sampling.viscous and not (body.blunt or body._round) and body.wedge <= _WIDEST_WEDGE
+            topology = "c" if sharp else "o"
         if topology == "o" and (sampling.wake or sampling.wake_nodes):
             remedy = "leave {wake} out, or use {topology} c"
             raise InputError("an O grid has no wake", remedy, source=self.name)
         notes = body.notes + shape_notes(self._section, self.curve, self.chord)
-        notes += edge_notes(self, body, te, sampling.te)
+        if te != "exact":
+            notes += edge_notes(self, body, te, sampling.te)
         if topology == "c":
             if sampling.topology == "auto":
                 notes += ("c grid, as the trailing edge is sharp; {topology} o makes an O grid",)
