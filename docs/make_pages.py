@@ -27,22 +27,22 @@ MODELS_HEAD = """# Shipped models
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for the training parameters of the shipped models. For the choice of a model see
-[neural operators](../theory/operators.md), for the accuracy of each see
+Look here for the training parameters of the models that are part of meshonet. To choose a model see
+[neural operators](../theory/operators.md). The accuracy of each model is in
 [held-out errors](../benchmarks/models.md). `meshonet models` prints the same data.
 
-Each model is a safetensors file in `solvers/neural/pretrained/`; its metadata hold the training parameters
-and the held-out errors. `make train` repeats the training.
+Each model is a safetensors file in `solvers/neural/pretrained/`. The metadata of the file contain the
+training parameters and the held-out errors. `make train` repeats the training.
 
 | training parameter | meaning |
 | --- | --- |
-| `datasets` | training grids; the target grids come from a solver |
-| `strips`, `domains` | samples in the datasets, those held out included |
-| `held_out` | samples that are not used in training, only to measure errors |
+| `datasets` | files with the training grids, which a solver made |
+| `strips`, `domains` | number of samples in the datasets, including the held-out samples |
+| `held_out` | number of samples that are used only to measure errors, not for training |
 | `epochs`, `batch`, `seed` | passes over the training samples, samples per step, seed of the random numbers |
 | `rate`, `warm_up` | largest learning rate, reached after `warm_up` steps and reduced to zero by a cosine |
 | `weight_decay`, `clip` | weight decay of AdamW, and the largest norm of the gradient |
-| `initial` | model with the initial weights; `quad-first` is an earlier run and not shipped |
+| `initial` | model with the initial weights; `quad-first` is from an earlier training and not shipped |
 | `weights` | coefficients of the terms of the loss ([training](../theory/operators.md#training)) |
 | `widths` | U-Net: channels on each level, in units of eight, the finest level first |
 | `blocks` | U-Net: residual blocks on each level, on the way down and again on the way up |
@@ -53,20 +53,22 @@ ERRORS_HEAD = """# Held-out errors of the shipped models
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for the distance between the grids that a shipped model predicts and those of the solver, on shapes
-that were not used in training. The training parameters are in [shipped models](../reference/models.md);
-`meshonet models` prints both. The loss after every epoch is in `docs/benchmarks/curves`; `quad-first` is the
-first of the two training runs of `quad-general`.
+Look here for the accuracy of the models that are part of meshonet: the distance between grids of a model and
+grids of the solver, on shapes that were not used in training. The training parameters are in
+[shipped models](../reference/models.md); `meshonet models` prints errors and parameters. The loss after every
+epoch is in `docs/benchmarks/curves`; `quad-first` is the first of the two training runs of `quad-general`.
 """
 C_GRIDS = """## C grids: no model
 
-No model for C grids is shipped, because none is as good as hyperbolic marching. For C grids the predictions
-of `quad-general` are worse than transfinite interpolation; after five further iterations of the variational
-method their mean angle is still worse than that of the variational grid
-([figures](../benchmarks/body-operator.md#c-grids-no-model)). `airfoil-o` assumes that the grid is periodic in
-ξ; a C grid is not, because of its wake. `infer` therefore generates C grids by
-[marching](../theory/marching.md) from the wall and the wake, or by the variational method if marching fails.
-The report names the method used. For C grids the options `--model`, `--polish` and `--device` are rejected.
+meshonet has no model for C grids, because hyperbolic marching gives better C grids than every network that
+was tested. For C grids the predictions of `quad-general` are worse than transfinite interpolation. Five
+further iterations of the variational method improve the predictions, but the mean angle is still farther from
+90 degrees than in the variational grid ([measurements](../benchmarks/body-operator.md#c-grids-no-model)).
+`airfoil-o` assumes that the grid is periodic in ξ; a C grid is not periodic, because of the wake.
+
+`infer` therefore generates C grids by [marching](../theory/marching.md) from the wall and the wake, or by the
+variational method if marching fails. The report names the method. For C grids the options `--model`,
+`--polish` and `--device` are errors.
 """
 
 FORMATS_HEAD = """# Formats
@@ -74,50 +76,53 @@ FORMATS_HEAD = """# Formats
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
 Look here for the file formats that meshonet reads and writes. `meshonet convert IN OUT` selects the formats
-by the file extensions; `--from` and `--to` name a format if the extension is ambiguous. `meshonet convert
---list-formats` prints this table.
+by the file extensions. If an extension belongs to several formats, name the format with `--from` or `--to`.
+`meshonet convert --list-formats` prints this table.
 
-- *names*: the format stores names of boundary patches.
-- *3D*: the three-dimensional grids that the format stores. With *volumes*, `--extrude H` (`--planes K`)
-  writes a two-dimensional grid as a volume.
-- *blocks*: a multi-block grid is written with its blocks *kept*, or *merged* into one unstructured mesh. A
-  format without an entry cannot store a multi-block grid.
-- *many*: one file can hold several grids or boundaries.
-- *options*: variants of the format, written after a colon, at most one from each group, for example `--to
-  gmsh:4.1,ascii`. The first of a group is the default unless the extension implies another one.
+- *names*: whether the format stores names of boundary patches.
+- *3D*: the kinds of three-dimensional grids that the format stores. If *volumes* are among them,
+  `--extrude H` (`--planes K`) writes a two-dimensional grid as a volume.
+- *blocks*: whether the blocks of a multi-block grid are *kept* in the file or *merged* into one unstructured
+  mesh. A format without an entry cannot store a multi-block grid.
+- *many*: whether one file can contain several grids or boundaries.
+- *options*: variants of the format. Write them after a colon, for example `--to gmsh:4.1,ascii`. Slashes
+  separate the alternatives of a group: choose at most one of each group. The first one is the default, unless
+  the extension implies another one.
 
 """
 FORMATS_REST = """
-For multi-block grids, boundaries and the variants of Plot3D see
-[conventions of formats](format-details.md), for volumes and surfaces
-[files in three dimensions](format-volumes.md), for the layout of datasets [HDF5](hdf5.md).
+Three other pages give details: [conventions of formats](format-details.md) for multi-block grids, boundaries
+and the variants of Plot3D, [files in three dimensions](format-volumes.md) for volumes and surfaces, and
+[HDF5](hdf5.md) for the structure of datasets.
 
-## Not read
+## Files that meshonet cannot read
 
-- CGNS in ADF containers: convert it with `adf2hdf`.
-- `.vts` compressed with LZ4: write it with zlib or LZMA.
-- Fluent's `.msh`, another format than Gmsh's, which is not written either.
-- Gmsh meshes other than 2.2 and 4.1, and binary DXF.
+- CGNS files in ADF containers: convert them with `adf2hdf`.
+- `.vts` files compressed with LZ4: write them with zlib or LZMA.
+- `.msh` files of Fluent, which have another format than those of Gmsh. meshonet cannot write them either.
+- Gmsh meshes of other versions than 2.2 and 4.1, and binary DXF files.
 
-Worked examples with flow solvers: `examples/naca0012-openfoam`, `examples/cylinder-openfoam`,
-`examples/pipe-bend-openfoam`, `examples/aircraft`, `examples/blade-row`, `examples/naca0012-su2`.
+These folders contain complete examples with flow solvers: `examples/naca0012-openfoam`,
+`examples/cylinder-openfoam`, `examples/pipe-bend-openfoam`, `examples/aircraft`, `examples/blade-row` and
+`examples/naca0012-su2`.
 """
 
 BLOCKING_HEAD = """# Files of blocking
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for a file in `solvers/blocking`. Each row quotes the first paragraph of the file's docstring. The
-order in which the files work is described in [stages](stages.md).
+Look here for a file in `solvers/blocking`. Each row is the first paragraph of the file's docstring.
+[Stages](stages.md) describes the order in which the functions are called.
 """
 
 FAMILIES_HEAD = """# The six test families
 
 <!-- made by python docs/make_pages.py -->
 
-Use these families to train and compare neural operators. They are the test cases of the MeshONet paper;
-each shape depends on one parameter. `sample-boundary --family NAME --count N` samples N members over the
-range of the parameter, `--range A:B` selects another range, and `solve-pde` generates the grids.
+Use these families of shapes to train and compare neural operators. They are the test cases of the MeshONet
+paper. The shapes of a family depend on one parameter. `sample-boundary --family NAME --count N` makes N
+shapes with parameters in the given range, `--range A:B` selects another range, and `solve-pde` generates the
+grids.
 """
 
 
@@ -206,11 +211,11 @@ def curve(name: str) -> list[str]:
 def strip_figures(figures: dict[str, Any], _: str) -> list[str]:
     """Return the held-out errors of the airfoil operator."""
     lines = [
-        f"Held-out samples: {figures['strips']} procedural airfoils, not used in training. Weights are in",
-        "float16. The error is the root mean square distance, in radians, to Winslow's solution in the",
-        "[strip](../reference/glossary.md) to which the conformal map takes the domain. *base* is the",
-        "initial grid, the harmonic extension of the boundary, which the network corrects; *n Picard* adds n",
-        "Picard steps towards Winslow's solution.\n",
+        f"The held-out samples are {figures['strips']} random airfoils. The weights of the network are in",
+        "float16. The conformal map takes the domain to a [strip](../reference/glossary.md). The error is",
+        "the root mean square distance from Winslow's solution in the strip, in radians. *base* is the",
+        "initial grid (the harmonic extension of the boundary), which the network corrects. *n Picard* adds",
+        "n Picard steps towards Winslow's solution.\n",
         "| method | median | 90th percentile | maximum |",
         "| --- | --- | --- | --- |",
     ]
@@ -224,10 +229,10 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     """Return the held-out errors of a network for four-sided domains or bodies."""
     counts = "33 x 33" if topology == "quad" else "65 x 33"
     lines = [
-        f"Held-out samples: {figures['domains']} random domains, not used in training. One network predicts",
-        f"both grids. Errors are relative L2 distances to the solver's grid on {counts} nodes, without",
-        "polish (solver iterations after the network). *initial* is the median error of the grid that the",
-        "network corrects, *valid* the share of grids without folded cells.\n",
+        f"The held-out samples are {figures['domains']} random domains. One network predicts the variational",
+        f"and Winslow's grid. Errors are relative L2 distances from the solver's grid on {counts} nodes,",
+        "without polish (solver iterations after the network). *initial* is the median error of the initial",
+        "grid, which the network corrects; *valid* is the share of grids without folded cells.\n",
         "| predicted grid | median error | 90th percentile | initial | valid |",
         "| --- | --- | --- | --- | --- |",
     ]
@@ -241,9 +246,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "Variational grids have smaller cell corner angles than Winslow's grids. The network\n"
-        f"achieves {100 * gain['mean_gain']:.0f} % of this reduction for the mean over all cells (of the\n"
-        f"largest angle of a cell), and {100 * gain['max_gain']:.0f} % for the largest angle of the grid.",
+        "Angles of variational grids are smaller than those of Winslow's grids. The network reaches\n"
+        f"{100 * gain['mean_gain']:.0f} % of this reduction for the mean of the largest angle of each cell,\n"
+        f"and {100 * gain['max_gain']:.0f} % for the largest angle of the grid.",
     ]
     return lines
 

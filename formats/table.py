@@ -82,7 +82,7 @@ _FORMATS: tuple[Format, ...] = (
         space=_BOTH,
     ),
     _format(
-        "vtm", ".vtm", "VTK multi-block file: an index and a folder of .vts, one a block",
+        "vtm", ".vtm", "VTK multi-block file: an index file, and a folder with one .vts file per block",
         "vtk.vtm:read_grids vtk.vtm:write_grids",
         sniff=partial(holds, (b"<VTKFile", b"vtkMultiBlockDataSet")),
         names_patches=True, blocks="kept", many=True, beside=True, space=_BOTH,
@@ -93,12 +93,12 @@ _FORMATS: tuple[Format, ...] = (
         space=_BOTH,
     ),
     _format(
-        "vtu", ".vtu", "VTK XML unstructured grid, seams merged, patches by number",
+        "vtu", ".vtu", "VTK XML unstructured grid; seams are merged, patches are numbers",
         "", write_grids=partial(_write, partial(later, "meshonet.formats.meshio_export:write_vtu"), "vtu"),
         blocks="merged", space=_BOTH,
     ),
     _format(
-        "gmsh", ".msh", "Gmsh mesh, patches as physical groups; read as a boundary",
+        "gmsh", ".msh", "Gmsh mesh; patches are physical groups; only the boundary is read",
         "gmsh.read:read_shapes gmsh.msh:write_grids", sniff=partial(holds, (b"$MeshFormat",)),
         names_patches=True, choices=(("binary", "ascii"), ("2.2", "4.1")), blocks="merged", space=_BOTH,
     ),
@@ -108,13 +108,13 @@ _FORMATS: tuple[Format, ...] = (
         sniff=partial(begins, rb".{0,12}ADF Database Version|" + _HDF5 + rb".*" + _CGNS), space=_BOTH,
     ),
     _format(
-        "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the file, or the one named",
+        "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the .foam file, or in a given folder",
         "openfoam.write:write_grids", choices=(("ascii", "binary"), ("cyclic", "cyclicami")),
         names_patches=True, fills_folder=True,
         blocks="merged", space=_VOLUMES,
     ),
     _format(
-        "geo", ".geo", "Gmsh geometry: the outer edges as transfinite curves, patches as physical groups",
+        "geo", ".geo", "Gmsh geometry: outer edges are transfinite curves, patches are physical groups",
         "gmsh.geo:write_grids", names_patches=True, blocks="merged",
     ),
     _format(
@@ -122,28 +122,28 @@ _FORMATS: tuple[Format, ...] = (
         "plot3d.nmf:write_grids", names_patches=True, blocks="kept", space=_BOTH,
     ),
     _format(
-        "su2", ".su2", "SU2 mesh, text, patches as markers; read as a boundary",
+        "su2", ".su2", "SU2 mesh (text); patches are markers; only the boundary is read",
         "su2:read_shapes su2:write_grids", sniff=partial(holds, (b"NDIME", b"=")),
         names_patches=True, blocks="merged", space=_VOLUMES,
     ),
     _format(
         "plot3d", ".p3d .xyz .fmt .x .dat .bin .ufmt .unf",
-        "Plot3D: text, C binary (.bin) or Fortran records (.ufmt), with the .nmf beside it",
+        "Plot3D: text, C binary (.bin) or Fortran records (.ufmt), and a .nmf file",
         "plot3d.read:read_grids plot3d.write:write_grids plot3d:sniff",
         blocks="kept", many=True, choices=CHOICES, reads_options=True, space=_BOTH,
         suffix_options={".bin": "binary", ".ufmt": "fortran", ".unf": "fortran"},
     ),
     _format(
-        "dxf", ".dxf", "DXF drawing, layers as names (needs the extra dxf)", "outlines.dxf:read_shapes",
+        "dxf", ".dxf", "DXF drawing; layers are names (needs the extra dxf)", "outlines.dxf:read_shapes",
         sniff=partial(begins, rb"\s*0\s+SECTION\s|AutoCAD Binary DXF"), many=True,
     ),
     _format(
-        "step", ".step .stp", "STEP, faces become patches of a surface (needs the extra cad)", "",
+        "step", ".step .stp", "STEP file; faces become patches of a surface (needs the extra cad)", "",
         read_shapes=partial(later, "meshonet.formats.cad.read:read_step"),
         sniff=partial(begins, rb"\s*ISO-10303-21"),
     ),
     _format(
-        "brep", ".brep .brp", "B-rep of Open Cascade, as STEP", "",
+        "brep", ".brep .brp", "B-rep file of Open Cascade, treated as STEP", "",
         read_shapes=partial(later, "meshonet.formats.cad.read:read_brep"),
         sniff=partial(begins, rb"\s*(DBRep_DrawableShape|CASCADE Topology)"),
     ),
@@ -152,7 +152,7 @@ _FORMATS: tuple[Format, ...] = (
         read_shapes=partial(later, "meshonet.formats.outlines.vector:read_wkt"),
     ),
     _format(
-        "layout", ".json", "layout of blocks as JSON; read as its coarse grid or its domain",
+        "layout", ".json", "layout of blocks as JSON; read as the coarse grid or the domain of the layout",
         "layout.read:read_shapes layout.read:read_grids layout.write:write_layouts",
         sniff=partial(holds, (b'"meshonet-layout"',)), names_patches=True,
     ),
@@ -170,7 +170,7 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format("png", ".png", "picture of a grid", "", write_grids=partial(later, _DRAW, kind="png")),
     _format(
-        "svg", ".svg", "picture of a grid, lines as vectors; read as outlines, ids as names",
+        "svg", ".svg", "vector graphics of a grid; read as outlines, ids are names",
         "outlines.svg:read_shapes", write_grids=partial(later, _DRAW, kind="svg"), many=True,
         sniff=partial(holds, (b"<svg",)),
     ),
@@ -179,11 +179,11 @@ _FORMATS: tuple[Format, ...] = (
         blocks="kept", space=_BOTH,
     ),
     _format(
-        "pdf", ".pdf", "picture of a grid, lines as vectors", "",
+        "pdf", ".pdf", "vector graphics of a grid", "",
         write_grids=partial(later, _DRAW, kind="pdf"),
     ),
     _format(
-        "meshio", " ".join(_MESHIO), "surfaces of viewers, decks of solid mechanics, without patches",
+        "meshio", " ".join(_MESHIO), "formats of viewers and of solid mechanics, without patches",
         "meshio_export:write_grids", blocks="merged", suffix_options=_MESHIO,
         choices=(tuple(dict.fromkeys(_MESHIO.values())),),
     ),
