@@ -46,7 +46,7 @@ solve-pde bend.csv --res 400 --json
 solve-pde duct.csv --res 300 --method variational --coarse off --json
 infer example.dat --res 400x200 --json
 infer main.dat flap.dat --assemble --y-plus 1 --reynolds 5e6 --cells 9000 --json
-infer y-junction.geojson --first-cell 1e-3 --cells 6000 --json
+infer y-junction.geojson --first-cell 1e-2 --walls outer --cells 6000 --json
 stack wing.toml --y-plus 1 --reynolds 1e6 --around 97 --span 25 --json -> .cgns
 """
 TUTORIALS = """
