@@ -37,7 +37,7 @@ from meshonet_cli.batch.parts import (
     PartTask,
     deliver_parts,
 )
-from meshonet_cli.report.timed import delivered
+from meshonet_cli.report.delivered import delivered
 from meshonet_cli.tasks.boundaries import itself
 from meshonet_cli.terminal.session import Session
 

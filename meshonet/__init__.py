@@ -11,6 +11,7 @@ loaded when it is first used, so that importing the package takes no time.
 """
 
 from importlib import import_module
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from meshonet.above import ABOVE
@@ -115,16 +116,16 @@ _MODULES = {
     "meshonet.solvers.stacking.request": ("StackRequest",),
     "meshonet.solvers.sweeping.sweep": ("Sweep",),
 }
-_HOMES = {name: module for module, names in _MODULES.items() for name in names}
-__all__ = ["__version__", *_HOMES]
+__all__ = ["__version__", *chain.from_iterable(_MODULES.values())]
 
 
 def __getattr__(name: str) -> Any:
     """Return a public name, which is loaded at its first use (PEP 562)."""
-    if name not in _HOMES:
-        raise AttributeError(f"module 'meshonet' has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(_HOMES[name]), name)
-    return value
+    for module, names in _MODULES.items():
+        if name in names:
+            value = globals()[name] = getattr(import_module(module), name)
+            return value
+    raise AttributeError(f"module 'meshonet' has no attribute {name!r}")
 
 
 def _measured(grid: Any) -> Any:
@@ -136,4 +137,4 @@ ABOVE["write"] = lambda *what, **settings: __getattr__("write")(*what, **setting
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_HOMES})
+    return sorted({*globals(), *__all__})

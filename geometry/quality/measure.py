@@ -122,7 +122,8 @@ def _compiled(grid: Grid, percentiles: bool) -> Quality:
         from meshonet.geometry.quality.measure_blocks import measure_blocks
 
         return measure_blocks(grid, count_folded_in(grid), percentiles=percentiles)
-    cells = (grid.ni - 1) * (grid.nj - 1)
+    ni, nj, _ = grid.nodes.shape
+    cells = (ni - 1) * (nj - 1)
     together = max(1, FEW * len(QUAD_METRICS) // cells) if percentiles else 0
     run = _run(grid, slice(together))
     summaries = {}

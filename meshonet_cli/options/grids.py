@@ -31,7 +31,8 @@ class GridOptions(RunOptions, SamplingOptions, LayerOptions, CheckOptions, GateO
 
         more |= values_of(LayerOptions, self) | values_of(CheckOptions, self)
         for name in ("first_cell", "y_plus"):
-            more[name] = at_walls(more[name], name)
+            if more[name] is not None:
+                more[name] = at_walls(more[name], name)
         for block in blocks:
             more |= vars(block)
         given = {name: value for name, value in settings.items() if value is not None}

@@ -132,7 +132,7 @@ class Report(Timed):
         head = (
             f"{self.item.label} -> {self.output}: {self._size(short=True)}, "
             f"{self.quality.folded} folded, max angle {angle:.1f}, "
-            f"{self._made()}, {span(self.seconds['total'])}"
+            f"{self._made()}, {span(self.total)}"
         )
         if self.confidence is not None:
             head += f", expected error {self.confidence.expected_error:.1e}"

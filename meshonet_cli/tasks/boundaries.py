@@ -18,7 +18,7 @@ from meshonet.solvers.stages import stage
 from meshonet_cli.batch.drawn import DrawnInputs
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import Batch, BatchTask, each
-from meshonet_cli.report.timed import Delivered, delivered, part_names
+from meshonet_cli.report.delivered import Delivered, delivered, part_names
 
 EDGE_NODES = 1000
 """Typical number of nodes on the edges of a boundary."""

@@ -9,7 +9,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import Batch, BatchTask, each
-from meshonet_cli.report.timed import Delivered, delivered, part_names
+from meshonet_cli.report.delivered import Delivered, delivered, part_names
 from meshonet_cli.terminal.session import Session
 
 

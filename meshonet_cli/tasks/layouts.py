@@ -17,7 +17,7 @@ from meshonet.solvers.pipeline.blocks import make_layout
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import Batch, BatchTask, each
-from meshonet_cli.report.timed import Delivered
+from meshonet_cli.report.delivered import Delivered
 
 
 def write_layouts(

@@ -8,7 +8,7 @@ from meshonet.formats.registry import picture_format, read_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import Batch, BatchTask, each
-from meshonet_cli.report.timed import Delivered, delivered
+from meshonet_cli.report.delivered import Delivered, delivered
 
 
 def plot_grids(batch: Batch, picture: Picture) -> int:

@@ -64,7 +64,6 @@ def measure_grids(
                     destination.check_several(item)
                 with stage("write", measured.seconds):
                     destination.write(destination.path(item), [item.what])
-            measured.finished(None)
             if summary:
                 session.done += 1
             else:

@@ -32,8 +32,8 @@ from meshonet_cli.batch.provenance import provenance
 from meshonet_cli.batch.run import Batch, BatchTask, each
 from meshonet_cli.options.groups import bad_value
 from meshonet_cli.options.sampling import resolution
+from meshonet_cli.report.delivered import Delivered, delivered, part_names
 from meshonet_cli.report.grid import Report
-from meshonet_cli.report.timed import Delivered, delivered, part_names
 from meshonet_cli.tasks.grids import reported
 
 VOLUME_NODES = 1_000_000

@@ -109,7 +109,7 @@ class Session:
 
     def written(self, report: Timed, path: str) -> None:
         """Report a member with the output file `path`: in full if it is the only one, else in one line."""
-        report.finished(path)
+        report.output = path
         if report.warning:
             self.warn(report.warning)
         self.done += 1
