@@ -108,7 +108,7 @@ _FORMATS: tuple[Format, ...] = (
         sniff=partial(begins, rb".{0,12}ADF Database Version|" + _HDF5 + rb".*" + _CGNS), space=_BOTH,
     ),
     _format(
-        "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the .foam file, or in a given folder",
+        "openfoam", ".foam", "OpenFOAM case: constant/polyMesh beside the .foam file, or in a given folder",
         "openfoam.write:write_grids", choices=(("ascii", "binary"), ("cyclic", "cyclicami")),
         names_patches=True, fills_folder=True,
         blocks="merged", space=_VOLUMES,

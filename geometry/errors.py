@@ -21,10 +21,10 @@ class MeshonetError(Exception):
 
 
 class InputError(MeshonetError):
-    """Input that cannot be used; the message reads ``place: problem; remedy``.
+    """Error for an input that cannot be used. The message has the form ``place: problem; remedy``.
 
-    Problem and remedy name parameters in braces, such as ``{far_field}``: this reads ``far_field`` in Python
-    and ``--far-field`` on the command line (`spelled`).
+    In `problem` and `remedy`, names of parameters are in braces, such as ``{far_field}``. In Python the
+    message then contains ``far_field``, on the command line ``--far-field``.
 
     Parameters
     ----------
@@ -33,11 +33,11 @@ class InputError(MeshonetError):
     remedy : str, optional
         What the user can do.
     source : str, optional
-        A file; a caller may set it later.
+        Name of the file; a caller may set it later.
     place : str, optional
         A place in the source, such as ``line 12``.
     parameter : str, optional
-        Python name of the parameter in question.
+        Python name of the parameter that causes the error.
 
     Examples
     --------
@@ -147,14 +147,14 @@ class BadCell:
 
 
 class NoValidGridError(MeshonetError):
-    """Every method that was tried ended in folded cells.
+    """Error if the grids of all methods that were tried have folded cells.
 
     Parameters
     ----------
     problem : str
-        What was tried, and how many cells are folded.
+        The methods that were tried, and the number of folded cells.
     worst : sequence of BadCell, optional
-        The worst of them.
+        The worst cells.
     """
 
     exit_code = 3
@@ -174,6 +174,6 @@ class NoValidGridError(MeshonetError):
 
 
 class SolverError(MeshonetError):
-    """An iteration diverged or stalled, and so did its retries."""
+    """Error if an iteration diverges or stalls, also after repetition with other settings."""
 
     exit_code = 3

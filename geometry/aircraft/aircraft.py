@@ -22,28 +22,28 @@ class Aircraft:
     Parameters
     ----------
     body : Body
-        The fuselage: a body of revolution, or a `LoftedBody`.
+        The fuselage: a body of revolution (`Body`) or a body given by sections (`LoftedBody`).
     wing : Stack or SurfaceWing
-        Sections from the inside of the body to the tip, or its surface. Its longest chord is the unit of
-        the grid's lengths.
+        Sections from the inside of the body to the tip, or the surface of the wing. Lengths of the grid, such
+        as the first-cell height, are in units of the longest chord of this wing.
     name : str, optional
-        Of the aircraft.
+        Name of the aircraft.
     half : bool, optional
-        Whether the grid ends in the plane of symmetry; otherwise it is joined there to its mirror image,
-        whose patches have the same names.
+        True: the grid is the half z >= 0 and ends in the plane of symmetry. False: the grid is this half and
+        its mirror image, joined in the plane; the patches of both halves have the same names.
     others : tuple of Stack or SurfaceWing, optional
-        Further wings before or behind it, such as a tail plane or canards, and a `Fin` above them, each with
-        a name of its own.
+        Further wings upstream or downstream of the wing, such as a tail plane or canards, and a `Fin`. Each
+        needs a name of its own.
     axes : AircraftAxes, optional
-        Axes of the file of its surfaces, which the grid is turned to.
+        Axes of the surface file; the grid gets the same axes.
     notes : tuple of str, optional
-        What was changed of the body.
+        Notes on changes of the body.
 
     Raises
     ------
     InputError
-        A stack that is no wing, has outlines in place of airfoils, or nearly ends in a point; a body or wing
-        with the name of another patch.
+        A stack that is not a wing, has outlines instead of airfoils, or has a tip that is nearly a point; two
+        patches with the same name.
 
     Examples
     --------

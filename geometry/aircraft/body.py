@@ -28,7 +28,7 @@ _FLAT = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A body of revolution about a line parallel to x, in the plane of symmetry z = 0.
+    """A body of revolution; the axis is parallel to x and lies in the plane of symmetry z = 0.
 
     ::
 
@@ -41,11 +41,11 @@ class Body:
     Parameters
     ----------
     meridian : array
-        (n, 2) x and radius from nose to tail, on the axis at both ends; x increases.
+        Points (n, 2), x and radius, from nose to tail; x increases, and the radius is 0 at both ends.
     y : float, optional
         Height of the axis.
     name : str, optional
-        Of the body, and of its patches.
+        Name of the body and of its patches.
 
     Raises
     ------
@@ -153,9 +153,9 @@ class Body:
         return np.asarray(s)
 
     def arcs_near(self, points: Floats) -> Floats:
-        """Return the arc lengths (n,) of the meridian next to points (n, 2) in order from nose to tail.
+        """Return the arc lengths (n,) of the meridian next to points (n, 2), given from nose to tail.
 
-        Unlike x, places are well defined at a blunt nose too.
+        The arc length identifies a point also at a blunt nose, where x does not change along the meridian.
         """
         s = arc_lengths(points)
         s *= self.length / s[-1]

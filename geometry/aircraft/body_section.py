@@ -31,20 +31,21 @@ _IN_PLANE = 1e-6
 class BodySection:
     """A cross-section of a body, in a plane of constant x, symmetric to z = 0.
 
-    Without width, height and points it is the point of a nose or tail.
+    A section without width, height and points is a single point, the nose or the tail of the body.
 
     Parameters
     ----------
     x : float
-        Its plane.
+        Position of the plane.
     y : float, optional
-        Height of the middle of a superellipse; how far points are moved up.
+        Height of the middle of a superellipse; `points` are displaced upwards by this value.
     width, height : float, optional
-        Of a superellipse, from side to side and from keel to crown.
+        Size of a superellipse from side to side, and from keel (lowest point) to crown (highest point).
     exponent : float, optional
-        Of the superellipse: 2 is an ellipse, more a rectangle with rounded corners.
+        Exponent of the superellipse: 2 gives an ellipse, a larger value a rectangle with rounded corners.
     points : array, optional
-        (n, 2) y and z of the half z >= 0, from keel to crown or from crown to keel; no superellipse then.
+        Points (n, 2), y and z, of the half z >= 0, from keel to crown or from crown to keel. They replace
+        width, height and exponent.
 
     Raises
     ------
@@ -87,17 +88,17 @@ class BodySection:
 
     @property
     def is_point(self) -> bool:
-        """Whether it is the point of a nose or tail."""
+        """Whether the section is a single point, the nose or the tail."""
         return self.points is None and self.width == 0.0
 
     @property
     def middle(self) -> float:
-        """Height of its middle, half way from keel to crown."""
+        """Height of the middle, half way from keel to crown."""
         return self.y if self.points is None else self.y + 0.5 * float(self.points[0, 0] + self.points[-1, 0])
 
     @property
     def halves(self) -> tuple[float, float]:
-        """Half of its width and half of its height."""
+        """Half the width and half the height of the section."""
         if self.points is None:
             return 0.5 * self.width, 0.5 * self.height
         return float(self.points[:, 1].max()), 0.5 * float(self.points[-1, 0] - self.points[0, 0])
@@ -109,9 +110,9 @@ class BodySection:
 
     @property
     def shape(self) -> Floats:
-        """Distances (ANGLES,) from the middle at even angles from keel to crown, those of an ellipse being 1.
+        """Distances (ANGLES,) from the middle at equal angle steps from keel to crown; 1 for an ellipse.
 
-        Angle and distance are those in the plane where half the width and half the height are 1.
+        Angle and distance are measured after scaling half the width and half the height to 1.
         """
         even = np.linspace(0.0, math.pi, ANGLES)
         if self.points is not None:

@@ -19,14 +19,14 @@ _POINTS = 65
 
 @dataclass(frozen=True, eq=False)
 class Fin(Stack):
-    """A stack of symmetric sections in the plane z = 0 of an aircraft, upwards from the inside of its body.
+    """A fin: symmetric sections in the plane of symmetry of an aircraft, from the inside of the body upwards.
 
-    Parameters are those of `Stack`, where z of a section is its height: y of the aircraft.
+    The parameters are those of `Stack`. The z of a section is the height, y in the axes of the aircraft.
 
     Raises
     ------
     InputError
-        As `Stack`; a section that is not symmetric, twisted or beside the plane.
+        As for `Stack`; also a section that has camber or twist, or lies outside the plane of symmetry.
 
     Examples
     --------

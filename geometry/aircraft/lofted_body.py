@@ -26,26 +26,27 @@ _LONGEST = 0.1
 
 @dataclass(frozen=True, eq=False)
 class LoftedBody(Body):
-    """A body whose surface is splined through cross-sections, from the point of a nose to that of a tail.
+    """A body given by cross-sections; its surface is a spline through them.
 
-    ``meridian`` and ``y`` are those of a body of revolution like it: radii are the means of half the width
-    and half the height, and its axis is in the middle of the largest section. It has further points between
-    sections that are far apart: sizes between two sections are about between theirs. At the arc length s of
-    that meridian and the angle theta a point of the surface is
-    (x, middle - up * shape * cos(theta), across * shape * sin(theta)). Nose and tail are round like ellipses.
+    The attributes ``meridian`` and ``y`` describe a similar body of revolution: the radius of a section is
+    the mean of half the width and half the height, and the axis passes through the middle of the largest
+    section. Between sections that are far apart, the meridian has further points. At the arc length s of the
+    meridian and the angle theta, a point of the surface is (x, middle - up * shape * cos(theta), across *
+    shape * sin(theta)). Next to the nose and the tail, cross-sections are ellipses.
 
     Parameters
     ----------
     name : str, optional
-        Of the body, and of its patches.
+        Name of the body and of its patches.
     sections : tuple of BodySection
-        From nose to tail; the first and the last are points.
+        Sections from nose to tail; the first and the last are single points.
 
     Raises
     ------
     InputError
-        Fewer than 4 sections; x that does not increase; a first or last section that is no point, or another
-        that is; very flat ones; sections so different and far apart that the meridian bulges between them.
+        Fewer than 4 sections; x that does not increase; a first or last section that is not a point, or
+        another section that is a point; very flat sections; sections so different and so far apart that the
+        surface bulges between them.
 
     Examples
     --------

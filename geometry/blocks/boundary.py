@@ -43,7 +43,7 @@ _CORNERS = (  # side and end, twice: where neighbouring sides meet
 
 @dataclass(frozen=True, eq=False)
 class Boundary(Connected):
-    """Four edges of nodes that share corners; they are checked when the boundary is made.
+    """The four sides of a block, with common corner nodes; values are checked on construction.
 
     Parameters
     ----------
@@ -52,30 +52,30 @@ class Boundary(Connected):
     west, east : array
         (nj, 2) nodes along eta.
     topology : {'quad', 'o', 'c'}, optional
-        Kind of grid. The wake of a ``c`` is where south lies on itself.
+        Kind of grid. In a ``c`` boundary, the wake is the part of the south side that coincides with itself.
     patches : tuple of Patch, optional
-        Named stretches of the sides; empty means those of `default_patches`.
+        Named parts of the sides; empty: the patches of `default_patches`.
     name : str, optional
         Name of the shape in the input.
     wall : Curve, optional
-        The curve that `south` was sampled from: it gives operators the shape of the body between nodes.
+        The curve on which the nodes of `south` lie. Neural operators use it to know the shape between nodes.
     chord : float, optional
-        Unit of spacings: the chord of an airfoil, or the largest extent of another body. 0: the distance
-        from the first node of the body to the farthest.
+        Unit of spacings: the chord of an airfoil, or the largest extent of another body. 0: the distance from
+        the first node of the body to the node farthest from it.
     sensors : array, optional
-        (m, 2) nodes that the branch nets of an operator read (`with_sensors`).
+        Nodes (m, 2) that are the input of the branch networks of an operator (see `with_sensors`).
     notes : tuple of str, optional
         Sentences for users, for example that an outline was changed.
     origin : Origin, optional
-        Of a sample of a dataset: its parameters, and whether it is for training or testing.
+        For a sample of a dataset: its parameters, and whether it is for training or for tests.
     sampled : bool, optional
-        Whether meshonet placed the nodes on curves, and may place them otherwise.
+        Whether meshonet has placed the nodes on curves, so that it may move them along these curves.
 
     Raises
     ------
     InputError
-        An edge of the wrong shape, with a node that is not finite or repeated, edges that do not meet, a
-        left-handed outline, a ``c`` without a wake.
+        A side of the wrong array shape, or with a node that is repeated or not finite; sides that do not
+        meet; a left-handed outline; a ``c`` boundary without a wake.
     """
 
     south: Floats
@@ -143,9 +143,10 @@ class Boundary(Connected):
     def with_sensors(self, count: int) -> Boundary:
         """Return the boundary with `count` sensors: nodes at equal steps of their index.
 
-        Around a quad they start at the south-west corner and run counter-clockwise; of an O grid, half of
-        them (rounded up) are on the body and the others on the far field. They are fixed places of the
-        computational domain, as operators need them: Xiao et al., arXiv 2501.11937, section III.
+        In a quad boundary the sensors start at the south-west corner and follow the boundary
+        counter-clockwise. In an O grid, half of them (rounded up) are on the body and the others on the far
+        field. Sensors have fixed computational coordinates, as neural operators need them: Xiao et al., arXiv
+        2501.11937, section III.
 
         Raises InputError: fewer than 2 sensors, or more than there are nodes.
         """

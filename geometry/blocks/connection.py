@@ -27,14 +27,14 @@ Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
 
 @dataclass(frozen=True)
 class Motion:
-    """Rigid motion that carries one of two periodic sides to the other: x -> turn x + shift.
+    """Rigid motion x -> turn x + shift, for example from one of two periodic sides to the other.
 
     Parameters
     ----------
     shift : tuple of float, optional
-        Shift of each coordinate; empty for none.
+        Translation along each coordinate; empty: no translation.
     turn : tuple of tuple of float, optional
-        Rows of a rotation matrix; empty for no rotation.
+        Rows of the rotation matrix; empty: no rotation.
     """
 
     shift: tuple[float, ...] = ()

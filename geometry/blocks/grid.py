@@ -59,14 +59,14 @@ UNKNOWN = Origin()
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Grid(Connected):
-    """Blocks, named patches of their sides, and their connections; all are checked when the grid is made.
+    """Blocks of nodes, named boundary patches, and connections between blocks; checked on construction.
 
     Parameters
     ----------
     blocks : tuple of Block
         Arrays of nodes: (ni, nj, 2) in the plane, (ni, nj, 3) on a surface, (ni, nj, nk, 3) in a volume.
     patches : tuple of Patch, optional
-        Named stretches of the outer sides.
+        Named parts of the boundary.
     connections : tuple of Connection, optional
         Parts of sides that share their nodes.
     name : str, optional
@@ -74,14 +74,14 @@ class Grid(Connected):
     provenance : dict, optional
         How the grid was made: method, settings, version.
     origin : Origin, optional
-        Of a sample of a dataset: its parameters, and whether it is for training or testing.
+        For a sample of a dataset: its parameters, and whether it is for training or for tests.
     notes : tuple of str, optional
-        What the function that made the grid says about it, as the commands print it; files do not hold them.
+        Notes of the function that made the grid, as the commands print them. They are not stored in files.
 
     Raises
     ------
     InputError
-        No block; a patch outside its side; connected sides whose nodes differ.
+        No block; a patch that is longer than its side; connected sides with different nodes.
     """
 
     blocks: tuple[Block, ...]
@@ -233,8 +233,8 @@ class Grid(Connected):
     def walls(self) -> list[Patch]:
         """Return the patches of kind wall, and those of unknown kind on a body.
 
-        A four-sided grid of one block with no wall has those of unknown kind on south and north. In a grid of
-        several blocks only patches named as walls are walls.
+        If a four-sided grid of one block has no patch of kind wall, its walls are the patches of unknown kind
+        on south and north. In a grid of several blocks only patches with names of walls are walls.
         """
         outer = self.outer_patches()
         body = ("south",) if self.around_body else ()
@@ -263,7 +263,7 @@ class Grid(Connected):
         return quality
 
     def write(self, path: str | Path, *, to_format: str | None = None) -> None:
-        """Write the grid to a file, in the format of its extension, or none at all (`meshonet.write`)."""
+        """Write the grid to a file, in the format of the extension (see `meshonet.write`)."""
         ABOVE["write"](self, path, to_format=to_format)
 
     def to_pyvista(self) -> Any:

@@ -60,8 +60,8 @@ class Revolution:
     degrees : float
         Angle from the first plane to the last, up to 360.
     planes : int, optional
-        Number of planes of nodes, one more than cells. None: 2 up to `WEDGE_DEG`, else cells up to
-        `CELL_DEG`.
+        Number of planes of nodes, one more than the number of cells. None: 2 planes for an angle of up to 10
+        degrees, otherwise cells of at most 4 degrees.
     axis : AxisLine, optional
         Axis in the plane of the grid; by default the x axis.
 

@@ -19,21 +19,21 @@ from meshonet.geometry.polygon.area import polygon_area
 
 @dataclass(frozen=True, eq=False)
 class Domain:
-    """A region of the plane, bounded by loops (checked by `meshonet.geometry.domain.check`).
+    """A region of the plane, bounded by closed curves (loops).
 
     Parameters
     ----------
     loops : tuple of Loop
-        The outer loop, then the holes; the domain is on the left of each.
+        The outer loop, followed by the holes. The domain is on the left of each loop.
     name : str, optional
         Name of the shape in the input.
     notes : tuple of str, optional
-        Sentences for users on what a reader skipped in the file.
+        Notes on parts of the file that were ignored.
     periodic : tuple of Periodic, optional
-        Pairs of stretches of the outer loop that are periodic.
+        Pairs of periodic parts of the outer loop.
     heights, counts : mapping, optional
-        Prescribed first-cell heights and numbers of cells, by the name of stretches. A mirror of the domain
-        takes no stretch to one with another value.
+        Prescribed first-cell heights and numbers of cells, by the name of a part of a loop. Parts with
+        different values are not symmetric to each other.
 
     Raises
     ------
@@ -61,12 +61,12 @@ class Domain:
         Parameters
         ----------
         polygons : sequence of array (n, 2)
-            Points of each polygon; it has corners where it turns by more than 30 degrees.
+            Points of each polygon. A point at which the polygon turns by more than 30 degrees is a corner.
         name : str, optional
             Name of the domain.
         names : sequence, optional
-            The boundary names of each polygon: one, or a list of one per stretch between corners, in
-            the order of its points, starting at its first corner. Default: ``outer``, ``body``, ``body2`` ...
+            For each polygon either one name, or a list with one name for each part between two corners, in
+            the order of the points, starting at the first corner. Default: ``outer``, ``body``, ``body2`` ...
 
         Returns
         -------
@@ -76,7 +76,7 @@ class Domain:
         Raises
         ------
         InputError
-            The number of names differs from that of polygons, or of stretches.
+            The number of names differs from the number of polygons, or from the number of parts of a polygon.
 
         Examples
         --------

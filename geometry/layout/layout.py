@@ -29,14 +29,15 @@ class Layout:
     Parameters
     ----------
     mesh : QuadMesh
-        Nodes and their places on the boundary.
+        Quadrilaterals, their nodes, and the positions of nodes on the boundary.
     blocks : tuple of array
         Right-handed arrays of node numbers; each quad of the mesh is in exactly one of them.
     layers : dict, optional
-        For the number of a block, how many rows of cells from its south side are layers at a wall. Their
-        heights are prescribed, so no optimisation moves them.
+        For blocks with layers: a dict from the number of a block to the number of rows of cells, counted from
+        its south side, that are layers at a wall. The heights of these rows are prescribed, so the
+        optimisation does not move them.
     fronts : tuple of int, optional
-        Numbers of the loops that are not walls but fronts of layers, which are added later.
+        Numbers of the loops that are outer sides of layers instead of walls; these layers are added later.
     """
 
     mesh: QuadMesh

@@ -50,12 +50,13 @@ class Comparison:
 
 @dataclass(frozen=True, eq=False)
 class QualityReport:
-    """The measurements of a grid, with the verdicts of profiles and the comparison if asked for.
+    """The quality of a grid, with verdicts of profiles and a comparison with another grid if requested.
 
-    ``report.quality.folded`` is the number of folded cells, ``report.quality["max_angle"].max`` a metric
-    (with min, mean, p01, p99 and the worst cell), ``report.figures.wall_rows`` the heights and angles of the
-    first cells, ``report.figures.growth`` the growth along xi and eta, and ``report.profile.passed`` the
-    verdict of a profile. ``report.as_dict()`` has all of them, as ``meshonet quality --json`` prints them.
+    ``report.quality.folded`` is the number of folded cells. ``report.quality["max_angle"]`` contains the
+    values ``min``, ``mean``, ``max``, ``p01`` and ``p99`` of a metric, and the worst cell.
+    ``report.figures.wall_rows`` contains the heights and angles of the first cells, ``report.figures.growth``
+    the growth ratios along xi and eta, and ``report.profile.passed`` the verdict of a profile.
+    ``report.as_dict()`` returns all values as ``meshonet quality --json`` prints them.
 
     Parameters
     ----------
@@ -66,13 +67,13 @@ class QualityReport:
     worst : tuple of BadCell
         Folded cells, at most ten.
     figures : Figures
-        Figures of walls, growth and blocks.
+        Values for walls, growth ratios and blocks.
     profile : ProfileReport, optional
         The verdicts of profiles.
     comparison : Comparison, optional
         The comparison with a reference grid.
     flow : Flow, optional
-        The flow for which y+ of the walls is reported.
+        The Reynolds number and length for which y+ at the walls is reported.
     """
 
     grid: Grid
@@ -103,11 +104,11 @@ class QualityReport:
         return f"<QualityReport: {', '.join(parts)}>"
 
     def under(self, gates: Gates) -> "QualityReport":
-        """Return the report with the limits of `gates` in place of its profiles' for the same figures."""
+        """Return the report with the limits of `gates` in place of those of profiles for the same metrics."""
         return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
     def broken(self, gates: Gates = ()) -> list[str]:
-        """Return a line for each gate, and each check of the profiles, that failed.
+        """Return a line for each gate and each profile check by which the grid fails.
 
         Parameters
         ----------
@@ -117,12 +118,12 @@ class QualityReport:
         Returns
         -------
         list of str
-            The figure, its place and the limit; empty if all are met.
+            Each line gives the value, its place and the limit. The list is empty if the grid passes.
 
         Raises
         ------
         InputError
-            A text that is no gate; a figure that this grid does not have.
+            A text that is not a gate; a metric that this grid does not have.
         """
         return [spelled(line, lambda _: "the gate") for line in self._broken(_parsed(gates))]
 
@@ -141,7 +142,7 @@ class QualityReport:
         return Judgement(tuple(self._broken(gates)), tuple(dict.fromkeys(beyond)), tuple(replaced), profile)
 
     def judged(self, gates: Gates) -> list[tuple[Gate, Figure, bool]]:
-        """Return for each gate the figure that it judges, and whether this is beyond the limit."""
+        """Return for each gate the value of its metric, and whether the value is beyond the limit."""
         more, gates = self._compared(), _parsed(gates)
         figures = [gate.figure(self.figures, more) for gate in gates]
         pairs = zip(gates, figures, strict=True)

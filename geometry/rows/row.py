@@ -24,32 +24,34 @@ FEWEST, MOST = 2, 1000
 
 @dataclass(frozen=True, eq=False)
 class Row:
-    """Equal blades around an axis, the x axis, between hub and casing.
+    """A row of equal blades between hub and casing, around the x axis.
 
     Parameters
     ----------
     profiles : sequence of array
-        Two or more closed curves (n, 3) of x, y, z around one blade, from hub to casing.
+        Two or more closed curves (n, 3), x, y and z, around one blade, from hub to casing.
     hub, shroud : array
-        (n, 2) x and r along the channel, from inlet to outlet, which are where these begin and end.
+        Points (n, 2), x and r, of the inner and the outer wall. The first points are at the inlet, the last
+        points at the outlet.
     blades : int
-        How many there are.
+        Number of blades.
     tip_gap, hub_gap : float, optional
-        Distances of the blade from casing and hub.
+        Width of the gap between blade and casing, and between blade and hub.
     name : str, optional
-        Of the row.
+        Name of the row.
     notes : tuple of str, optional
-        What was changed of the profiles.
+        Notes on changes of the profiles.
     frame : Motion, optional
-        The rotation from the coordinates of the grid to those of the row; None where these are the same.
+        The rotation from the coordinates of the grid to the coordinates of the row; None: they are the same.
     unit : {'m', 'cm', 'mm', 'in', 'ft'}, optional
-        Unit in which reports state lengths; those of the row and of its grid are then in metres. Empty:
-        reports state them as they are.
+        Unit of lengths in reports; the lengths of the row and of the grid are then in metres. Empty: reports
+        give lengths without conversion.
 
     Raises
     ------
     InputError
-        Curves that form no channel; profiles out of order or out of the channel; gaps wider than the span.
+        Curves that do not form a channel; profiles in the wrong order or outside the channel; gaps wider than
+        the span.
 
     Examples
     --------

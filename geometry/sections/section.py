@@ -36,11 +36,11 @@ class Section:
     shape : Airfoil or Outline
         An airfoil, or a closed curve, in any unit.
     chord : float
-        Length that the section is scaled to, in the unit of the stack.
+        Chord length to which the shape is scaled, in the unit of the stack.
     z : float
         Position of the section's plane.
     x, y : float, optional
-        Position of its leading edge before the twist.
+        Position of the leading edge before the twist.
     twist : float, optional
         Twist angle in degrees, nose up.
     about : tuple of 2 float, optional

@@ -23,16 +23,17 @@ BETWEEN: tuple[Between, ...] = get_args(Between)
 
 @dataclass(frozen=True, eq=False)
 class Stack:
-    """At least two sections with increasing z.
+    """A wing, blade or duct: at least two sections with increasing z.
 
     Parameters
     ----------
     sections : tuple of Section
-        Sections, from the root on.
+        Sections in the order of z; the first one is the root of a wing.
     kind : {'wing', 'blade', 'duct'}, optional
-        A ``wing`` has a tip at its last section, a ``blade`` ends at two walls, a ``duct`` has internal flow.
+        A ``wing`` ends with a tip at the last section, a ``blade`` stands between two walls, and a ``duct``
+        has internal flow.
     tip : {'round', 'flat', 'open'}, optional
-        Tip of a wing; ``open`` means none.
+        Shape of the tip of a wing; ``open``: the tip is not closed.
     between : {'linear', 'smooth'}, optional
         Interpolation between sections: ``linear``, or ``smooth`` by cubics in z that do not overshoot.
     tip_spacing : float, optional
@@ -45,7 +46,8 @@ class Stack:
     Raises
     ------
     InputError
-        Fewer than two sections; z that does not increase; lengths that are not positive, or of no use.
+        Fewer than two sections; z that does not increase; a length that is not positive or does not apply to
+        this kind.
     """
 
     sections: tuple[Section, ...]
@@ -116,9 +118,9 @@ class Stack:
     def lofted(self, unit: Floats, z: Floats, weight: Floats | None = None) -> Floats:
         """Return nodes (m, n, 3) at the heights `z` (m,), from those of the sections, (sections, n, 2).
 
-        Shape, chord, twist and position are interpolated separately, so that a section between two that are
-        twisted relative to each other is not shortened. Nodes with `weight` (n,) 0 are not twisted, and are
-        scaled by the greatest chord.
+        Shape, chord, twist and position are interpolated separately, so that a section between two sections
+        of different twist keeps its length. Nodes with `weight` (n,) 0 are not twisted, and are scaled by the
+        greatest chord.
         """
         fade = None if weight is None else Fade(weight, self.chord)
         placements = np.stack([section.placement for section in self.sections])

@@ -105,10 +105,10 @@ class FirstCell:
         return first_cell(given, self.reynolds, self.chord_fraction) * (self.length or unit)
 
     def height_note(self, where: str, unit: float = 1.0, in_unit: str = "", scale: float = 1.0) -> str:
-        """Return how a height follows from y+, as text; empty without one.
+        """Return a note on how the first-cell height follows from y+; an empty text if no y+ is given.
 
-        `where` names the reference length, `scale` is the length of a unit of the request, and `in_unit` the
-        unit of the result.
+        `where` describes the reference length, `scale` is the factor from the unit of the request to the unit
+        of the note, and `in_unit` is the name of that unit.
         """
         from meshonet.geometry.spacing.y_plus import height_note
 

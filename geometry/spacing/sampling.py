@@ -22,47 +22,52 @@ MOST_NODES = 100_000  # per direction: more is taken for a typing error
 
 @dataclass(frozen=True)
 class Sampling:
-    """How a shape becomes edges of nodes; values are checked when this is made.
+    """How nodes are placed on the boundary of a shape; values are checked on construction.
 
     Parameters
     ----------
     ni, nj : int, optional
-        Number of nodes along xi (around the body) and eta (away from it); None keeps the shape's, for a
-        curve `DEFAULT_NI` and `DEFAULT_NJ`.
+        Number of nodes along xi (around the body) and eta (away from it). None: the numbers of the shape, or
+        `DEFAULT_NI` and `DEFAULT_NJ` if the shape is a curve.
     nk : int, optional
-        Number of nodes of a volume along zeta; None keeps that of the volume. None for planar grids.
+        Number of nodes of a volume along zeta; None: the number of the given volume. Always None for planar
+        grids.
     topology : {'auto', 'quad', 'o', 'c'}, optional
-        ``auto`` lets the shape choose.
+        Topology of the grid; ``auto``: the topology that suits the shape.
     spacing : str, optional
         Distribution of the nodes along a wall. ``auto`` is ``conformal`` around airfoils and smooth bodies
         (``tanh`` if a cell size is given), and ``uniform`` elsewhere.
     le_spacing, te_spacing : float, optional
-        Wall cell size at the leading and at the trailing edge, in chords.
+        Length of the wall cells at the leading and at the trailing edge, in chords.
     far_field : float, optional
-        Least distance of the outer boundary from the middle of the body, in chords or, for other bodies, in
-        their largest extent; None is `DEFAULT_FAR_FIELD`. Shapes without a far field accept only None. For
-        marching from a surface in space, the distance to march, in its unit.
+        Smallest distance of the outer boundary from the middle of the body. The unit is the chord of an
+        airfoil, or the largest extent of another body. None: `DEFAULT_FAR_FIELD`. For marching from a
+        surface, the marching distance in the unit of the surface. Shapes without a far field accept only
+        None.
     corners : tuple of 4 int, optional
         Indices, from 0, of the points that become the corners of a quad domain.
     te : {'auto', 'exact', 'round', 'wedge'}, optional
-        Blunt trailing edges of airfoils: unchanged (``exact``), with rounded corners (``round``) or closed by
-        a wedge behind them (``wedge``). ``auto`` is ``wedge`` for a C boundary of one block, which needs a
-        sharp edge, and ``exact`` otherwise: C grids with layers keep a base.
+        What becomes of a blunt trailing edge of an airfoil: ``exact`` does not change it, ``round`` rounds
+        its corners, ``wedge`` closes it by a wedge. ``auto`` is ``wedge`` for C grids of one block, which
+        need a sharp edge, and ``exact`` for all others.
     wake : float, optional
-        Length of the wake of a C boundary in chords; None is the distance of the far field.
+        Length of the wake of a C grid in chords; None: the far-field distance.
     wake_nodes : int, optional
-        Number of wake nodes, the trailing edge included; None derives it from the cell size at the edge.
+        Number of nodes along the wake, including the trailing edge; None: derived from the cell length at the
+        trailing edge.
     base_nodes : int, optional
-        Number of nodes on a blunt base, both corners included, odd on a body in an O grid; None derives it
-        from the cells next to the base and its width.
+        Number of nodes on a blunt base, including both corners; it must be odd for an O grid. None: derived
+        from the width of the base and the cells next to it.
     smooth : float, optional
-        Replace the points of an airfoil by those of smoothing splines that deviate by at most this many
-        chords, about 3 times the standard deviation of the noise. Corners higher than twice as much are
-        kept, a narrower base is closed. Needs SciPy.
+        Largest deviation, in chords, of smoothing splines that replace the points of an airfoil. Choose three
+        times the standard deviation of the noise. A base higher than twice this value keeps its corners; a
+        lower base is closed. Needs SciPy.
     refined : int, optional
-        Corners are on nodes whose index is a multiple of this, so that the grid can be coarsened by it.
+        Place corners on nodes whose index is a multiple of this number, so that the grid can be coarsened by
+        this factor.
     viscous : bool, optional
-        Cells at the wall will be thin: ``auto`` topology is then C around sharp edges.
+        Whether cells at the wall will be thin; the topology ``auto`` is then C around airfoils with a sharp
+        trailing edge.
     normalise : bool, optional
         Move the leading edge to (0, 0) and the trailing edge to (1, 0).
 

@@ -30,20 +30,20 @@ def convert(
 ) -> None:
     """Convert a file, or the files of a folder, an archive or a list, from one format to another.
 
-    If the first file has grids, grids are written; otherwise boundaries are.
+    If the first file contains grids, the output contains grids; otherwise it contains boundaries.
 
     Parameters
     ----------
     source : str, Path or list of these
         Input files, folders and archives, as for `inputs`.
     output : str or Path
-        Output file. Several grids need a format that stores several: for one file each call this function in
-        a loop over `inputs`.
+        Output file. To write several grids into one file, choose a format that can store several grids. To
+        write one file for each grid, call this function in a loop over `inputs`.
     extrude : float, optional
-        Height of an extrusion along z; None makes no extrusion.
+        Height of an extrusion along z; None: no extrusion.
     planes : int, optional
-        Number of planes of nodes, one more than cells. With `extrude`, None is 2. With `revolve`, None is 2
-        up to 10 degrees, and cells of at most 4 degrees above.
+        Number of planes of nodes, one more than the number of cells. None: 2 planes with `extrude`, and with
+        `revolve` up to 10 degrees; above 10 degrees, cells of at most 4 degrees.
     swap : bool, optional
         Exchange xi and eta of four-sided grids, which stay right-handed.
     normalise : bool, optional
@@ -52,16 +52,15 @@ def convert(
     coarsen : int, optional
         Keep only nodes whose indices along xi and eta are multiples of this number.
     revolve : float, optional
-        Angle in degrees of a revolution about `axis`: up to 10 a wedge of one cell, below 360 a sector with
-        periodic sides, 360 a full revolution.
+        Angle in degrees of a revolution about `axis`. Up to 10 degrees the result is a wedge of one cell,
+        below 360 degrees a sector with periodic sides, and with 360 degrees a full ring.
     axis : sequence of float, optional
         Axis of the revolution in the plane: point and direction (x, y, dx, dy); None is the x axis.
     copies : int or sequence of int, optional
-        Number of copies of a periodic grid beside each other, each joined to the next: passages of a blade
-        row, up to the whole annulus. A grid with several shifts has a number for each.
+        Number of copies of a periodic grid, joined to each other, for example passages of a blade row up to
+        the whole annulus. If the grid is periodic in several directions, give one number for each direction.
     scale : float, optional
-        Factor on all lengths: nodes, shifts of periodic sides, heights of first cells. 0.001 makes metres of
-        millimetres.
+        Factor by which all lengths are multiplied; 0.001 converts millimetres to metres.
     from_format, to_format : str, optional
         Formats of input and output; needed if extensions and content do not determine them.
 
@@ -70,7 +69,8 @@ def convert(
     InputError
         A format that cannot be read or written, or cannot store three-dimensional grids; a height that is not
         positive; an axis that intersects the grid; numbers of cells that are not multiples of `coarsen`;
-        `copies` of a grid that is not periodic, or in other ways; a `scale` that is not positive.
+        `copies` of a grid that is not periodic, or in more directions than it is periodic; a `scale` that is
+        not positive.
 
     Examples
     --------

@@ -37,9 +37,10 @@ def deform(
     grid : Grid, str or Path
         A planar grid or a volume, or a file with one.
     wall : str, Path, Grid, Boundary, Motion or array, or dict of these by name
-        New shape of the only wall, or of several walls by name. On an outline, wall nodes keep their fraction
-        of arc length between corners. Another grid, a boundary or nodes (n, d) are matched node by node. A
-        `meshonet.Motion` moves the wall rigidly. A grid without a name replaces the whole boundary.
+        New shape of the wall; for several walls, a dict from names to shapes. If the shape is an outline,
+        each wall node moves to the same fraction of the arc length between corners. If it is a grid, a
+        boundary or an array of nodes (n, d), each wall node moves to the node of the same index. A
+        `meshonet.Motion` moves the wall as a rigid body. A grid without a name replaces the whole boundary.
     allow_invalid : bool, optional
         Return the grid even if cells are folded.
     threads : int, optional
@@ -55,7 +56,7 @@ def deform(
     InputError
         A file, wall or shape that cannot be used; an initial grid with folded cells.
     NoValidGridError
-        Cells are folded; the error has the worst cells.
+        The deformed grid has folded cells; the attribute ``worst`` of the error lists the worst cells.
 
     Examples
     --------

@@ -16,10 +16,11 @@ def deform_derivative(
 ) -> DeformationDerivative:
     """Return a deformed grid and the derivative of its nodes with respect to the nodes of its walls.
 
-    The result has the ``grid`` and, by name, the node numbers of the ``walls``. Its method ``along(moves)``
-    returns the displacements of all nodes for displacements `moves` (n, 2) of the wall nodes, given by name.
-    Its method ``transposed(pull)`` returns the derivative of a functional with respect to the wall nodes,
-    where `pull` (ni, nj, 2) is the derivative with respect to all nodes.
+    The result has two attributes: ``grid`` is the deformed grid, and ``walls`` contains the node numbers of
+    each wall by name. The method ``along(moves)`` returns the displacements of all nodes; `moves` contains
+    the displacements (n, 2) of the nodes of each wall by name. The method ``transposed(pull)`` returns the
+    derivative of a functional with respect to the wall nodes; `pull` (ni, nj, 2) is the derivative of the
+    functional with respect to all nodes.
 
     Parameters
     ----------
@@ -36,9 +37,9 @@ def deform_derivative(
     Raises
     ------
     InputError
-        As for `meshonet.deform`; also a volume.
+        As for `meshonet.deform`; also if the grid is a volume.
     NoValidGridError
-        A deformation in one step folds cells.
+        The deformation folds cells if it is applied in one step.
 
     Examples
     --------
@@ -57,19 +58,21 @@ def optimum_derivative(
 ) -> OptimumDerivative:
     """Return the derivative of a variational or Winslow grid with respect to its boundary nodes.
 
-    The result has the ``grid``, solved to round-off. Its method ``along(moves)`` returns the displacements
-    (ni, nj, 2) of all nodes for displacements `moves` of the boundary nodes. Its method ``transposed(pull)``
-    returns the derivative of a functional with respect to the boundary nodes, where `pull` is the derivative
-    with respect to all nodes. Each call is one linear solve with stored factors.
+    The attribute ``grid`` of the result is the grid, solved to rounding. The method ``along(moves)`` returns
+    the displacements (ni, nj, 2) of all nodes; `moves` (ni, nj, 2) contains the displacements of the boundary
+    nodes. The method ``transposed(pull)`` returns the derivative of a functional with respect to the boundary
+    nodes; `pull` (ni, nj, 2) is the derivative of the functional with respect to all nodes. Each call solves
+    one linear system, whose factors are stored.
 
     Parameters
     ----------
     grid : Grid, str or Path
-        A four-sided grid of one block near the solution by `method`, or a file with one. Its boundary nodes
-        are fixed.
+        A four-sided grid of one block that is close to the solution by `method`, or a file with such a grid.
+        The boundary nodes are not moved.
     method : str, optional
         ``variational`` or ``winslow``.
-    weights : Weights, optional Weights of the variational functional; None are those of `meshonet.solve_pde`.
+    weights : Weights, optional
+        Weights of the variational functional; None: the weights of `meshonet.solve_pde`.
 
     Returns
     -------
@@ -79,7 +82,7 @@ def optimum_derivative(
     Raises
     ------
     InputError
-        An O grid, several blocks, a volume, an unknown method.
+        The grid is an O grid, a volume, or has several blocks; the method is unknown.
     SolverError
         The grid is far from the solution.
 

@@ -48,13 +48,13 @@ class Finding:
 
 
 def doctor() -> list[Finding]:
-    """Examine the installation: installed parts, whether they work, and available extras.
+    """Examine the installation: which parts are installed, whether they work, and what is missing.
 
     Returns
     -------
     list of Finding
-        Results with a group, a name, a value, whether all is well (None for optional parts that are not
-        installed), and a remedy.
+        Each finding has a group, a name, a value and a remedy. It also says whether the part works; None
+        stands for an optional part that is not installed.
 
     Examples
     --------

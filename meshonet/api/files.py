@@ -34,16 +34,17 @@ def inputs(
     pick: str | Sequence[str] = (),
     shard: tuple[int, int] = (1, 1),
 ) -> Iterator[str]:
-    """Return an iterator over single inputs, each for `read`, `grid` or `infer`.
+    """Return an iterator over the inputs in folders, archives and lists; pass each input to `read` or `grid`.
 
     Parameters
     ----------
     names : str, Path or list of these
-        Files, folders, zip archives and designations; ``@FILE`` is a file with a list of them, one per line.
+        Files, folders, zip archives and designations such as ``naca:2412``. ``@FILE`` stands for the inputs
+        that a text file lists, one per line.
     pick : str or list of str, optional
         Patterns (``naca*``) that the names of files in folders, archives and lists must match.
     shard : tuple of 2 int, optional
-        k and n: return only every n-th input, starting with the k-th.
+        Two numbers k and n: return only every n-th input, starting with the k-th.
 
     Yields
     ------
@@ -156,14 +157,13 @@ def read_all(path: str | Path, *, from_format: str | None = None) -> Iterator[Gr
 
 
 def write(what: Writable | Iterable[Writable], path: str | Path, *, to_format: str | None = None) -> None:
-    """Write a grid, a boundary or a layout, or several of a kind into one file, atomically.
+    """Write a grid, a boundary or a layout, or several of the same kind, into one file.
 
     Parameters
     ----------
     what : Grid, Boundary or Layout, or iterable of these
-        Object to write, or several of the same kind: the samples of a dataset, whose node counts and topology
-        must be the same, or the grids of a file in another format that holds several. They are taken one by
-        one.
+        Object to write, or several objects of the same kind. In a dataset all grids must have the same
+        numbers of nodes and the same topology. An iterable is read one object at a time.
     path : str or Path
         File to write; its extension determines the format. An OpenFOAM mesh is written into the folder of
         ``case.foam``, or into a folder given as the path.
@@ -173,7 +173,8 @@ def write(what: Writable | Iterable[Writable], path: str | Path, *, to_format: s
     Raises
     ------
     InputError
-        An unknown format, or one that cannot store the object, or only one; a path that cannot be written.
+        An unknown format; a format that cannot store the object, or not several objects; a path that cannot
+        be written.
 
     Examples
     --------

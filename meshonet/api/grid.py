@@ -42,7 +42,7 @@ def grid(
     assemble: bool = False,
     **parameters: Any,
 ) -> Grid:
-    """Return a valid grid inside a boundary, around a body, of a multi-block domain, or of a volume.
+    """Return a valid grid inside a boundary, around a body, in a multi-block domain, or in a volume.
 
     The grid has the methods `write`, `quality` and `to_pyvista`, and the attribute `notes`.
     `meshonet.make_grid` also returns quality and times.
@@ -50,21 +50,22 @@ def grid(
     Parameters
     ----------
     shape : str, Path, array, Grid, Boundary or Domain, or a list of these
-        Shape in the plane: a file or designation, points (n, 2) of a closed outline, a boundary, a
-        `meshonet.Domain`, or a grid whose outer edges are used; with `assemble` a list of these. Shape in
-        space: nodes (ni, nj, nk, 3) of a volume, whose outer faces are used, or a list of surface patches
-        (ni, nj, 3).
+        A plane shape is a file, a designation such as ``naca:0012``, an array of points (n, 2) of a closed
+        outline, a boundary, a `meshonet.Domain`, or a grid, of which only the boundary is used; with
+        `assemble` it is a list of these. A shape in space is an array (ni, nj, nk, 3) of volume nodes, of
+        which only the six faces are used, or a list of surface patches (ni, nj, 3).
     assemble : bool, optional
         Combine all shapes in the list into one domain.
     res : int or tuple of int, optional
         Number of nodes along xi (around a body) and eta (away from it); one number for both.
     method : str, optional
         ``best`` for the default method of the kind of shape, ``auto`` for the default among elliptic methods
-        and marching, a name in `meshonet.METHODS`, or ``operator:NAME``.
+        and marching, a key of `meshonet.METHODS`, or ``operator:NAME`` for a neural operator.
     **parameters
-        Those of `meshonet.Sampling` and `meshonet.GridRequest`, such as ``topology``, ``far_field``,
-        ``y_plus``, ``reynolds``, ``growth``, ``repair``, ``cells``, ``cell_size``, ``walls``, ``layout``
-        (one, or its file), ``periodic`` (pairs of names), and settings of the method, such as ``tol``.
+        Fields of `meshonet.Sampling` and `meshonet.GridRequest`, such as ``topology``, ``far_field``,
+        ``y_plus``, ``reynolds``, ``growth``, ``repair``, ``cells``, ``cell_size``, ``walls``, ``layout`` (a
+        `meshonet.Layout` or a file) and ``periodic`` (pairs of names); also settings of the method, such as
+        ``tol``.
 
     Returns
     -------
@@ -166,8 +167,8 @@ def infer(shape: AnyShape, *, res: Counts | None = None, model: str | None = Non
     shape, res, **parameters
         As for `grid`.
     model : str, optional
-        Name of a shipped operator, a ``.safetensors`` file, or ``base`` for the conformal solver. None: the
-        default method.
+        Name of a shipped neural operator, a ``.safetensors`` file, or ``base`` for the conformal solver.
+        None: the default method of the kind of shape.
 
     Returns
     -------
@@ -197,7 +198,7 @@ def sample_boundary(
     shape, res
         As for `grid`.
     sensors : int, optional
-        Number of boundary nodes that are also stored as sensors.
+        Number of boundary nodes that are also stored as sensors, the input of some neural operators.
     **parameters
         Fields of `meshonet.Sampling`, such as ``topology``, ``te_spacing``, ``far_field``.
 
@@ -233,7 +234,7 @@ def sample_family(
     seed: int = 0,
     split: str | None = None,
 ) -> list[Boundary]:
-    """Return boundaries drawn at random from a family of shapes, like ``sample-boundary --family``.
+    """Return random boundaries of a family of shapes, like ``sample-boundary --family``.
 
     Parameters
     ----------
@@ -249,7 +250,8 @@ def sample_family(
     seed : int, optional
         Seed of the random numbers.
     split : str, optional
-        ``interpolation``, ``extrapolation`` or ``random``: the rule by which a sixth is marked for tests.
+        ``interpolation``, ``extrapolation`` or ``random``: the rule that selects one sixth of the shapes for
+        tests.
 
     Returns
     -------

@@ -19,9 +19,10 @@ def layout(shape: AnyShape | Sequence[AnyShape], *, assemble: bool = False, **pa
     assemble : bool, optional
         Combine all shapes in the list into one domain.
     **parameters
-        ``cells`` or ``cell_size``, ``far_field``, ``layout``, ``pitch``, ``inlet``, ``outlet``. With
-        ``first_cell``, or ``y_plus`` and ``reynolds``, and optional ``walls``, the result has only the blocks
-        outside of the layers.
+        The parameters ``cells``, ``cell_size``, ``far_field``, ``layout``, ``pitch``, ``inlet`` and
+        ``outlet`` of `meshonet.GridRequest` and `meshonet.Sampling`. With layers (``first_cell``, or
+        ``y_plus`` and ``reynolds``, and optionally ``walls``) the result contains only the blocks outside the
+        layers.
 
     Returns
     -------
@@ -33,7 +34,7 @@ def layout(shape: AnyShape | Sequence[AnyShape], *, assemble: bool = False, **pa
     InputError
         A shape or parameter that cannot be used.
     SolverError
-        The decomposition failed.
+        The domain could not be divided into blocks.
 
     Examples
     --------

@@ -24,7 +24,7 @@ _FIRST_HEAD = ("hole-o", "quad-general")
 
 
 def models(name: str | None = None) -> list[dict[str, Any]]:
-    """Return a description of each shipped operator.
+    """Return descriptions of the neural operators that are part of meshonet.
 
     Parameters
     ----------

@@ -31,22 +31,24 @@ def plot(
     grid : Grid, str or Path
         A grid, or a file with one.
     output : str or Path
-        Picture to write, ``.png``, ``.svg`` or ``.pdf``, or interactive page, ``.html``.
+        File to write: a picture (``.png``, ``.svg`` or ``.pdf``) or an interactive page (``.html``).
     metric : str, optional
         Quality metric that colours the cells; None draws lines only.
     zoom : tuple of float, optional
-        Box to show: x0, x1, y0, y1, in space also z0, z1; both are possible for a slice. None shows all.
+        Region to show: x0, x1, y0, y1, and for grids in space also z0, z1. For a slice, give six numbers for
+        a box or four for a rectangle in its plane. None: the whole grid.
     every : int, optional
-        Step between drawn grid lines; None selects it by the resolution of the picture.
+        Draw every K-th grid line; None: as many lines as can be distinguished.
     slice : str, optional
-        Slice of a volume: a grid surface ``i=10`` or ``k=-1``, or a plane ``x=.5``. None draws the walls, or
-        the whole boundary of a volume without walls.
+        Slice of a volume: a grid surface such as ``i=10`` or ``k=-1``, or a plane such as ``x=.5``. None: the
+        walls are drawn, or the whole boundary of a volume without walls.
     seen_from : tuple of 2 float, optional
-        Azimuth and elevation in degrees of the view in space.
+        Azimuth and elevation of the view of a grid in space, in degrees.
     up : str, optional
-        Axis that points upwards there, ``x``, ``y`` or ``z`` (default).
+        Axis that points upwards in the view of a grid in space: ``x``, ``y`` or ``z`` (default).
     span : float or sequence of float, optional
-        Parts of the span of a blade row, 0 to 1 from hub to shroud, at which its sections are drawn.
+        Fractions of the span of a blade row, from 0 at the hub to 1 at the shroud, at which sections are
+        drawn.
     meridional : bool, optional
         Draw the meridional section of a blade row, in x and r.
     to_format : str, optional
@@ -55,7 +57,7 @@ def plot(
     Raises
     ------
     InputError
-        An unknown metric, slice or extension; a box without cells; a file that cannot be read or written.
+        An unknown metric, slice or extension; a region without cells; a file that cannot be read or written.
 
     Examples
     --------

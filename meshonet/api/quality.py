@@ -31,12 +31,12 @@ def quality(
     compare : Grid, str or Path, optional
         Reference grid of the same size, or a file with one.
     reynolds : float, optional
-        Reynolds number for which y+ of the first cells at each wall is reported, as of a turbulent flat
-        plate.
+        Reynolds number for which y+ of the first cells at each wall is reported. The wall shear stress is
+        that of a turbulent flat plate.
     length : float, optional
         Reference length of `reynolds`, in the unit of the grid; None is 1.
     threads : int, optional
-        Number of threads, which does not change the result; None: one per core.
+        Number of threads; None: one per core. The result does not depend on it.
 
     Returns
     -------
@@ -80,12 +80,13 @@ def quality_page(
     profile : str or sequence of str, optional
         Profiles of thresholds, as for `quality`.
     fail_on : sequence of str
-        Gates, for instance ``max_angle>170``. A gate replaces the limit of a profile for the same name.
+        Gates, which are conditions by which a grid fails, such as ``max_angle>170``. A gate replaces the
+        limit of a profile for the same metric.
 
     Returns
     -------
     bool
-        Whether no cell is folded, and no gate and no check of a profile has failed.
+        True if all grids are without folded cells and pass all gates and all checks of the profiles.
 
     Raises
     ------

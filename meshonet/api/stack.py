@@ -24,21 +24,21 @@ def stack(
     Parameters
     ----------
     sections : str, Path, Stack, Row or Aircraft
-        The stack of sections, the row of blades or the aircraft, or its TOML file.
+        The stack of sections, the row of blades or the aircraft, or a TOML file that describes it.
     tip : {'round', 'flat', 'open'}, optional
-        Shape of the tip of a wing; None is that of the stack.
+        Shape of the tip of a wing; None: the tip given by the stack.
     surface : bool, optional
         Return the patches of the surface instead of a volume.
     **parameters
         Fields of `meshonet.StackRequest`, such as ``around``, ``span``, ``cells``, ``first_cell``,
-        ``y_plus``, ``reynolds``, ``layers``, ``growth``, ``far_field``; for a row those
-        of `meshonet.RowRequest`: ``first_cell``, ``y_plus``, ``reynolds``, ``growth``, ``cells``.
+        ``y_plus``, ``reynolds``, ``layers``, ``growth`` and ``far_field``. For a row, fields of
+        `meshonet.RowRequest`: ``first_cell``, ``y_plus``, ``reynolds``, ``growth`` and ``cells``.
 
     Returns
     -------
     Grid
-        The volume grid, or the surface patches. Its `notes` say for instance that a trailing edge was opened,
-        or how many cells the layers need.
+        The volume grid, or the surface patches. The `notes` of the grid say, for instance, that a trailing
+        edge was opened, or how many cells the layers need.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def stack(
 
 
 def read_stack(path: str | Path) -> Stack | Row | Aircraft:
-    r"""Return what a TOML file of `stack` describes, for example to change it with `dataclasses.replace`.
+    r"""Return the wing, blade, duct, blade row or aircraft that a TOML file of `stack` describes.
 
     Parameters
     ----------
@@ -73,12 +73,13 @@ def read_stack(path: str | Path) -> Stack | Row | Aircraft:
     Returns
     -------
     Stack, Row or Aircraft
-        A wing, blade or duct; a row of blades, its lengths in metres; or an aircraft.
+        A wing, blade or duct (`Stack`), a row of blades with lengths in metres, or an aircraft. To make
+        variants, use `dataclasses.replace`.
 
     Raises
     ------
     InputError
-        A file that cannot be read, or is not of this kind, with the place.
+        The file cannot be read, or has a wrong key or value; the message gives the place.
 
     Examples
     --------

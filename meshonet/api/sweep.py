@@ -43,15 +43,14 @@ def sweep(
     Parameters
     ----------
     outline : str, Path, array, Grid, Boundary or Domain
-        Cross-section: ``circle:RADIUS``, a file with a closed curve, a domain or a planar grid, or such an
-        object.
+        Cross-section: ``circle:RADIUS``; a file with a closed curve, a domain or a planar grid; or one of
+        these as an object.
     path : str, Path, array (n, 3) or Revolution
-        Path: a file, points of a smooth curve, a path object, or a revolution about an axis
-        (`meshonet.Revolution`).
+        Path: a file, an array of points on a smooth curve, or a `meshonet.Revolution` about an axis.
     planes : int, optional
         Number of planes of nodes along the path, as for `meshonet.Sweep`.
     up : tuple of 3 float, optional
-        Direction to which the section's y axis is closest at the start of the path.
+        Direction in which the y axis of the section points at the start of the path, as closely as possible.
     twist : float, optional
         Rotation of the section from start to end in degrees.
     scale : float, optional
@@ -59,8 +58,8 @@ def sweep(
     res : int or tuple of int, optional
         Number of nodes along the sides of a four-sided section.
     around : int, optional
-        Number of cells around a circle, a multiple of four. None: at least 88, with which the area is
-        accurate to 0.1 %.
+        Number of cells around a circle, a multiple of four. None: at least 88; the area is then accurate to
+        0.1 %.
     **parameters
         Options for the grid of the section: ``cells``, ``cell_size``, ``first_cell``, ``y_plus``,
         ``reynolds``, ``growth``, ``walls``, ``layout``, and ``allow_invalid``.

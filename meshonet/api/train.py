@@ -40,24 +40,25 @@ def train(
 ) -> dict[str, Any]:
     """Train a neural operator on datasets and write it to `output`.
 
-    Several processes started by torchrun share the work of each step; the first of them reports and writes.
+    If torchrun starts several processes, they share the work of each step; the first process reports and
+    writes.
 
     Parameters
     ----------
     datasets : str, Path or list of these
-        Files with solved grids. For ``strip``, files with O boundaries. For ``quad``, files with grids of the
-        same domains, solved by winslow and by variational.
+        Files with solved grids. The model ``strip`` needs files with O boundaries. The model ``quad`` needs
+        two files with Winslow's grids and with variational grids of the same domains.
     output : str or Path
         Model file, ``.safetensors``.
     model : str, optional
         Architecture, as listed by ``train --help``; None selects it by the first dataset.
     settings : dict, optional
-        Settings of the model; for ``quad``, weights of its loss.
+        Settings of the model; for ``quad``, weights of the loss.
     split : str, optional
-        Shapes for tests: ``interpolation``, ``extrapolation``, ``random``, or a file that has ``train`` or
-        ``test`` for each grid. None: the split in the dataset.
+        Rule that selects the shapes for tests: ``interpolation``, ``extrapolation`` or ``random``; or a file
+        with the word ``train`` or ``test`` for each grid. None: the split that the dataset contains.
     held_out : int, optional
-        Number of shapes excluded from training, on which the loss is monitored; None: the default of the
+        Number of shapes that are not used for training but to monitor the loss; None: the default of the
         model.
     initial : str, optional
         Name or path of the model from which the training of ``quad`` starts.
@@ -70,14 +71,14 @@ def train(
     report, note : callable, optional
         Functions that are called with the progress of the training, and with messages.
     **plan
-        Settings of `meshonet.solvers.neural.fit.plan.Plan`; None is the default of the model. `points` is a
-        number or ``all``.
+        Fields of `meshonet.solvers.neural.fit.plan.Plan`, such as ``epochs``, ``batch`` and ``points`` (a
+        number or ``all``); None: the default of the model.
 
     Returns
     -------
     dict
-        The ``model``, the number of ``shapes`` and the ``figures`` of the held-out shapes. Empty in processes
-        of torchrun other than the first.
+        The name of the ``model``, the number of ``shapes``, and under ``figures`` the errors on the held-out
+        shapes. In all processes of torchrun except the first, the dict is empty.
 
     Raises
     ------

@@ -15,7 +15,7 @@ _OTHERS = ("layers", "revolve", "axis", "copies")
 
 @dataclass(frozen=True)
 class AircraftRequest(StackRequest):
-    """Options of the grid of an aircraft: those of `StackRequest`, where `cells` are in place of `around`."""
+    """Options of the grid of an aircraft. They are those of `StackRequest`; `cells` replaces `around`."""
 
     fewest_cells: ClassVar[int] = 20_000
 

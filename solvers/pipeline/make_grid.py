@@ -36,14 +36,14 @@ _NOT_REPAIRED = "use {repair}, an elliptic method or {allow_invalid}"  # where c
 
 
 def make_grid(shape: Shape, request: GridRequest) -> Result:
-    """Return the grid of `shape` that `request` describes.
+    """Return the grid of a shape, with its quality and the times of the computation.
 
     Parameters
     ----------
     shape : shape
         Shape to sample, such as an airfoil or a `Boundary`.
     request : GridRequest
-        How to make the grid.
+        The options of the grid, made by `grid_request`.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def make_grid(shape: Shape, request: GridRequest) -> Result:
     InputError
         The request does not suit the shape.
     NoValidGridError
-        The grid has folded cells, and these are not allowed.
+        The grid has folded cells, and `allow_invalid` is not given.
     SolverError
         The method diverged.
 
@@ -74,28 +74,28 @@ def make_grid(shape: Shape, request: GridRequest) -> Result:
 
 
 def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result | Exception]:
-    """Yield for each of the shapes, in order, its grid or an error.
+    """Yield the grid of each shape, or the error in which it ended, in the order of the shapes.
 
-    Shapes are read when their results are requested. If the method solves many shapes faster in one call, a
-    limited number is read ahead (`MOST_TOGETHER`, `MOST_NODES`). The grids then differ only in the last
-    digits from those of separate calls.
+    Shapes are read when their results are requested. Some methods solve several shapes together, because this
+    is faster; a limited number of shapes is then read ahead. Their grids differ from those of separate calls
+    only in the last digits.
 
     Parameters
     ----------
     shapes : iterable of shape
         Shapes to sample.
     request : GridRequest
-        How to make all of the grids.
+        The options of all grids, made by `grid_request`.
 
     Yields
     ------
     Result or Exception
-        The grid of a shape, or the error that its computation ended in.
+        The grid of a shape, or the error in which its computation ended.
 
     Raises
     ------
     InputError
-        The method does not have such settings.
+        The request has settings that the method does not have.
 
     Examples
     --------

@@ -14,18 +14,18 @@ from meshonet.solvers.pipeline.uses import COUNTED, Counts, counted
 
 
 def grid_request(method: str = "best", *, res: Counts | None = None, **parameters: Any) -> GridRequest:
-    """Return a request from keyword parameters of the sampling, the request or the method.
+    """Return a request, which contains all options of a grid, from keyword parameters.
 
     Parameters
     ----------
     method : str, optional
-        As in `GridRequest`.
+        Name of the method, as in `GridRequest`.
     res : int or tuple of int, optional
-        Number of nodes along xi, eta and, for volumes, zeta; one number for all, or along xi alone where
-        ``growth`` determines the number of rows.
+        Number of nodes along xi, eta and, for volumes, zeta. A single number holds for all directions, or
+        only for xi if ``growth`` determines the number of rows.
     **parameters
-        Fields of `Sampling` and `GridRequest`, and settings of the method; a setting that is None is ignored.
-        ``wall_spacing`` is another name of ``first_cell``.
+        Fields of `Sampling` and `GridRequest`, and settings of the method. Settings that are None are
+        ignored. ``wall_spacing`` is another name of ``first_cell``.
 
     Returns
     -------
@@ -35,7 +35,7 @@ def grid_request(method: str = "best", *, res: Counts | None = None, **parameter
     Raises
     ------
     InputError
-        As `GridRequest`, or a parameter that the method does not have.
+        As for `GridRequest`; also a parameter that the method does not have.
 
     Examples
     --------

@@ -124,7 +124,7 @@ class ManyBlocks(Request):
 
     @property
     def names_walls(self) -> tuple[str, ...]:
-        """Name of the given option that names the walls with layers, of many blocks or four sides."""
+        """Name of the option that selects walls with layers by name, if one is given."""
         if self.by_wall:
             return ("first_cell" if self.y_plus is None else "y_plus",)
         return ("walls",) if self.walls else ()
@@ -143,94 +143,99 @@ class Volume(Request):
 
     @property
     def of_surface(self) -> bool:
-        """Whether options that edges in the plane do not take ask for a march from a surface, be it flat."""
+        """Whether the options ask for marching from a surface, even if the surface is flat."""
         return self.method == "hyperbolic" and not (OF_SURFACE | {"far_field"}).isdisjoint(self.chosen)
 
 
 @dataclass(frozen=True)
 class GridRequest(OneBlock, ManyBlocks, Volume):
-    """How to make grids from shapes. Values are checked on construction.
+    """All options of a grid, or of many grids of similar shapes. Values are checked on construction.
 
     Parameters
     ----------
     sampling : Sampling, optional
-        Node counts and spacing of the boundary.
+        Numbers of nodes and spacing of the boundary.
     method : str, optional
-        A name in `METHODS`; ``best``: the default method of the topology, which is marching around bodies
-        with a first cell; or ``auto``: marching in the same cases, Winslow's equations in others.
+        A key of `METHODS`, ``best`` or ``auto``. ``best`` is the default method for the topology; around
+        bodies with a first cell this is marching. ``auto`` uses marching in the same cases, and Winslow's
+        equations in all others.
     settings : dict, optional
-        Keywords of the method.
+        Settings of the method by name.
     first_cell : float or mapping, optional
-        Height of the first cell at every wall node, in chords around a body. In a four-sided domain the walls
-        are south and north unless names of sides say otherwise (`wall_sides`), and the unit is that of the
-        domain. Also the heights of the walls that get layers, by name, in four-sided domains and those of
-        many blocks.
+        Height of the first cell at every wall node. The unit is the chord around a body, and otherwise that
+        of the domain. In a four-sided domain the walls are south and north, unless sides have names such as
+        ``inlet``. In four-sided and multi-block domains, a mapping from names to heights selects the walls
+        that get layers.
     y_plus : float or mapping, optional
-        First-cell height, or heights, as y+, converted for a flat plate.
+        First-cell height as y+, or y+ of several walls by name, instead of `first_cell`. The conversion
+        assumes a turbulent flat plate.
     reynolds : float, optional
         Reynolds number for `y_plus`.
     length : float, optional
         Reference length of the Reynolds number, in the unit of `first_cell`. None: the chord of a body, the
-        extent of the south of a four-sided domain, that of all holes of a domain of many blocks.
+        extent of the south side of a four-sided domain, or the extent of all holes of a multi-block domain.
     chord_fraction : float, optional
         Position along the chord, 0 to 1, at which y+ is converted to a height.
     growth : float, optional
-        Largest ratio of neighbouring cells away from the wall. If the sampling has no `nj`, the number of
-        rows follows from it.
+        Largest growth ratio of cells away from the wall. If `sampling` has no `nj`, the number of rows
+        follows from the growth ratio.
     constant_layers : int, optional
-        Number of rows at the wall with the height of the first cell.
+        Number of rows at the wall that have the height of the first cell.
     spacing_south, spacing_north, spacing_west, spacing_east : float, optional
         First-cell heights at single sides of a four-sided domain.
     slide : bool, optional
-        Move the nodes of south and north along these walls. None: only if a first cell is given and this
-        request samples the nodes.
+        Whether nodes slide along the walls south and north. None: only if a first cell is given and the
+        program has placed the wall nodes.
     wall_angle : float, optional
         Angle between grid lines and walls in degrees, for ``steger-sorenson``.
     coarse : int or 'auto', optional
-        Number of nodes along each direction on which to solve before the grid is evaluated at all its nodes.
-        ``auto`` selects it by method and size; None solves on all nodes of the grid.
+        Largest number of nodes per direction on which the equations are solved; the solution is then
+        interpolated to all nodes. ``auto``: selected by method and size. None: the equations are solved on
+        all nodes.
     refine : int, optional
         Number of refinements after the first solution; each halves all cells and solves again.
     initial : Grid, optional
         Initial grid.
     repair : bool, optional
-        Whether folded grids are repaired or made by another method; otherwise they are rejected. None: all
-        are repaired except those of algebraic methods, and of networks with raw answers.
+        Whether a grid with folded cells is repaired or made again by another method; if not, it is an error.
+        None: repaired, except grids of algebraic methods and raw grids of networks.
     repair_margin : int, optional
         Width in cells of the region around folded cells in which the repair moves nodes.
     allow_invalid : bool, optional
-        Whether a folded grid is returned.
+        Whether a grid with folded cells is returned instead of an error.
     percentiles : bool, optional
         Whether the quality includes percentiles.
     history : bool, optional
-        Whether the cycles of the iteration are kept.
+        Whether the result contains the convergence history of the iteration.
     blocks : {'auto', 'single'}, optional
         ``single`` makes one block where ``auto`` would make several.
     cells : int, optional
-        Approximate number of cells of a multi-block grid. This option and those down to `layout` make the
-        grid a multi-block grid.
+        Approximate number of cells of a multi-block grid. If this option, or one of the following options
+        down to `layout`, is given, the grid has several blocks.
     cell_size : float, optional
         Edge length, instead of `cells`.
     walls : tuple of str, optional
         Names of the walls with layers; empty for all holes, or the walls of a four-sided domain.
     pitch : tuple of 2 float, optional
-        Displacement from one blade of a cascade to the next.
+        Displacement vector from one blade of a cascade to the next.
     inlet, outlet : float, optional
         Lengths of the passage upstream and downstream of the blade, in axial chords.
     layout : Layout, optional
-        Blocks to use again.
+        Blocks of another grid, which are used again.
     periodic : tuple of tuple of str, optional
         Pairs of sides of a domain, by name, that are periodic.
     count : mapping, optional
-        Numbers of cells along sides of a domain, by their names; with `refine` those of the coarsest grid.
+        Numbers of cells along sides of a domain, by the names of the sides. With `refine`, the numbers of the
+        coarsest grid.
     layers : int, optional
         Number of nodes along each grid line of a volume marched from a surface, including the wall node.
     symmetry : {'x', 'y', 'z', 'none'}, optional
-        Axis normal to the plane of symmetry with the open edges of a surface.
+        Axis normal to the plane of symmetry in which open edges of a surface lie.
     poles : {'replace', 'refuse'}, optional
-        What becomes of sides of surface patches that are a single point: core patches, or an error.
+        Treatment of a pole, a side of a surface patch that is a single point: a core patch replaces it, or it
+        is an error.
     energy : {'angles', 'shape'}, optional
-        Functional that is minimised inside six faces; None: angles.
+        Functional that is minimised in a volume inside six faces; None: ``angles``.
     threads : int, optional
         Number of threads; None: all cores.
 

@@ -31,19 +31,20 @@ class Result:
     Parameters
     ----------
     solution : Solution
-        The grid, its method, the stages of its computation and their figures.
+        The grid, the method, and the stages of the computation.
     quality : Quality
         Quality of the grid.
     seconds : dict
-        Wall-clock seconds by stage: boundary, load (modules and models, once per process), grid (from
-        boundary nodes in memory to grid nodes in memory), guard, quality.
+        Wall-clock seconds of each stage: ``boundary``, ``load`` (of modules and models, once per process),
+        ``grid`` (from boundary nodes to grid nodes), ``guard`` (test for folded cells and repair) and
+        ``quality``.
     notes : tuple of str, optional
-        Sentences for the user, including those of boundary and solution. Names of parameters are in braces,
-        for `meshonet.geometry.errors.spelled`.
+        Notes for the user, including those of the boundary and the solution. Names of parameters are in
+        braces.
     history : tuple of HistoryRow, optional
-        Cycles of the method, if the request keeps them.
+        Convergence history of the iteration, if the request asks for it.
     lines : Lines, optional
-        Those of a multi-block grid, as far as they were measured for a note.
+        Grid lines of a multi-block grid, if a note needs their growth ratios.
     """
 
     solution: Solution

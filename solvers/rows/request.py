@@ -17,27 +17,27 @@ _LEAST_HEIGHT, _MOST_HEIGHT = 1e-8, 0.05  # chords
 
 @dataclass(frozen=True)
 class RowRequest(FirstCell):
-    """How a row becomes a grid; validates itself. Lengths are in longest chords.
+    """Options of the grid of a blade row, checked on construction. The unit of lengths is the longest chord.
 
     Parameters
     ----------
     first_cell : float, optional
-        Height of the first cells at blade, hub, casing and tip; None is 1e-3.
+        Height of the first cells at blade, hub, casing and tip; None: 1e-3.
     y_plus, reynolds, chord_fraction : float, optional
-        The same height by its y+, converted for a flat plate; the Reynolds number is that of the longest
-        chord.
+        First-cell height as y+, instead of `first_cell`. The conversion assumes a turbulent flat plate; the
+        Reynolds number is based on the longest chord.
     growth : float, optional
-        Largest ratio of neighbouring cells away from walls; None is 1.2.
+        Largest growth ratio of cells away from walls; None: 1.2.
     cells : int, optional
-        About how many cells there are in a passage.
+        Approximate number of cells in one passage.
     copies : int, optional
-        How many passages beside each other are made; as many as blades are the whole annulus.
+        Number of passages beside each other; the number of blades gives the whole annulus.
     threads : int, optional
-        Threads that work; None: all there are.
+        Number of threads; None: all cores.
     percentiles : bool, optional
         Whether the quality includes percentiles.
     allow_invalid : bool, optional
-        Whether a folded grid is a result.
+        Whether a grid with folded cells is returned instead of an error.
 
     Raises
     ------

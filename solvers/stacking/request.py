@@ -19,41 +19,44 @@ DEFAULT_FIRST_CELL, DEFAULT_FAR_FIELD = 1e-3, 15.0  # chords
 
 @dataclass(frozen=True)
 class StackRequest(FirstCell):
-    """Options for the surface or volume of a stack, checked on construction. Lengths are in longest chords.
+    """Options of the surface or volume grid of a stack, checked on construction.
+
+    The unit of lengths is the longest chord.
 
     Parameters
     ----------
     around : int, optional
-        Number of nodes around a section, including the repeated first one; odd. None is 129.
+        Number of nodes around a section; odd, and the first node counts twice. None: 129.
     span : int, optional
-        Number of nodes from the first section to the last. None is 49.
+        Number of nodes from the first section to the last. None: 49.
     cells : int, optional
-        Approximate number of cells of the volume around a wing or blade, in place of `around` and `span` or
-        of one of them.
+        Approximate number of cells of the volume around a wing or blade, instead of `around`, `span` or both.
     base : float, optional
-        Smallest height of trailing edges, in chords of their section; None is 0.005, and 0.001 for a wing
-        that is a surface.
+        Smallest height of trailing edges, in chords of each section. Thinner trailing edges are opened to
+        this height. None: 0.005, or 0.001 for a wing from a surface file.
     first_cell : float, optional
-        First-cell height at every wall node; None is 1e-3.
+        First-cell height at every wall node; None: 1e-3.
     y_plus, reynolds, chord_fraction : float, optional
-        First-cell height as y+, converted for a flat plate; the Reynolds number is based on the longest
-        chord.
+        First-cell height as y+, instead of `first_cell`. The conversion assumes a turbulent flat plate; the
+        Reynolds number is based on the longest chord.
     layers : int, optional
-        Number of nodes along each line away from the wall, including the wall node; None: as many as `growth`
-        needs.
+        Number of nodes along each grid line away from the wall, including the wall node; None: as many as
+        `growth` needs.
     growth : float, optional
-        Ratio of neighbouring cells away from the wall if `layers` is not given; None is 1.2.
+        Growth ratio of cells away from the wall, if `layers` is not given; None: 1.2.
     far_field : float, optional
         Distance of the far field.
     revolve : float, optional
-        Angle in degrees about `axis` from the first section of a blade or duct to the last, instead of z.
-    axis : AxisLine, optional Axis in the plane of the sections; None is the x axis.
+        Bend the z axis of a blade or duct around `axis`, by this angle in degrees from the first section to
+        the last.
+    axis : AxisLine, optional
+        Axis of `revolve`, in the plane of the sections; None: the x axis.
     threads : int, optional
         Number of threads; None: all cores.
     percentiles : bool, optional
         Whether the quality includes percentiles.
     allow_invalid : bool, optional
-        Whether a folded grid is returned.
+        Whether a grid with folded cells is returned instead of an error.
 
     Raises
     ------

@@ -36,20 +36,20 @@ _UNNAMED = (*SIDES, "outer")
 
 @dataclass(frozen=True)
 class Sweep:
-    """How a section is swept along a path.
+    """Options for sweeping a section along a path.
 
     Parameters
     ----------
     planes : int, optional
-        Number of planes of nodes. None: cells turn by at most `TURN_DEG` and are at most three times as long
-        as the mean width of the section's cells.
+        Number of planes of nodes. None: the path turns by at most 4 degrees per cell, and cells are at most
+        three times as long as the mean cell width of the section.
     up : tuple of 3 float, optional
-        Direction (3,) to which the section's y axis is closest at the start of the path; None is z, or y for
-        a path along z.
+        Direction (3,) in which the y axis of the section points at the start of the path, as closely as
+        possible. None: z, or y for a path along z.
     twist : float, optional
         Additional rotation of the section from start to end, in degrees.
     scale : float, optional
-        Size of the section at the end relative to the start.
+        Size of the section at the end of the path relative to its size at the start.
 
     Raises
     ------
