@@ -21,6 +21,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.airfoil.section_curve import DEPARTURE, departure_note, edge_notes
 from meshonet.geometry.shapes.annulus import Annulus
 from meshonet.geometry.shapes.domain_shape import DomainShape, itself, loops_extent
 from meshonet.geometry.shapes.named_edges import Labelled
@@ -43,11 +44,16 @@ def assembled(
 
     Raises InputError: shapes that are not closed curves; a far field that does not apply.
     """
-    bodies = list(
-        chain(*(_bodies(shape, label, sampling) for shape, label in zip(shapes, names, strict=True)))
-    )
+    as_asked = [_as_asked(shape, sampling) for shape in shapes]
+    bodies = list(chain(*(_bodies(shape, label) for (shape, _), label in zip(as_asked, names, strict=True))))
     groups = nested([body.curve.points for body in bodies])
-    notes = tuple(dict.fromkeys(note for shape in shapes for note in getattr(shape, "notes", ())))
+    several = len(shapes) > 1
+    said = [
+        type(note)(f"{label}: {note}") if several else note
+        for (_, own), label in zip(as_asked, names, strict=True)
+        for note in own
+    ]
+    notes = tuple(dict.fromkeys(said))
     if len(groups) == 1 and len(bodies) > 1:
         outer, holes = groups[0]
         if len(holes) < len(bodies) - 1:
@@ -91,10 +97,26 @@ def far_loop(middle: Floats, radius: float) -> Loop:
     return Loop(Curve(points, closed=True, corners=()), names=(FARFIELD,))
 
 
-def _bodies(shape: Shape, name: str, sampling: Sampling) -> list[Loop]:
+def _as_asked(shape: Shape, sampling: Sampling) -> tuple[Shape, tuple[str, ...]]:
+    """Return the shape with airfoils and their trailing edges as `sampling` has them, and its notes."""
+    if isinstance(shape, Annulus):
+        body, notes = _as_asked(shape.body, sampling)
+        return Annulus(body, shape.outer, shape.name), notes
+    if isinstance(shape, Labelled):
+        return _as_asked(shape.shape, sampling)
+    if not isinstance(shape, Airfoil):
+        return shape, tuple(getattr(shape, "notes", ()))
+    airfoil = shape.normalised() if sampling.normalise else shape
+    te, off = sampling.te, airfoil.curve.departure() / airfoil.chord
+    body = airfoil.rounded() if te == "round" else airfoil.wedged() if te == "wedge" else airfoil
+    departure = (departure_note(off),) if off > DEPARTURE else ()
+    return body, (*airfoil.notes, *departure, *edge_notes(airfoil, body, te, te))
+
+
+def _bodies(shape: Shape, name: str) -> list[Loop]:
     """Return the loops of a shape, whichever side the domain is on; `name` is used where it has no names."""
     if isinstance(shape, Airfoil):
-        return [_section_loop(shape, name, sampling)]
+        return [_section_loop(shape, name)]
     if isinstance(shape, Outline):
         return [ring_loop(shape.curve.points, hole=True, corners=shape.corners, names=(name,))]
     if isinstance(shape, DomainShape):
@@ -102,9 +124,7 @@ def _bodies(shape: Shape, name: str, sampling: Sampling) -> list[Loop]:
         unnamed = len(loops) == 1 and loops[0].names == ("outer",)
         return [replace(loops[0], names=(name,))] if unnamed else loops
     if isinstance(shape, Annulus):
-        return [ring_loop(shape.outer.points, hole=False), *_bodies(shape.body, name, sampling)]
-    if isinstance(shape, Labelled):
-        return _bodies(shape.shape, name, sampling)
+        return [ring_loop(shape.outer.points, hole=False), *_bodies(shape.body, name)]
     if isinstance(shape, Boundary) and shape.topology == "quad":
         return [_edges_loop(shape)]
     if isinstance(shape, Boundary) and shape.topology == "o":
@@ -115,11 +135,9 @@ def _bodies(shape: Shape, name: str, sampling: Sampling) -> list[Loop]:
     raise InputError(f"{shape.name or 'a shape'} is no closed curve", "give outlines, airfoils or polygons")
 
 
-def _section_loop(airfoil: Airfoil, name: str, sampling: Sampling) -> Loop:
-    """Return the loop along the smooth curve of an airfoil, its trailing edge as `sampling` has it."""
-    body = airfoil.normalised() if sampling.normalise else airfoil
-    body = body.rounded() if sampling.te == "round" else body.wedged() if sampling.te == "wedge" else body
-    curve = body.curve
+def _section_loop(airfoil: Airfoil, name: str) -> Loop:
+    """Return the loop along the smooth curve of an airfoil."""
+    curve = airfoil.curve
     turn = turning(curve.points, closed=True)[curve.corner_index]
     corners = curve.corner_index[turns_sharply(turn)]
     return Loop(curve, tuple(int(k) for k in corners), (name,))

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from sections import selig
 
+from meshonet.geometry.notes import changes_in
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.assembly import assembled
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.spacing.sampling import Sampling, TrailingEdge
@@ -92,3 +94,27 @@ def test_a_far_field_that_begins_elsewhere_is_named() -> None:
     assert len(notes) == 1
     assert "the far field begins" in notes[0]
     assert "degrees from where the first wall node lies" in notes[0]
+
+
+@pytest.mark.parametrize(
+    ("te", "change"),
+    [("round", "is rounded at its corners"), ("wedge", "is closed by a wedge 0.014 chords long")],
+)
+def test_in_blocks_the_change_of_each_body_is_named(te: TrailingEdge, change: str) -> None:
+    blunt, sharp = Airfoil(selig(0.12, base=0.004)), Airfoil(selig(0.12) + np.array([0.0, 1.0]))
+    both = assembled([blunt, sharp], ["main", "flap"], Sampling(te=te)).notes
+    changed = f"the outline is changed: its base, 0.004 chords wide, {change}"
+    assert both == (
+        f"main: {changed}",
+        f"flap: {{te}} {te} changes nothing, as the trailing edge is not blunt",
+    )
+    assert changes_in(both) == both[:1]
+    assert assembled([blunt], ["blade"], Sampling(te=te)).notes == (changed,), "one body needs no name"
+    assert assembled([blunt, sharp], ["main", "flap"], Sampling()).notes == ()
+
+
+def test_in_blocks_a_curve_far_from_the_lines_between_its_points_is_named() -> None:
+    coarse = Airfoil(selig(0.12)[::8])
+    (note,) = assembled([coarse], ["body"], Sampling()).notes
+    assert "is a smooth curve through the points, up to 0.0" in note
+    assert coarse.boundary(O_GRID).notes == (note,)

@@ -121,13 +121,16 @@ def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str,
     if count >= RIPPLES:
         notes += (f"the outline ripples: its curvature changes sign {count} times; see {{smooth}}",)
     off = curve.departure() / chord
-    if off > DEPARTURE:
-        note = (
-            f"the wall is a smooth curve through the points, up to {off:.2g} chords away from straight lines "
-            "between them; give more points where it matters"
-        )
-        notes += (Change(note) if off > FAR_OFF else note,)
-    return notes
+    return (*notes, departure_note(off)) if off > DEPARTURE else notes
+
+
+def departure_note(off: float) -> str:
+    """Return the note on a curve that deviates from its points' polygon by `off` chords."""
+    note = (
+        f"the wall is a smooth curve through the points, up to {off:.2g} chords away from straight lines "
+        "between them; give more points where it matters"
+    )
+    return Change(note) if off > FAR_OFF else note
 
 
 def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
