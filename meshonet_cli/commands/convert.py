@@ -44,21 +44,21 @@ def convert(
     )] = None,
     extrude: Annotated[float | None, _option(
         "--extrude", metavar="H",
-        help="Extrude the planar grid by H along z, into a grid with one layer of cells unless --planes is "
-        "given. Solvers that require three-dimensional grids use these for planar flow.",
+        help="Extrude the planar grid by H along z, for planar flow in solvers that require "
+        "three-dimensional grids. The result has one layer of cells, unless --planes is given.",
     )] = None,
     planes: Annotated[int | None, _option(
         "--planes", metavar="K", min=2, max=10_000,
         help="Number of planes of nodes for --extrude or --revolve, one more than the number of cells. "
-        "[default: 2; for sectors and full revolutions, cells of at most 4 degrees]",
+        "[default: 2; for sectors and full rings, cells of at most 4 degrees]",
     )] = None,
     plot3d: Annotated[str | None, _output(
         "--plot3d", metavar="WORDS",
         help="Variant of the Plot3D file to write, or to read if the output is in another format. WORDS are "
         "separated by commas and are any of ascii/binary/fortran, multi/single, 2d/3d, no-iblank/iblank, "
-        "little/big, float64/float32, whole/planes and span-k/span-i/span-j. For reading, only properties "
-        "that cannot be recognised from the file are needed. All other commands accept the same words as "
-        "--from plot3d:WORDS.",
+        "little/big, float64/float32, whole/planes and span-k/span-i/span-j. For reading, give only "
+        "properties that the program cannot recognise from the file. All other commands accept the same "
+        "words as --from plot3d:WORDS.",
     )] = None,
     swap: Annotated[bool, _option(
         "--swap", help="Exchange xi and eta of a four-sided grid. The result is still right-handed.",
@@ -75,14 +75,14 @@ def convert(
     )] = None,
     scale: Annotated[float | None, _option(
         "--scale", metavar="S",
-        help="Multiply all lengths by S: nodes, periods, heights of first cells. 0.001 makes metres of "
-        "millimetres. --extrude and --axis are in the new unit. [default: 1]",
+        help="Multiply all lengths by S; 0.001 converts millimetres to metres. --extrude and --axis are in "
+        "the new unit. [default: 1]",
     )] = None,
     copies: Annotated[str | None, _option(
         "--copies", metavar="K[xL]",
-        help="Copy a periodic grid K times, each copy joined to the next: passages of a blade row, up to the "
-        "whole annulus. A grid with two periods is copied K times along the first and L times along the "
-        "second, in the order that quality lists them. [default: 1]",
+        help="Join K copies of a periodic grid, for example passages of a blade row up to the whole annulus. "
+        "If the grid has two periods, join K copies along the first and L copies along the second; the "
+        "quality report gives their order. [default: 1]",
     )] = None,
     revolve: o.Revolve = None,
     axis: o.Axis = None,

@@ -23,8 +23,8 @@ def deform(
     wall: Annotated[list[str] | None, _option(
         "--wall", metavar="[NAME=]FILE",
         help="New shape of a wall: a file with an outline, a designation such as naca:2412, or a grid whose "
-        "wall has as many nodes, which are then matched one by one. NAME is required if the grid has "
-        "several walls, and may be any part of the boundary. Repeatable.",
+        "wall has the same number of nodes. NAME is required if the grid has several walls; it can be any "
+        "named part of the boundary. Repeatable.",
     )] = None,
     rotate: Annotated[list[str] | None, _option(
         "--rotate", metavar="NAME=DEGREES@X,Y",
@@ -32,12 +32,13 @@ def deform(
     )] = None,
     shift: Annotated[list[str] | None, _option(
         "--shift", metavar="NAME=DX,DY[,DZ]",
-        help="Translate a wall by (DX, DY, DZ), after its --rotate if there is one. Repeatable.",
+        help="Translate a wall by (DX, DY, DZ). If the wall is also rotated, the rotation comes first. "
+        "Repeatable.",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
 ) -> int:
-    """Deform grids to a changed boundary and keep their boundary layers."""
+    """Deform grids to changed walls, and keep their layers."""
     from meshonet_cli.tasks.deformations import walls_of, write_deformed
 
     walls = walls_of(wall or (), rotate or (), shift or ())

@@ -14,7 +14,7 @@ _SIGNS = {True: "ok", False: "NO", None: "-"}
 
 
 def doctor(as_json: o.AsJson = False) -> int:
-    """Check the installation, and list what is missing or could be added.
+    """Check the installation and list what is missing.
 
     The exit code is 1 if something required is missing or does not work.
     """

@@ -25,41 +25,42 @@ def infer(
     blocks: o.BlocksName = "auto",
     model: Annotated[str | None, _option(
         "--model", metavar="NAME|PATH",
-        help="Operator that makes the grid: the name of a shipped model (listed by meshonet models), a "
+        help="Neural operator that makes the grid: the name of a shipped model (see meshonet models), a "
         ".safetensors file, or base for the conformal solver without a network. C grids are always marched, "
-        "without an operator. [default: no network; the method for the kind of shape, described above]",
+        "without an operator. [default: no network; the method described above]",
     )] = None,
     polish: Annotated[str, _option(
         "--polish", metavar="auto|off|N", show_default=True,
-        help="Number of solver iterations after the operator (elliptic around bodies, variational in "
-        "four-sided domains); off is none. If --polish is off or N and --model is not given, the default "
-        "network of the topology makes the grid.",
+        help="Number of solver iterations after the neural operator (elliptic around bodies, variational in "
+        "four-sided domains); off means no iteration. If --polish is off or N and --model is not given, the "
+        "default network for the topology makes the grid.",
     )] = "auto",
     answer: Annotated[Literal["valid", "pasted", "raw"], _option(
         "--answer", metavar="valid|pasted|raw", show_default=True,
-        help="Treatment of networks that do not match the boundary exactly. raw writes the output of the "
-        "network, pasted replaces its boundary nodes by the true ones, and valid also repairs folded cells.",
+        help="Treatment of grids of networks that do not match the boundary exactly. raw writes the output "
+        "of the network, pasted replaces its boundary nodes by the given nodes, and valid also repairs "
+        "folded cells.",
     )] = "valid",
     device: Annotated[Literal["cpu", "cuda"] | None, _option(
         "--device", metavar="cpu|cuda",
-        help="Evaluate networks with torch on this device, all grids of a batch together. Then --polish "
-        "auto is 3 iterations for airfoil-o and none for other models. [default: NumPy, without torch]",
+        help="Evaluate networks with torch on this device, all grids of a batch together. --polish auto is "
+        "then 3 iterations for airfoil-o and no iteration for other models. [default: NumPy, without torch]",
     )] = None,
     fallback: Annotated[bool, _option(
         "--fallback",
-        help="Where the expected error of a network's answer is above 0.03, or cells of it are folded, use "
-        "the method that the network imitates.",
+        help="Make the grid by the solver that the network imitates if the expected error of the network is "
+        "above 0.03 or its grid has folded cells.",
     )] = False,
     refine: o.Refine = 0,
 ) -> int:
     """Make grids by the method that suits the kind of shape.
 
-    The method is the one with the best results in the benchmarks for that kind; the program does not compare
-    methods at run time. An O grid around a body is made by a conformal map. A C grid, or a grid with a first
-    cell, is marched from the wall. A four-sided domain is filled by the variational method. Any other planar
-    domain is split into blocks. A volume inside six faces is filled by the variational method, and the volume
-    outside of a surface is marched from it if a first cell is given. A neural operator makes the grid only
-    if --model, --polish, --device or --fallback is given; the report has the expected error of its answer.
+    The method is the one with the best results in benchmarks for this kind of shape. An O grid around a body
+    is made by a conformal map. A C grid, or a grid with a first cell, is marched from the wall. A four-sided
+    domain is filled by the variational method. Any other planar domain is split into blocks. A volume inside
+    six faces is filled by the variational method. With a first cell, the volume outside a surface is marched
+    from the surface. A neural operator makes the grid only if --model, --polish, --device or --fallback is
+    given; the report then gives the expected error of the grid.
     """
     from meshonet_cli.tasks.grids import write_grids
 

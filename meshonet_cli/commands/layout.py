@@ -50,8 +50,8 @@ def layout(
 ) -> int:
     """Split domains into blocks and write the block layout.
 
-    With a first cell, the layout has only the blocks outside of the layers. A grid that is made with this
-    layout has the blocks of the layers in addition.
+    With a first cell, the layout contains only the blocks outside the layers. A grid that is made with this
+    layout also has blocks for the layers.
     """
     from meshonet_cli.tasks.layouts import write_layouts
 

@@ -16,13 +16,13 @@ def models(
         typer.Argument(
             metavar="NAME",
             show_default=False,
-            help="Model whose training recipe and results are printed in full.",
+            help="Model whose training parameters and held-out errors are printed.",
         ),
     ] = None,
     as_json: o.AsJson = False,
     debug: o.Debug = False,
 ) -> int:
-    """List the neural operators that are shipped."""
+    """List the neural operators that are part of meshonet."""
     from meshonet.api.models import models as described
     from meshonet_cli.terminal.session import Session
 

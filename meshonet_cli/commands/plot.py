@@ -52,8 +52,8 @@ def plot(
     )] = "max_angle",
     zoom: Annotated[str | None, _option(
         "--zoom", metavar="x0,x1,y0,y1",
-        help="Show only this box: x0,x1,y0,y1 in the plane, x0,x1,y0,y1,z0,z1 in space. A --slice accepts "
-        "both.",
+        help="Show only this region: x0,x1,y0,y1 for a planar grid, x0,x1,y0,y1,z0,z1 for a grid in space. "
+        "With --slice both forms are possible.",
     )] = None,
     slice_: Annotated[str | None, _option(
         "--slice", metavar="SLICE",
@@ -63,13 +63,13 @@ def plot(
     )] = None,
     span: Annotated[str | None, _option(
         "--span", metavar="S,...",
-        help="Draw the section of a blade row at this part of the span, between 0 at the hub and 1 at the "
-        "shroud; several, separated by commas, are drawn side by side.",
+        help="Draw sections of a blade row at these fractions of the span, from 0 at the hub to 1 at the "
+        "shroud, side by side.",
     )] = None,
     meridional: Annotated[bool, _option(
         "--meridional",
-        help="Draw the meridional section of a blade row: the cells that a half-plane through axis and blade "
-        "cuts, in x and r.",
+        help="Draw the meridional section of a blade row in the coordinates x and r: the cells cut by a "
+        "half-plane through the axis and the blade.",
     )] = False,
     seen_from: Annotated[str | None, _option(
         "--seen-from", metavar="AZIMUTH,ELEVATION",

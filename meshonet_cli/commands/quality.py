@@ -28,29 +28,28 @@ def quality(
     html: Annotated[str | None, _output(
         "--html", metavar="F.html",
         help="Write a report as one page: pictures, histograms, the worst cells, and the results of "
-        "--fail-on and --profile. For more than 20 grids, the page shows the worst of them.",
+        "--fail-on and --profile. For more than 20 grids, the page shows the 20 worst.",
     )] = None,
     per_cell: Annotated[str | None, _output(
         "--per-cell", metavar="F.vts",
-        help="Write a file with all metrics of every cell. A grid of many blocks needs the extension "
-        ".vtm.",
+        help="Write a file with all metrics of every cell. For a multi-block grid use the extension .vtm.",
     )] = None,
     compare: Annotated[str | None, _check(
         "--compare", metavar="OTHER",
-        help="File with reference grids of the same size. The report then has the L2 distance from the "
-        "reference relative to its size, the distance near walls, the largest distance, the distance of the "
-        "boundaries, folded cells and ratios of angles.",
+        help="File with reference grids of the same size. The report then has the relative L2 distance from "
+        "the reference, the same near walls, the largest distance, the distance between the boundaries, the "
+        "numbers of folded cells and ratios of angles.",
     )] = None,
     pair: Annotated[Literal["auto", "name", "order"] | None, _check(
         "--pair", metavar="auto|name|order",
         help="Rule that assigns grids to the references of --compare: by name, or by order. auto compares "
-        "all grids with a single reference; several references are matched by name if they have names, else "
-        "by order. [default: auto]",
+        "all grids with the reference if there is only one. Otherwise it matches them by name if the names "
+        "agree, else by order. [default: auto]",
     )] = None,
     reynolds: Annotated[float | None, _check(
         "--reynolds", metavar="RE",
-        help="Reynolds number for which y+ of the first cells at each wall is reported, as of a turbulent "
-        "flat plate. --fail-on 'y_plus>2' then refers to the largest of all walls.",
+        help="Reynolds number for which y+ of the first cells at each wall is reported; the conversion "
+        "assumes a turbulent flat plate. --fail-on 'y_plus>2' then refers to the largest y+ of all walls.",
     )] = None,
     length: Annotated[float | None, _check(
         "--length", metavar="L",
@@ -62,7 +61,7 @@ def quality(
     from_format: o.From = None,
     threads: o.Threads = None,
 ) -> int:
-    """Measure the quality of grids: folded cells, angles, skewness."""
+    """Measure quality: folded cells, angles, growth."""
     from meshonet.geometry.quality.report import COMPARED, Y_PLUS
     from meshonet.geometry.threads import limited_to
     from meshonet_cli.tasks.qualities import measure_grids

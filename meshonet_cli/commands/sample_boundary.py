@@ -28,30 +28,32 @@ def sample_boundary(
     )] = None,
     family: Annotated[str | None, _option(
         "--family", metavar="NAME",
-        help="Draw random shapes of this family instead of reading files: arch, hexagon, wrench, "
-        "semicircle, airfoil or hole (the six families of the MeshONet paper), procedural (random "
-        "airfoils), four-sided (random quad domains) or bodies (random bodies in far fields). Without --res "
-        "they have 101x101 nodes.",
+        help="Make random shapes of this family instead of reading files: arch, hexagon, wrench, semicircle, "
+        "airfoil or hole (the six families of the MeshONet paper), procedural (random airfoils), four-sided "
+        "(random quad domains) or bodies (random bodies in far fields). Without --res, boundaries have "
+        "101x101 nodes.",
     )] = None,
     count: Annotated[int | None, _option(
-        "--count", metavar="N", min=1, help="Number of shapes to draw from the family. [default: 1]",
+        "--count", metavar="N", min=1,
+            help="Number of random shapes of the family. [default: 1]",
     )] = None,
     spread: Annotated[str | None, _option(
         "--range", metavar="A:B",
-        help="Interval from which the parameter of the family is drawn. [default: that of the paper]",
+        help="Interval of the parameter of the family. [default: the interval of the paper]",
     )] = None,
     seed: Annotated[int | None, _option(
         "--seed", metavar="S", min=0, help="Seed of the random numbers. [default: 0]",
     )] = None,
     split: Annotated[str | None, _option(
         "--split", metavar="HOW",
-        help="Reserve a sixth of the shapes for tests: with interpolation from the middle of the parameter "
-        "range, with extrapolation from one end of it, with random at random. The .h5 file records the "
-        "split, which train uses; FILE.h5#test reads the test shapes.",
+        help="Reserve a sixth of the shapes for tests. interpolation takes them from the middle of the "
+        "parameter range, extrapolation from one end, and random at random. The split is stored in the .h5 "
+        "file, for the command train; FILE.h5#test reads the test shapes.",
     )] = None,
     sensors: Annotated[int | None, _option(
         "--sensors", metavar="M", min=2,
-        help="Store M boundary nodes of each shape as sensors, in the dataset sensors of the .h5 file.",
+        help="Store M boundary nodes of each shape as sensors, the input of some neural operators, in the "
+        "array sensors of the .h5 file.",
     )] = None,
 ) -> int:
     """Place nodes on the four edges of a boundary.

@@ -22,8 +22,8 @@ EXAMPLES = (
 _option = o.option_of(o.METHOD)
 
 AUTO = (
-    "hyperbolic for bodies with a first cell and for C grids (whose first cell it chooses if none is "
-    "given), unless {coarse}, {refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
+    "hyperbolic for bodies with a first cell and for C grids (for which it chooses a first cell if none "
+    "is given), unless {coarse}, {refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
 )
 SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves} | {"auto": AUTO}
 if TYPE_CHECKING:
@@ -46,21 +46,21 @@ def solve_pde(
     )] = "auto",
     tol: Annotated[float | None, _option(
         "--tol", metavar="T",
-        help="Stop when the residual, relative to that of the transfinite interpolation, is below T. The "
+        help="Stop when the residual is below T times the residual of transfinite interpolation. The "
         "variational method stops when no node moves by more than about T times the square root of the area "
-        "of the domain. [default: stop when more iterations would change the grid by less than its "
-        "discretisation error]",
+        "of the domain. [default: stop when the iteration error is below the discretisation error]",
     )] = None,
     max_cycles: Annotated[int | None, _option(
         "--max-cycles", metavar="N", min=1,
-        help="Largest number of multigrid cycles, or of iterations at full resolution for the variational "
-        "method. [default: 30, variational 200]",
+        help="Largest number of multigrid cycles; for the variational method, of iterations at full "
+        "resolution. [default: 30, variational 200]",
     )] = None,
     coarse: Annotated[str, _option(
         "--coarse", metavar="auto|off|N", show_default=True,
-        help="Solve on N x N nodes and interpolate to --res by splines; off solves on all nodes. auto uses "
-        "N = 257 for winslow above 512 nodes along a side, and N = 129 for variational above 257, where the "
-        "quality is the same. It applies to quad and C grids without --tol, --max-cycles and --initial.",
+        help="Solve on N x N nodes and interpolate to --res by splines; off solves on all nodes. auto uses N "
+        "= 257 for winslow with more than 512 nodes along a side, and N = 129 for variational with more than "
+        "257; the quality is then the same. auto applies to quad and C grids without --tol, --max-cycles and "
+        "--initial.",
     )] = "auto",
     refine: o.Refine = 0,
     initial: Annotated[str | None, _option("--initial", metavar="GRID",
@@ -75,14 +75,14 @@ def solve_pde(
     repair_margin: Annotated[int | None, o.option_of(o.CHECKS)(
         "--repair-margin", metavar="CELLS", min=2, max=24,
         help="Width, in cells, of the region around folded cells in which the repair moves nodes. Larger "
-        "values are slower and give smoother grids. [default: 6, increased if that does not suffice]",
+        "values take more time and give smoother grids. [default: 6, and more if cells stay folded]",
     )] = None,
 ) -> int:
-    """Make grids by elliptic equations, a variational method, or marching.
+    """Make elliptic, variational or marched grids.
 
-    In three dimensions, a volume inside six faces is filled; the faces are those of a grid, or six patches.
-    With --method hyperbolic a volume is marched from the patches of a surface. A grid of several blocks is
-    smoothed across the interfaces of its blocks.
+    A volume inside six faces is filled; the faces are those of a given grid, or six patches. With --method
+    hyperbolic a volume is marched from the patches of a surface. A given multi-block grid is smoothed across
+    the interfaces of its blocks.
     """
     from meshonet_cli.tasks.grids import initial_grid, write_grids
 

@@ -35,7 +35,8 @@ def stack(
         help="File with at least two sections, or - for standard input. Each section of a wing or blade has "
         "an airfoil (a file or naca:2412), a chord, its position z and, where needed, x, y and twist, or "
         "sweep and dihedral. Sections of a duct have an outline instead: circle:RADIUS or a file with a "
-        "closed curve. A row of blades has profiles, hub and shroud instead, an aircraft a body and wings.",
+        "closed curve. The file of a blade row has profiles, hub and shroud instead, the file of an aircraft "
+        "a body and wings.",
     )],
     files: VolumeFiles,
     run: o.RunOptions,
@@ -49,19 +50,19 @@ def stack(
     )] = None,
     base: Annotated[float | None, _sampling(
         "--base", metavar="H",
-        help="Smallest height of trailing edges, in chords of their section. Thinner edges of wings and "
-        "blades are opened to this height. [default: 0.005, and 0.001 for wings from surfaces]",
+        help="Smallest height of trailing edges, in chords of each section. Thinner trailing edges of wings "
+        "and blades are opened to this height. [default: 0.005, or 0.001 for wings from surface files]",
     )] = None,
     cells: Annotated[int | None, _sampling(
         "--cells", metavar="N",
-        help="Approximate number of cells: around a wing or blade instead of --around and --span or one of "
-        "them, around an aircraft instead of --around, or in a passage of a blade row. [default: 500000 in a "
+        help="Approximate number of cells: around a wing or blade (instead of --around, --span or both), "
+        "around an aircraft (instead of --around), or in a passage of a blade row. [default: 500000 in a "
         "blade row]",
     )] = None,
     copies: Annotated[int | None, _sampling(
         "--copies", metavar="K", min=1,
-        help="Number of passages of a blade row beside each other, up to the number of blades, which is the "
-        "whole annulus. [default: 1]",
+        help="Number of passages of a blade row beside each other. The number of blades gives the whole "
+        "annulus. [default: 1]",
     )] = None,
     far_field: Annotated[float | None, _sampling(
         "--far-field", metavar="R",
@@ -96,15 +97,16 @@ def stack(
     length: o.Length = None,
     growth: Annotated[float | None, _layer(
         "--growth", metavar="G",
-        help="Ratio of neighbouring cells along a grid line away from the wall. It determines the number of "
-        "layers. [default: 1.2, or the ratio that follows from --layers]",
+        help="Ratio of the heights of neighbouring cells along a grid line away from the wall. The number of "
+        "layers follows from it. [default: 1.2, or the ratio that follows from --layers]",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
 ) -> int:
-    """Make volume grids of wings, ducts, blade rows and aircraft from cross-sections.
+    """Make volume grids of wings, ducts, rows and aircraft.
 
-    The grid surrounds a wing or a blade. In a duct it fills the inside, from the first section to the last.
+    A TOML file describes the shape by cross-sections. The grid surrounds a wing or an aircraft, fills a duct
+    from the first section to the last, or fills one passage of a row of blades.
     """
     from meshonet_cli.tasks.volumes import write_stacks
 

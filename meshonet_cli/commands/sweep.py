@@ -32,21 +32,21 @@ def sweep(
     names: Annotated[list[str], typer.Argument(
         metavar="OUTLINE... [PATH]", show_default=False,
         help="Cross-sections, each circle:RADIUS or a file with a closed curve, a domain, a layout or a "
-        "planar grid. The last word is the path, a file with lines and arcs in TOML or with one point x y z "
-        "per line. With --revolve there is no path.",
+        "planar grid. The last argument is the path: a TOML file with lines and arcs, or a file with one "
+        "point x y z per line. With --revolve there is no path.",
     )],
     run: o.RunOptions,
     gates: o.GateOptions,
     files: SectionFiles,
     res: Annotated[str | None, _sampling(
         "--res", metavar="N|NIxNJ",
-        help="Number of nodes along the sides of a four-sided section. [default: 65x33, with a first cell as "
-        "many as --growth needs]",
+        help="Number of nodes along the sides of a four-sided section. [default: 65x33; with a first cell, "
+        "as many as --growth needs]",
     )] = None,
     around: Annotated[int | None, _sampling(
         "--around", metavar="N",
         help="Number of cells around a circle, a multiple of four. [default: derived from --cells, and at "
-        "least 88, with which the area is accurate to 0.1 %]",
+        "least 88; the area is then accurate to 0.1 %]",
     )] = None,
     planes: Annotated[int | None, _volume(
         "--planes", metavar="K",
@@ -55,8 +55,8 @@ def sweep(
     )] = None,
     up: Annotated[str | None, _volume(
         "--up", metavar="X,Y,Z",
-        help="Direction of the section's y axis at the start of the path. [default: z, or y for a path that "
-        "starts along z]",
+        help="Direction of the y axis of the section at the start of the path. [default: z, or y for a path "
+        "that starts along z]",
     )] = None,
     twist: Annotated[float, _volume(
         "--twist", metavar="DEGREES", show_default=True,
@@ -70,11 +70,12 @@ def sweep(
     axis: o.Axis = None,
     cells: Annotated[int | None, o.option_of(o.DOMAIN)(
         "--cells", metavar="N",
-        help="Approximate number of cells in the section; in a circle at least so many that its area is kept "
-        "to 0.1 %. [default: derived from --around for a circle, else 2500]",
+        help="Approximate number of cells in the section. In a circle, more cells are used if the area needs "
+        "them to be accurate to 0.1 %. [default: derived from --around for a circle, else 2500]",
     )] = None,
     cell_size: Annotated[float | None, o.option_of(o.DOMAIN)(
-        "--cell-size", metavar="H", help="Edge length of cells in the section away from walls, in its unit.",
+        "--cell-size", metavar="H",
+            help="Edge length of cells in the section away from walls, in the unit of the section.",
     )] = None,
     layout: Annotated[str | None, o.option_of(o.DOMAIN)(
         "--layout", metavar="LAYOUT.json", help="Use the blocks of this layout for the section.",
@@ -82,8 +83,8 @@ def sweep(
     walls: o.Walls = None,
     first_cell: Annotated[str | None, o.option_of(o.BOUNDARY_LAYER)(
         "--first-cell", "--wall-spacing", metavar="H|WALL=H,...",
-        help="Height of the first cell at walls, in the unit of the section, or heights of named walls of a "
-        "section of many blocks.",
+        help="Height of the first cell at walls, in the unit of the section. WALL=H,WALL=H gives each named "
+        "wall of a multi-block section its own height.",
     )] = None,
     y_plus: o.YPlusAtWalls = None,
     reynolds: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
@@ -94,14 +95,14 @@ def sweep(
     length: o.Length = None,
     growth: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
         "--growth", metavar="G",
-        help="Largest ratio of neighbouring cells along a grid line away from walls. Without --res, or with "
-        "--res NI, it determines the rows of a four-sided section. [default: 1.2, or the ratio that follows "
-        "from --res]",
+        help="Largest ratio of the heights of neighbouring cells along a grid line away from walls. Without "
+        "--res, or with --res NI, the number of rows of a four-sided section follows from it. [default: 1.2, "
+        "or the ratio that follows from --res]",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
 ) -> int:
-    """Make volume grids of pipes and ducts by sweeping cross-sections along curves."""
+    """Sweep cross-sections along curves: pipes and ducts."""
     from meshonet.geometry.blocks.revolve import revolution
     from meshonet.geometry.errors import InputError
     from meshonet.solvers.sweeping.sweep import Sweep

@@ -26,15 +26,15 @@ class TrainOptions:
     model: Annotated[str | None, _option(
         "--model", metavar="NAME",
         help="Architecture: strip (operator for airfoils), quad (operator for four-sided domains), meshonet "
-        "(the network of the MeshONet paper), meshonet-hard (the same with an exact boundary), one of the "
-        "baselines deeponet, pod-deeponet, fno1d, fno2d, wno, kno, lno and mionet, or one of the "
-        "physics-informed networks mgnet and meshnet. [default: meshonet for datasets of "
-        "grids, strip for datasets of boundaries]",
+        "(the network of the MeshONet paper), meshonet-hard (a similar network whose boundary is exact), one "
+        "of the baselines deeponet, pod-deeponet, fno1d, fno2d, wno, kno, lno and mionet, or one of the "
+        "physics-informed networks mgnet and meshnet. [default: meshonet for datasets of grids, strip for "
+        "datasets of boundaries]",
     )] = None
     split: Annotated[str | None, _option(
         "--split", metavar="HOW|FILE",
-        help="Shapes reserved for the test: interpolation, extrapolation, random, or a file that has train "
-        "or test for each shape. [default: the split recorded in the dataset]",
+        help="Rule that reserves shapes for tests: interpolation, extrapolation or random; or a file with "
+        "the word train or test for each shape. [default: the split stored in the dataset]",
     )] = None
     epochs: Annotated[int | None, _option(
         "--epochs", metavar="N", min=1,
@@ -55,17 +55,17 @@ class TrainOptions:
     )] = None
     points: Annotated[str | None, _option(
         "--points", metavar="N|all",
-        help="Number of grid points that are drawn at random for each step, a sixth of them on the "
-        "boundary. [default: 1200]",
+        help="Number of random grid points for each step; a sixth of them lie on the boundary. [default: "
+        "1200]",
     )] = None
     held_out: Annotated[int | None, _option(
         "--held-out", metavar="N", min=0,
-        help="Number of shapes excluded from training, on which the loss is monitored. [default: strip the "
+        help="Number of shapes that are not used for training but to monitor the loss. [default: strip the "
         "last 300, quad 600, others 0]",
     )] = None
     initial: Annotated[str | None, _option(
         "--initial", metavar="NAME|PATH",
-        help="Model from which the training of a quad operator starts. [default: random weights]",
+        help="Model whose weights are the initial weights of a quad operator. [default: random weights]",
     )] = None
     patience: Annotated[int | None, _option(
         "--patience", metavar="EPOCHS", min=1,
@@ -74,7 +74,7 @@ class TrainOptions:
     )] = None
     seed: Annotated[int, _option(
         "--seed", metavar="S", min=0, show_default=True,
-        help="Seed of the initial weights, the order of the shapes and the drawn points.",
+        help="Seed of the initial weights, the order of the shapes and the random points.",
     )] = 0
     threads: Annotated[int, _option(
         "--threads", metavar="N", min=1, show_default=True, help="Number of threads of torch.",
@@ -92,7 +92,7 @@ class TrainOptions:
     compiled: Annotated[bool, _option(
         "--compile",
         help="Compile the training step with torch.compile, which needs a C++ compiler. Small models on a "
-        "CPU gain nothing.",
+        "CPU do not become faster.",
     )] = False
     resume: Annotated[bool, _option(
         "--resume", help="Continue from the checkpoint next to the output, if it exists.",
@@ -108,10 +108,10 @@ class TrainOptions:
 def train(
     dataset: Annotated[list[str], typer.Argument(
         metavar="DATASET", show_default=False,
-        help="Solved grids of one family as .h5 file, made by solve-pde. The strip operator takes "
-        "boundaries of O grids instead, for example from sample-boundary --family procedural. The quad "
-        "operator takes two datasets of the same domains, one solved by winslow and one by variational, "
-        "with 33x33 nodes (65x33 around bodies). meshnet also takes volumes.",
+        help="An .h5 file with grids of one family, made by solve-pde. The model strip needs boundaries of O "
+        "grids instead, for example from sample-boundary --family procedural. The model quad needs two "
+        "datasets of the same domains, one with Winslow's grids and one with variational grids, with 33x33 "
+        "nodes (65x33 around bodies). meshnet also accepts volumes.",
     )],
     output: Annotated[str, _output("-o", "--output", metavar="FILE",
         help="Model file to write, .safetensors.",
@@ -121,16 +121,16 @@ def train(
     settings: Annotated[list[str] | None, _option(
         "--set", metavar="NAME=VALUE",
         help="Setting of the model, e.g. sensors=80, or a weight in the loss of the quad operator, e.g. "
-        "folds=3. The page on networks of the paper in the documentation lists them. Repeatable.",
+        "folds=3. The page about operators of the paper in the documentation lists all settings. Repeatable.",
     )] = None,
     log_csv: Annotated[str | None, _output(
         "--log-csv", metavar="FILE",
         help="Write the loss, its terms, the learning rate and the time to a CSV file.",
     )] = None,
 ) -> int:
-    """Train a neural operator on datasets (needs the extra `train`).
+    """Train a neural operator on datasets.
 
-    Several processes started by torchrun share the work of each training step.
+    This needs the extra `train`. If torchrun starts several processes, they share each training step.
     """
     from meshonet.api.train import train as fit
     from meshonet_cli.report.training import Log, result_lines

@@ -10,22 +10,22 @@ _option = option_of(BOUNDARY_LAYER)
 # fmt: off
 WallAngle = Annotated[float | None, _option(
     "--wall-angle", metavar="DEGREES",
-    help="Angle in degrees at which grid lines leave walls; it applies to --method steger-sorenson. Walls "
-    "are the sides with a first cell. If no side has one, they are south and north, or the body. [default: "
+    help="Angle in degrees between grid lines and walls, for --method steger-sorenson. Walls are the sides "
+    "with a first cell. If no side has a first cell, the walls are south and north, or the body. [default: "
     "90]",
 )]
 Slide = Annotated[bool | None, _option(
     "--slide/--no-slide",
     help="Move the nodes of south and north along these walls, so that grid lines leave the walls at right "
-    "angles. Applies to four-sided domains. [default: --slide if first cells are given there and this "
-    "command places the nodes of the boundary, else --no-slide]",
+    "angles. Applies to four-sided domains. [default: --slide if these walls have first cells and this "
+    "command places their nodes, else --no-slide]",
 )]
 FirstCell = Annotated[str | None, _option(
     "--first-cell", "--wall-spacing", metavar="H|WALL=H,...",
-    help="Height of the first cell at every wall node. Around a body the unit is the chord, elsewhere that "
-    "of the input. The walls of a four-sided domain are south and north, those of a multi-block grid its "
-    "holes, or its sides where it has no holes; but none called inlet, outlet, axis or symmetry. --walls "
-    "names others. WALL=H,WALL=H gives each named wall its own height, instead of --walls. Around a body "
+    help="Height of the first cell at every wall node. Around a body the unit is the chord, otherwise that "
+    "of the input. The walls of a four-sided domain are south and north. The walls of a multi-block grid are "
+    "its holes, or all sides if it has no holes. Sides called inlet, outlet, axis or symmetry are not walls. "
+    "--walls selects other walls. WALL=H,WALL=H selects walls and gives each its own height. Around a body, "
     "solve-pde and infer then march the grid from the wall.",
 )]
 YPlus = Annotated[float | None, _option(
@@ -35,17 +35,18 @@ YPlus = Annotated[float | None, _option(
 )]
 YPlusAtWalls = Annotated[str | None, _option(
     "--y-plus", metavar="Y|WALL=Y,...",
-    help="Height of the first cell as y+, instead of --first-cell, also for single walls of a multi-block "
-    "grid. The conversion assumes a turbulent flat plate and needs --reynolds.",
+    help="Height of the first cell as y+, instead of --first-cell; WALL=Y,WALL=Y for named walls of a "
+    "multi-block grid. The conversion assumes a turbulent flat plate and needs --reynolds.",
 )]
 Length = Annotated[float | None, _option(
     "--length", metavar="L",
-    help="Reference length of --reynolds, in the unit of --first-cell. [default: as described there]",
+    help="Reference length of --reynolds, in the unit of --first-cell. [default: the length described at "
+    "--reynolds]",
 )]
 Reynolds = Annotated[float | None, _option(
     "--reynolds", metavar="RE",
-    help="Reynolds number for --y-plus. Its reference length is the chord of a body, the extent of the "
-    "south side of a four-sided domain, or the extent of all holes of a multi-block grid.",
+    help="Reynolds number for --y-plus. The reference length is the chord of a body, the extent of the south "
+    "side of a four-sided domain, or the extent of all holes of a multi-block grid.",
 )]
 
 
@@ -76,8 +77,8 @@ class LayerOptions:
     growth: Annotated[float | None, _option(
         "--growth", metavar="G",
         help="Largest ratio of the heights of neighbouring cells along a grid line away from the wall, e.g. "
-        "1.15. It determines the number of rows, unless --res gives it as NJ; then it is a limit. [default: "
-        "1.2 for many blocks, else the ratio that follows from the number of rows]",
+        "1.15. The number of rows follows from it, unless --res gives this number as NJ. [default: 1.2 for "
+        "multi-block grids, else the ratio that follows from the number of rows]",
     )] = None
     constant_layers: Annotated[int | None, _option(
         "--constant-layers", metavar="K", min=1,

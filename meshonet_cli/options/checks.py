@@ -37,8 +37,8 @@ class CheckOptions:
 
     repair: Annotated[bool | None, _option(
         "--repair/--no-repair",
-        help="Repair folded cells; with --no-repair a grid that has any is refused. [default: --repair for "
-        "solve-pde and infer, --no-repair for tfi]",
+        help="Repair folded cells; with --no-repair a grid with folded cells is an error. [default: --repair "
+        "for solve-pde and infer, --no-repair for tfi]",
     )] = None
     allow_invalid: AllowInvalid = False
 
@@ -51,14 +51,14 @@ class GateOptions:
         "--fail-on", metavar="GATE",
         help="Exit with code 1 if this condition holds, e.g. 'max_angle>170', 'skewness.p99>0.8' or "
         "'folded>0'. The names include folded, max_angle, skewness, growth, wall_growth, equal_wall_cells, "
-        "far_field, non_orthogonality, face_skewness, box_ratio and, for grids of many blocks, irregular; "
-        "the page on quality in the documentation lists all of them. A gate replaces the limit of a "
+        "far_field, non_orthogonality, face_skewness, box_ratio and, for multi-block grids, irregular; the "
+        "page on quality in the documentation lists all of them. The condition replaces the limit of a "
         "--profile for the same name. For several grids a table shows which of them pass. Repeatable.",
     )] = None
     profile: Annotated[list[Profile] | None, _option(
         "--profile", metavar="openfoam|pointwise|verdict|viscous",
-        help="Check the grid against the thresholds of another program or guideline, with the result pass, "
-        "warn or FAIL for each of them. Exit with code 1 if one fails. The page on quality in the "
+        help="Check the grid against the thresholds of another program or guideline; the result for each "
+        "threshold is pass, warn or FAIL. Exit with code 1 after a FAIL. The page on quality in the "
         "documentation lists the thresholds. Repeatable.",
     )] = None
 

@@ -12,14 +12,14 @@ _COUNTS = "use SIDE=N, e.g. inlet=40,floor=120"
 # fmt: off
 BlocksName = Annotated[Literal["auto", "single"], _option(
     "--blocks", metavar="auto|single", show_default=True,
-    help="Number of blocks. auto splits every domain that is neither four-sided nor a body in its far field "
-    "into blocks; single makes one block.",
+    help="Number of blocks. auto makes one block for a four-sided domain or a body in a far field, and "
+    "several blocks for all other domains. single makes one block.",
 )]
 Walls = Annotated[str | None, _option(
     "--walls", metavar="NAME,NAME",
     help="Names of the walls that get the layers of --first-cell or --y-plus: holes, or named parts of a "
-    "boundary curve. At a corner of about 90 degrees, layers end or meet those of the next wall. [default: "
-    "as described at --first-cell]",
+    "boundary curve. At a corner of about 90 degrees, layers end or meet the layers of the next wall. "
+    "[default: as described at --first-cell]",
 )]
 
 
@@ -29,8 +29,8 @@ class DomainOptions:
 
     assemble: Annotated[bool, _option(
         "--assemble",
-        help="Combine all inputs into one domain: bodies in a common far field, or in the input that "
-        "encloses the others. Each body is named after its file.",
+        help="Combine all inputs into one domain: bodies in a common far field or, if one input encloses the "
+        "others, inside this input. Each body is named after its file.",
     )] = False
     cells: Annotated[int | None, _option(
         "--cells", metavar="N",
@@ -43,13 +43,13 @@ class DomainOptions:
     )] = None
     layout: Annotated[str | None, _option(
         "--layout", metavar="LAYOUT.json",
-        help="Use the blocks of this layout, which meshonet layout has written for the same or a similar "
-        "domain. For a grid with layers, the layout must have been made with a first cell too.",
+        help="Use the blocks of this layout, written by meshonet layout for the same or a similar domain. "
+        "For a grid with layers, make the layout with a first cell too.",
     )] = None
     pitch: Annotated[str | None, _option(
         "--pitch", metavar="DX,DY",
         help="Displacement from one blade of a cascade to the next. The input is one blade; the grid fills "
-        "the passage around it, and its periodic sides match node by node.",
+        "the passage around this blade, and the nodes of the two periodic sides match.",
     )] = None
     inlet: Annotated[float | None, _option(
         "--inlet", metavar="L",
@@ -63,16 +63,16 @@ class DomainOptions:
 
     periodic: Annotated[list[str] | None, _option(
         "--periodic", metavar="SIDE,SIDE",
-        help="Two sides of the outer boundary, by name, that are periodic: translated copies of each other. "
-        "Their nodes match, and formats that know periodic sides have them as such. Repeat it for a second "
-        "pair. GeoJSON has the property periodic for the same.",
+        help="Names of two sides of the outer boundary that are periodic: a translation moves one onto the "
+        "other. The nodes of the two sides match. Formats that support periodic sides contain them. Repeat "
+        "the option for a second pair. In GeoJSON files the property periodic has the same meaning.",
     )] = None
 
     walls: Walls = None
     count: Annotated[str | None, _option(
         "--count", metavar="SIDE=N,...",
-        help="Number of cells along each named side of the domain, e.g. inlet=40. Blocks have as many cells "
-        "on opposite sides, so that counts can exclude each other.",
+        help="Number of cells along each named side of the domain, e.g. inlet=40. Opposite sides of a block "
+        "have equal numbers of cells, so some combinations are impossible.",
     )] = None
 
     def parameters(self) -> dict[str, Any]:

@@ -55,10 +55,10 @@ Threads = Annotated[int | None, _option(
 AsJson = Annotated[bool, _option("--json", help="Print one JSON object per result on standard output.")]
 PartSize = Annotated[int | None, _option(
     "--part-size", metavar="N", min=1, max=1_000_000,
-    help="Number of inputs in each part of an .h5 dataset. The parts are files out/part-00000.h5, "
-    "out/part-00001.h5 and so on, which out.h5 presents as one dataset; --skip-existing continues an "
-    "unfinished one. [default: parts of up to 256 MiB for more than 10,000 inputs or with --shard, else a "
-    "dataset without parts]",
+    help="Number of inputs in each part of an .h5 dataset. The parts are the files out/part-00000.h5, "
+    "out/part-00001.h5 and so on; out.h5 presents them as one dataset. --skip-existing continues an "
+    "unfinished dataset. [default: parts of up to 256 MiB for more than 10,000 inputs or with --shard, else "
+    "a dataset without parts]",
 )]
 Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")]
 

@@ -25,9 +25,9 @@ _option = option_of(SAMPLING)
 Resolution = Annotated[str | None, _option(
     "--res", metavar="N|NIxNJ[xNK]",
     help="Number of nodes along each direction: N for all directions, or NI along xi (around a body), NJ "
-    "along eta (away from it) and NK along zeta (volumes). Where --growth determines the rows, N is NI. For "
-    "many blocks, number of cells along the longest extent. [default: the nodes of the input, or 200x100 for "
-    "curves]",
+    "along eta (away from it) and NK along zeta (volumes). If --growth determines the number of rows, N is "
+    "NI. For multi-block grids, number of cells along the longest extent. [default: the nodes of the input, "
+    "or 200x100 for curves]",
 )]
 
 
@@ -45,10 +45,10 @@ class SamplingOptions:
     spacing: Annotated[SpacingName, _option(
         "--spacing", metavar="|".join(LAWS), show_default=True,
         help="Distribution of the nodes along walls. conformal: equal steps on the circle to which a "
-        "conformal map takes the body. uniform: equal steps. cosine: small cells at both ends. tanh: small "
-        "cells at both ends, of prescribed size. curvature: small cells at the ends and where the wall "
-        "bends. auto: conformal around airfoils and smooth bodies, tanh around airfoils if a cell size is "
-        "given, curvature with a first cell, else uniform.",
+        "conformal map takes the body. uniform: equal steps along the wall. cosine: small cells at both "
+        "ends. tanh: small cells of prescribed length at both ends. curvature: small cells at the ends and "
+        "where the wall bends. auto: conformal around airfoils and smooth bodies, tanh around airfoils if "
+        "--le-spacing or --te-spacing is given, curvature with a first cell, else uniform.",
     )] = "auto"
     le_spacing: Annotated[float | None, _option(
         "--le-spacing", metavar="H", help="Length of the wall cells at the leading edge, in chords.",
@@ -60,8 +60,9 @@ class SamplingOptions:
         "--te", metavar="auto|exact|round|wedge", show_default=True,
         help="Treatment of blunt trailing edges: exact keeps their shape, round rounds the two corners, and "
         "wedge closes the base by a wedge of up to four base heights. At the corners, grid angles deviate "
-        "from 90 degrees by about 45 with exact and by at most 10 with round. auto is exact, but wedge for a "
-        "C grid that is not marched, or that has no first cell and a base of at most 0.005 chords.",
+        "from 90 degrees by about 45 with exact and by at most 10 with round. auto is wedge for a C grid "
+        "that is not marched, or that has no first cell and a base of at most 0.005 chords; otherwise it is "
+        "exact.",
     )] = "auto"
     far_field: Annotated[float | None, _option(
         "--far-field", metavar="R",
@@ -71,7 +72,7 @@ class SamplingOptions:
     )] = None
     wake: Annotated[float | None, _option(
         "--wake", metavar="L",
-        help="Length of the wake of a C grid, in chords. [default: the distance of the far field]",
+        help="Length of the wake of a C grid, in chords. [default: the far-field distance]",
     )] = None
     wake_nodes: Annotated[int | None, _option(
         "--wake-nodes", metavar="N",
@@ -86,11 +87,10 @@ class SamplingOptions:
     )] = None
     smooth: Annotated[float | None, _option(
         "--smooth", metavar="TOL",
-        help="Replace the points of an airfoil with noisy or rounded coordinates by smoothing splines, which "
-        "deviate from the points by at most TOL chords. Choose about 3 times the standard deviation of the "
-        "noise, or the unit of the last digit: 6e-4 for noise of 2e-4, 1e-4 for four decimals. Corners "
-        "higher than 2 TOL are kept; a base narrower than TOL is closed. The report gives the changes. Needs "
-        "SciPy.",
+        help="Smooth an airfoil with noisy or rounded coordinates by splines, which deviate from the points "
+        "by at most TOL chords. Choose about 3 times the standard deviation of the noise, or the unit of the "
+        "last digit: 6e-4 for noise of 2e-4, 1e-4 for four decimals. Corners higher than 2 TOL are kept; a "
+        "base lower than TOL is closed. The report gives the changes. Needs SciPy.",
     )] = None
     corners: Annotated[str, _option(
         "--corners", metavar="auto|I,J,K,L", show_default=True,

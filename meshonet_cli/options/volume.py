@@ -19,8 +19,8 @@ Layers = Annotated[int | None, _option(
 
 Revolve = Annotated[float | None, _option(
     "--revolve", metavar="DEG",
-    help="Angle by which the planar grid is revolved about --axis, in degrees. Up to 10 makes a wedge with "
-    "one cell, less than 360 a sector, 360 a full revolution.",
+    help="Turn the planar grid about --axis by this angle in degrees. Angles up to 10 make a wedge with one "
+    "cell, angles below 360 a sector, and 360 a full ring.",
 )]
 Axis = Annotated[str | None, _option(
     "--axis", metavar="x|y|X,Y,DX,DY",
@@ -65,19 +65,20 @@ class VolumeOptions:
     layers: Layers = None
     symmetry: Annotated[Literal["x", "y", "z", "none"] | None, _option(
         "--symmetry", metavar="x|y|z|none",
-        help="Axis normal to the plane of symmetry in which the open edges of the surface lie; with none "
-        "all open edges are free. [default: open edges that lie in a plane normal to an axis are in a plane "
-        "of symmetry, others are free]",
+        help="Axis normal to the plane of symmetry in which open edges of the surface lie. With none all "
+        "open edges are free: grid lines leave them along the surface normal. [default: open edges in a "
+        "plane normal to an axis are in a plane of symmetry, others are free]",
     )] = None
     poles: Annotated[Literal["replace", "refuse"], _option(
         "--poles", metavar="replace|refuse",
-        help="Sides of surface patches that are a single point, as at the nose of a fuselage: replace makes "
-        "a core patch there and a few rows around it, refuse makes them an error.",
+        help="Treatment of poles: sides of surface patches that are a single point, as at the nose of a "
+        "fuselage. replace makes a four-sided core patch and a few rows around it, refuse makes a pole an "
+        "error.",
     )] = "replace"
     energy: Annotated[Literal["angles", "shape"] | None, _option(
         "--energy", metavar="angles|shape",
-        help="Functional that is minimised inside six faces. angles favours right angles and lengths that "
-        "change gradually, at any aspect ratio of cells. shape favours cells like cubes; it is the inverse "
-        "mean ratio |T|²/(3 det(T)^⅔) of the Jacobian matrices T (metric 303 of TMOP). [default: angles]",
+        help="Functional that is minimised inside six faces. angles favours right angles and gradual changes "
+        "of length, also for long and thin cells. shape favours cells like cubes; it is the inverse mean "
+        "ratio |T|²/(3 det(T)^⅔) of the Jacobian matrices T (metric 303 of TMOP). [default: angles]",
     )] = None
 # fmt: on

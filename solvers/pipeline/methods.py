@@ -158,12 +158,12 @@ METHODS: Mapping[str, MethodEntry] = MappingProxyType(
         ),
         "thomas-middlecoff": MethodEntry(
             "meshonet.solvers.elliptic.solve:solve_thomas_middlecoff",
-            "Winslow's equations with control functions that continue the spacing of the edges inside",
+            "Winslow's equations with control functions; the node spacing of the sides continues inside",
             sweeps=False,
         ),
         "steger-sorenson": MethodEntry(
             "meshonet.solvers.elliptic.steger_sorenson:solve_steger_sorenson",
-            "Winslow's equations with sources that turn grid lines at walls to the angle {wall_angle}",
+            "Winslow's equations with source terms; grid lines leave walls at the angle {wall_angle}",
             sweeps=False,
         ),
         "variational": MethodEntry(
@@ -175,7 +175,7 @@ METHODS: Mapping[str, MethodEntry] = MappingProxyType(
         ),
         "conformal": MethodEntry(
             "meshonet.solvers.conformal.solve:Conformal",
-            "Winslow's equations around a body, solved in the strip that is its conformal image",
+            "Winslow's equations around a body, solved in a strip after a conformal map",
         ),
         "operator": MethodEntry(
             "meshonet.solvers.neural.inference:OperatorMethod", "a neural operator", kind="network"
