@@ -166,14 +166,13 @@ def left_out(lines: list[Line]) -> tuple[str, ...]:
 
     HTML between rows also gets a note, because rows may be missing in a saved web page.
     """
-    kinds: list[Kind] = ["blank", *(line.kind for line in lines), "blank"]
-    rows = [line.number for line in lines if line.kind == "row"] or [0]
+    kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
     notes = []
     for k, line in enumerate(lines):
         what = ""
         if line.kind in ("gap", "broken") and "row" in (kinds[k], kinds[k + 2]):
             what = "no pair of numbers"
-        elif line.kind == "text" and rows[0] < line.number < rows[-1] and _HTML.search(line.text):
+        elif line.kind == "text" and "row" in kinds[:k] and "row" in kinds[k:] and _HTML.search(line.text):
             what = "HTML"
         if what:
             notes.append(Change(f"line {line.number}, {line.text.strip()[:40]!r}, is {what} and is left out"))

@@ -5,7 +5,10 @@ volumes have eight corners (`meshonet.geometry.quality.volumes`); cells of surfa
 relative to their own normals (`meshonet.geometry.quality.surfaces`).
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +16,15 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats, as_planar, norms, percentiles_of
 from meshonet.geometry.blocks.block import form_of
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality import metrics
 from meshonet.geometry.quality.cell_run import FEW, PERCENTS, CellRun, run_over, summary_of
 from meshonet.geometry.quality.metrics import NAMES, QUAD_METRICS, metric_of
 from meshonet.geometry.summary import Quality, Summary
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
+
+if TYPE_CHECKING:
+    from meshonet.geometry.quality.bad_cell import BadCell
 
 
 def count_folded(nodes: Floats) -> int:

@@ -6,7 +6,8 @@ from functools import cached_property
 from typing import Any, TypeAlias
 
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import BadCell, spelled
+from meshonet.geometry.errors import spelled
+from meshonet.geometry.quality.bad_cell import BadCell
 from meshonet.geometry.quality.blocks import extreme_dict
 from meshonet.geometry.quality.centres import centre_of
 from meshonet.geometry.quality.compare import Difference, compare

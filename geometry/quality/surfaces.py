@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, cross2, norms
 from meshonet.geometry.elementary import arccos
-from meshonet.geometry.errors import BadCell
 from meshonet.geometry.layout.lattice import ring_of
+from meshonet.geometry.quality.bad_cell import BadCell
 from meshonet.geometry.quality.metrics import NAMES
 
 _TINY, _LARGE = 1e-300, 1e30  # in place of 0 in divisors; upper bound of ratios, as in the compiled metrics

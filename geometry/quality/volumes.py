@@ -16,7 +16,7 @@ from meshonet.geometry.arrays import Floats, Side, as_planar, norms, percentiles
 from meshonet.geometry.blocks.block import PLACES, Block
 from meshonet.geometry.blocks.connection import cells_at
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import BadCell
+from meshonet.geometry.quality.bad_cell import BadCell
 from meshonet.geometry.quality.cell_run import FEW, NONE, PERCENTS
 from meshonet.geometry.quality.metrics import SOLID_METRICS, SOLID_NAMES
 from meshonet.geometry.quality.surfaces import bad_cell

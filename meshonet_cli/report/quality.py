@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import BadCell
+from meshonet.geometry.quality.bad_cell import BadCell
 from meshonet.geometry.quality.blocks import LINES, BlockFigures
 from meshonet.geometry.quality.centres import centre_of
 from meshonet.geometry.quality.figures import Figures

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import BadCell, NoValidGridError, SolverError
+from meshonet.geometry.errors import NoValidGridError, SolverError
+from meshonet.geometry.quality.bad_cell import BadCell
 from meshonet.geometry.quality.measure import count_folded, worst_cells
 from meshonet.solvers.pipeline.methods import method_named
 from meshonet.solvers.solution import Outcome, Solution

@@ -23,7 +23,8 @@ from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import exp
-from meshonet.geometry.errors import BadCell, NoValidGridError
+from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.quality.bad_cell import BadCell
 from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, measure_volumes, worst_solids
 from meshonet.geometry.surface.hollows import Hollows, hollows_of
 from meshonet.geometry.surface.planes import Plane
