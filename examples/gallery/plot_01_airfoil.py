@@ -2,8 +2,8 @@
 An O grid around an airfoil
 ===========================
 
-Use this for inviscid flow around an airfoil, or for a first look at its shape. Without further parameters the
-grid is made by a conformal map.
+Use this script for inviscid flow around an airfoil, or for a first look at a shape. Without further parameters
+the grid is made by a conformal map.
 """
 
 import meshonet
@@ -12,7 +12,7 @@ grid = meshonet.grid("naca:2412", res=(121, 61))
 meshonet.plot(grid, "airfoil.png", zoom=(-0.4, 1.4, -0.6, 0.6))
 
 # %%
-# Every grid measures itself. No folded cell is returned without a word: ``grid`` raises an error instead.
+# Measure the quality of the grid. If a grid has folded cells, ``meshonet.grid`` raises an error.
 
 quality = grid.quality()
 print(f"folded cells: {quality.folded}")

@@ -2,8 +2,8 @@
 Quality against thickness
 =========================
 
-Use this as a pattern for studies in which a parameter of the shape varies: twelve airfoils, the worst angle
-of the grid around each.
+Use this script as a pattern for studies in which a parameter of the shape varies. Here the largest angle of the
+grid is computed for twelve airfoils of different thickness.
 """
 
 import matplotlib.pyplot as plt

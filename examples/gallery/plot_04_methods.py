@@ -2,9 +2,10 @@
 One duct, four methods
 ======================
 
-Use this to see what the methods do to a shape with four sides. Interpolation copies the walls into the duct;
-Winslow's equations smooth; Thomas and Middlecoff's control functions keep the spacing of the walls; the
-variational method minimises angles.
+Use this script to compare methods on a shape with four sides. With transfinite interpolation, grid lines have
+the shape of the walls, including their kinks. Winslow's equations give smooth grid lines. The control functions
+of Thomas and Middlecoff also keep the node spacing of the walls. The variational method gives angles close to
+90 degrees.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 A plate with holes
 ==================
 
-Use this for any domain that is not one block: it is split into blocks whose nodes match, and all are smoothed
-together. Thick lines in the picture are the sides of blocks.
+Use this script for domains that need several blocks. The domain is split into blocks with matching nodes, and
+all blocks are smoothed together. Thick lines in the picture are the sides of blocks.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ print(len(grid.blocks), "blocks,", len(grid.connections), "interfaces")
 print("patches:", ", ".join(sorted({patch.name for patch in grid.patches})))
 
 # %%
-# Layers at the walls, their first cells exact:
+# The same with layers at the walls; the first-cell height is exact:
 
 layers = meshonet.solve_pde(domain, cells=6000, first_cell=2e-3)
 meshonet.plot(layers, "layers.png", metric="aspect_ratio", zoom=(-1.5, -0.3, -0.6, 0.6))

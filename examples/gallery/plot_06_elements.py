@@ -2,8 +2,8 @@
 Two elements in one far field
 =============================
 
-Use this for a wing section with a flap, or for bodies beside each other. ``assemble`` makes one domain of the
-shapes.
+Use this script for an airfoil with a flap, or for several bodies in one far field. ``assemble`` combines the
+shapes into one domain.
 """
 
 import numpy as np

@@ -2,7 +2,7 @@
 The passage of a cascade
 ========================
 
-Use this for a row of blades. The periodic sides match node by node, so that a flow solver needs no
+Use this script for a plane row of blades. The nodes of the periodic sides match, so a flow solver needs no
 interpolation there.
 """
 

@@ -2,8 +2,8 @@
 A wing from two sections
 ========================
 
-Use this for the volume around a wing whose sections you know. The surface gets a closed tip and is marched to
-the far field.
+Use this script for the volume around a wing that is given by sections. The tip is closed, and the volume is
+marched from the surface to the far field.
 """
 
 import meshonet

@@ -2,8 +2,8 @@
 A pipe bend
 ===========
 
-Use this to carry a cross-section along a curve: a pipe, a coil, a duct. A circle becomes five blocks, without
-an axis on which cells lose a side.
+Use this script to sweep a cross-section along a curve: a pipe, a coil, a duct. A circle is divided into five
+blocks; a polar grid would have degenerate cells on the axis.
 """
 
 import numpy as np

@@ -2,8 +2,8 @@
 The passage of a blade row
 ==========================
 
-Use this for a rotor or a stator. The grid is made from profiles of one blade, hub and shroud; the guide to
-blade rows describes files of them.
+Use this script for a rotor or a stator. The grid is made from profiles of one blade, hub and shroud. The guide
+to blade rows describes files of profiles.
 """
 
 import numpy as np
@@ -33,7 +33,7 @@ passage = meshonet.stack(rotor, cells=60_000, first_cell=2e-3)
 meshonet.plot(passage, "row.png")
 
 # %%
-# From blade to blade near the hub, at half the span, and in the gap:
+# Sections from blade to blade: near the hub, at half span, and in the gap:
 
 meshonet.plot(passage, "spans.png", span=(0.05, 0.5, 0.99))
 

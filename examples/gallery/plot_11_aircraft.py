@@ -2,8 +2,8 @@
 A fuselage with wing and tail plane
 ===================================
 
-Use this for the volume around a body of revolution with wings. Each wing begins inside the body; where it
-leaves it is computed, and blocks match at the junctions.
+Use this script for the volume around a body of revolution with wings. Each wing begins inside the body. The
+program computes the line in which wing and body meet, and blocks match there.
 """
 
 import meshonet
@@ -18,6 +18,6 @@ grid = meshonet.stack(jet, around=49, span=9, first_cell=5e-3, growth=1.35, far_
 meshonet.plot(grid, "jet.png", up="y", seen_from=(-40, 25))
 
 # %%
-# The wings are walls with names of their own, for boundary conditions and forces:
+# Each wing is a wall with its own name, for boundary conditions and forces:
 
 print(sorted({patch.name for patch in grid.patches}))
