@@ -2,8 +2,8 @@
 An O grid around an airfoil
 ===========================
 
-Use this script for inviscid flow around an airfoil, or for a first look at a shape. Without further parameters
-the grid is made by a conformal map.
+Use this script for inviscid flow around an airfoil, or for a first look at a shape. Without further
+parameters the grid is made by a conformal map.
 """
 
 import meshonet

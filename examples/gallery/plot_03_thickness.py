@@ -2,8 +2,8 @@
 Quality against thickness
 =========================
 
-Use this script as a pattern for studies in which a parameter of the shape varies. Here the largest angle of the
-grid is computed for twelve airfoils of different thickness.
+Use this script as a pattern for studies in which a parameter of the shape varies. Here the largest angle of
+the grid is computed for twelve airfoils of different thickness.
 """
 
 import matplotlib.pyplot as plt

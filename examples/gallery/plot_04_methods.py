@@ -3,9 +3,9 @@ One duct, four methods
 ======================
 
 Use this script to compare methods on a shape with four sides. With transfinite interpolation, grid lines have
-the shape of the walls, including their kinks. Winslow's equations give smooth grid lines. The control functions
-of Thomas and Middlecoff also keep the node spacing of the walls. The variational method gives angles close to
-90 degrees.
+the shape of the walls, including their kinks. Winslow's equations give smooth grid lines. The control
+functions of Thomas and Middlecoff also keep the node spacing of the walls. The variational method gives
+angles close to 90 degrees.
 """
 
 import matplotlib.pyplot as plt

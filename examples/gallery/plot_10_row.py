@@ -2,8 +2,8 @@
 The passage of a blade row
 ==========================
 
-Use this script for a rotor or a stator. The grid is made from profiles of one blade, hub and shroud. The guide
-to blade rows describes files of profiles.
+Use this script for a rotor or a stator. The grid is made from profiles of one blade, hub and shroud. The
+guide to blade rows describes files of profiles.
 """
 
 import numpy as np

@@ -50,8 +50,8 @@ class BodySection:
     Raises
     ------
     InputError
-        A width without a height; sizes or an exponent out of range; points that do not begin and end in
-        z = 0, turn sharply, or cannot be seen from the middle between keel and crown.
+        A width without a height; sizes or an exponent out of range; points that do not begin and end at z =
+        0; an outline with a sharp corner; an outline that a ray from the middle meets twice.
 
     Examples
     --------

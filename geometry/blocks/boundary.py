@@ -52,7 +52,8 @@ class Boundary(Connected):
     west, east : array
         (nj, 2) nodes along eta.
     topology : {'quad', 'o', 'c'}, optional
-        Kind of grid. In a ``c`` boundary, the wake is the part of the south side that coincides with itself.
+        Kind of grid. The south side of a ``c`` boundary runs along the wake, around the body and back along
+        the wake; the nodes of the two wake parts coincide.
     patches : tuple of Patch, optional
         Named parts of the sides; empty: the patches of `default_patches`.
     name : str, optional

@@ -53,7 +53,7 @@ X_AXIS = AxisLine()
 
 @dataclass(frozen=True)
 class Revolution:
-    """How a planar grid is revolved about an axis.
+    """Options for revolving a planar grid about an axis.
 
     Parameters
     ----------

@@ -32,8 +32,8 @@ class Domain:
     periodic : tuple of Periodic, optional
         Pairs of periodic parts of the outer loop.
     heights, counts : mapping, optional
-        Prescribed first-cell heights and numbers of cells, by the name of a part of a loop. Parts with
-        different values are not symmetric to each other.
+        Prescribed first-cell heights and numbers of cells, by the name of a part of a loop. A line of
+        symmetry of the domain is used only if it takes each part to a part with the same values.
 
     Raises
     ------

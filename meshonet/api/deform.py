@@ -85,7 +85,7 @@ def rotation(degrees: float, about: Sequence[float] = (0.0, 0.0)) -> Motion:
     Parameters
     ----------
     degrees : float
-        Angle.
+        Angle in degrees, counter-clockwise.
     about : tuple of 2 float, optional
         Centre of the rotation.
 

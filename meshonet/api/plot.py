@@ -35,8 +35,8 @@ def plot(
     metric : str, optional
         Quality metric that colours the cells; None draws lines only.
     zoom : tuple of float, optional
-        Region to show: x0, x1, y0, y1, and for grids in space also z0, z1. For a slice, give six numbers for
-        a box or four for a rectangle in its plane. None: the whole grid.
+        Region to show: x0, x1, y0, y1, and for grids in space also z0, z1. For a slice, give
+        six numbers for a box or four numbers for a rectangle in the plane of the slice. None: the whole grid.
     every : int, optional
         Draw every K-th grid line; None: as many lines as can be distinguished.
     slice : str, optional

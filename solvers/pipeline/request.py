@@ -175,7 +175,7 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         Reference length of the Reynolds number, in the unit of `first_cell`. None: the chord of a body, the
         extent of the south side of a four-sided domain, or the extent of all holes of a multi-block domain.
     chord_fraction : float, optional
-        Position along the chord, 0 to 1, at which y+ is converted to a height.
+        Position along the reference length, from 0 to 1, at which y+ is converted to a height.
     growth : float, optional
         Largest growth ratio of cells away from the wall. If `sampling` has no `nj`, the number of rows
         follows from the growth ratio.
@@ -197,8 +197,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     initial : Grid, optional
         Initial grid.
     repair : bool, optional
-        Whether a grid with folded cells is repaired or made again by another method; if not, it is an error.
-        None: repaired, except grids of algebraic methods and raw grids of networks.
+        True: a grid with folded cells is repaired, or made again by another method. False: such a grid is an
+        error. None: True, except for algebraic methods and raw grids of networks.
     repair_margin : int, optional
         Width in cells of the region around folded cells in which the repair moves nodes.
     allow_invalid : bool, optional
@@ -210,8 +210,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     blocks : {'auto', 'single'}, optional
         ``single`` makes one block where ``auto`` would make several.
     cells : int, optional
-        Approximate number of cells of a multi-block grid. If this option, or one of the following options
-        down to `layout`, is given, the grid has several blocks.
+        Approximate number of cells of a multi-block grid. A grid has several blocks if one of `cells`,
+        `cell_size`, `count`, `pitch`, `inlet`, `outlet`, `layout` and `periodic` is given.
     cell_size : float, optional
         Edge length, instead of `cells`.
     walls : tuple of str, optional
