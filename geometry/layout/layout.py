@@ -37,7 +37,8 @@ class Layout:
         its south side, that are layers at a wall. The heights of these rows are prescribed, so the
         optimisation does not move them.
     fronts : tuple of int, optional
-        Numbers of the loops that are outer sides of layers instead of walls; these layers are added later.
+        Numbers of the loops that are not walls but the outer sides of layers. The cells of these layers are
+        added later.
     """
 
     mesh: QuadMesh

@@ -44,7 +44,7 @@ class Result:
     history : tuple of HistoryRow, optional
         Convergence history of the iteration, if the request asks for it.
     lines : Lines, optional
-        Grid lines of a multi-block grid, if a note needs their growth ratios.
+        Growth ratios along the grid lines of a multi-block grid, if a note of the report needs them.
     """
 
     solution: Solution
