@@ -21,16 +21,16 @@ import numpy as np
 import torch
 from clock import clocked
 from page import arguments, publish
-from shapes import random_airfoils, random_domains
+from shapes import random_airfoils, random_domains  # before the next: it finds the tests' folder
+
+from converged_o_grids import converged  # isort: skip
 
 import meshonet
 from meshonet import layer
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.tfi import tfi
-from meshonet.solvers.conformal.solve import solve as conformal
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
 
@@ -50,9 +50,9 @@ of one thread.
 
 TAIL = """
 The compiled variational solver stops before the optimum. There the distance is that from the nodes to which
-Newton's method on the compiled gradient moves them. Winslow's equations themselves fold grids at sharp
-corners; `solve-pde` repairs these. `conformal` refuses airfoils for which Picard's iteration has not settled
-after 12 steps; they are left out here.
+Newton's method on the compiled gradient moves them. Grids of `conformal` are compared with those of the
+compiled steps, repeated until they change nothing. Winslow's equations themselves fold grids at sharp
+corners; `solve-pde` repairs these.
 """
 
 FUNCTIONS = "transfinite,winslow,variational,conformal"
@@ -65,7 +65,7 @@ def exact(name: str, boundary: Boundary, nodes: Floats) -> Floats:
     if name == "winslow":
         return winslow(boundary, tol=1e-12, max_cycles=100).grid.nodes
     if name == "conformal":
-        return conformal([boundary], 12)[0].grid.nodes
+        return converged(boundary)
     grid = variational(boundary, tol=1e-8, max_cycles=1000).grid
     return meshonet.optimum_derivative(grid.with_nodes(nodes)).grid.nodes
 
@@ -80,20 +80,10 @@ def rows(count: int, n: int, functions: Sequence[str]) -> Iterator[str]:
         drawn, names = domains, ("south", "north", "west", "east")
         function: Callable[..., Any] = getattr(layer, name)
         if name == "conformal":
-            names, function = names[:2], lambda *sides: layer.conformal(*sides, n)
-            drawn = [b for b in airfoils if converges(function, b)]
+            drawn, names, function = airfoils, names[:2], lambda *sides: layer.conformal(*sides, n)
         for dtype in (torch.float64, torch.float32):
             sides = [torch.tensor(np.stack([getattr(b, side) for b in drawn]), dtype=dtype) for side in names]
             yield f"| `{name}` | {str(dtype)[-2:]} bits | {' | '.join(words(name, function, sides, drawn))} |"
-
-
-def converges(function: Callable[..., Any], body: Boundary) -> bool:
-    """Return whether there is a grid around a body."""
-    try:
-        function(torch.tensor(body.south), torch.tensor(body.north))
-    except MeshonetError:
-        return False
-    return True
 
 
 def words(

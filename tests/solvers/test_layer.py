@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from converged_o_grids import converged
 from random_quads import random_quad
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.families import procedural
 from meshonet.geometry.families.family import family
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
@@ -143,12 +145,25 @@ def test_single_precision_has_the_nodes_of_double_precision_rounded(function: An
     assert torch.equal(nodes(*single), nodes(*(side.double() for side in single)).float())
 
 
-def test_conformal_nodes_are_those_of_the_compiled_iteration() -> None:
-    sections = [naca(name).boundary(Sampling(81, 30, "o")) for name in ("2412", "4412-sharp", "23012")]
-    nodes = layer.conformal(*sides_of(sections)[:2], 30)
+def uneven() -> Boundary:
+    """Return an airfoil with nodes so uneven that 60 plain Picard steps change its grid."""
+    return procedural.boundary(np.random.default_rng(20_000_004), 33, 9)
+
+
+def test_conformal_nodes_are_those_of_the_converged_compiled_iteration() -> None:
+    sections = [naca(name).boundary(Sampling(33, 9, "o")) for name in ("2412", "4412-sharp", "23012")]
+    sections.append(uneven())
+    assert o_grids(sections[3:], 60)[0].residual > 1e-5
+    nodes = layer.conformal(*sides_of(sections)[:2], 9)
     for own, boundary in zip(nodes.numpy(), sections, strict=True):
-        exact = o_grids([boundary], polish=12)[0].grid.nodes
-        np.testing.assert_allclose(own, exact, rtol=0, atol=1e-12 * np.abs(boundary.north).max())
+        np.testing.assert_allclose(
+            own, converged(boundary), rtol=0, atol=1e-11 * np.abs(boundary.north).max()
+        )
+
+
+def test_gradients_of_a_slow_conformal_grid_are_those_of_finite_differences() -> None:
+    south, north = (side.requires_grad_() for side in sides_of([uneven()])[:2])
+    assert torch.autograd.gradcheck(lambda *sides: layer.conformal(*sides, 9), (south, north), fast_mode=True)
 
 
 def test_a_body_without_a_map_is_named() -> None:

@@ -4,32 +4,28 @@ The formulas are those of `meshonet.solvers.conformal.solve`; folded cells are n
 """
 
 from functools import partial
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import torch
 from torch import Tensor
-from torch.autograd.function import once_differentiable
 
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.conformal import strip
 from meshonet.solvers.conformal.bisector import LARGEST, fading, shifts
 from meshonet.solvers.conformal.evaluate import StripGrid
-from meshonet.solvers.conformal.solve import SETTLED
 from meshonet.solvers.conformal.strip import MODES, across, smoothing, wavenumbers
-from meshonet.solvers.elliptic.winslow import left_side
 from meshonet.solvers.neural.differentiable.arguments import batched, check_sides
 from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls
-from meshonet.solvers.neural.differentiable.members import MemberError
 from meshonet.solvers.neural.differentiable.recorded import recorded
 from meshonet.solvers.neural.differentiable.sides import as_numpy
+from meshonet.solvers.neural.differentiable.strip_limit import Settled, picard
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.registry import load
 from meshonet.solvers.neural.strip.encoding import decode, encode
 from meshonet.solvers.neural.strip.network import StripNetwork
 from meshonet.solvers.neural.strip.operator import StripOperator
 
-STEPS = 12  # of Picard's iteration; those before the last one leave some 1e-8 of the first change
 CLOSED = 1e-2  # what is left of an angle's difference (radians) where a corner counts as halved
 
 
@@ -76,7 +72,7 @@ class AirfoilGrids:
             c = Settled.apply(c)  # type: ignore[no-untyped-call]
         else:
             for _ in range(self._polish):
-                c = _picard(c)
+                c = picard(c)
         F = _evaluated(c, wall, far, nj)
         theta = _theta(F.shape[1], F)[:, None]
         planes = []
@@ -107,40 +103,9 @@ def conformal(south: Tensor, north: Tensor, nj: int) -> Tensor:
         A body without a conformal lift, with the index of the member; tensors of other shapes, of unequal
         counts or of different dtypes; `nj` below 2.
     SolverError
-        Picard's iteration does not converge for a member of the batch; the message has its index.
+        The equations of a member of the batch do not converge; the message has its index.
     """
     return AirfoilGrids("base", "converged", str(south.device))(south, north, nj)
-
-
-class Settled(torch.autograd.Function):
-    """From modes (batch, modes, LEVELS) to the limit of Picard's steps."""
-
-    @staticmethod
-    def forward(ctx: Any, c: Tensor) -> Tensor:
-        """Return the limit."""
-        for _ in range(STEPS):
-            before, c = c, _picard(c)
-        far = ~((c - before).abs().amax((1, 2)) < SETTLED)
-        if bool(far.any()):
-            problem = "Picard's iteration does not converge"
-            raise MemberError(int(far.nonzero()[0, 0]), problem, "use layer.AirfoilGrids, or another method")
-        ctx.save_for_backward(c)
-        return c
-
-    @staticmethod
-    @once_differentiable
-    def backward(ctx: Any, gradient: Tensor) -> Tensor:
-        """Return the derivative with respect to the modes that the iteration starts from.
-
-        Each step is taken at the limit. Those inside that converge lose their weight to those on the walls;
-        the highest ones, which are filtered, stay as they were.
-        """
-        with torch.enable_grad():
-            c = ctx.saved_tensors[0].detach().requires_grad_()
-            after = _picard(c)
-        for _ in range(STEPS):
-            (gradient,) = torch.autograd.grad(after, c, gradient, retain_graph=True)
-        return gradient
 
 
 def _lifted(member: int, z: Tensor, far: Tensor) -> TorchWalls:
@@ -176,26 +141,6 @@ class _Correction:
         channels, scalars, size = encode(wall, far, torch)
         modes: Tensor = decode(self._network(channels, scalars), self._basis, self._scale, size, torch)
         return modes
-
-
-def _picard(c: Tensor) -> Tensor:
-    """Return the modes (batch, modes, LEVELS) after a Picard step; see `strip.picard`."""
-    grid = across()
-    d1, d2, vectors, inverse = (
-        torch.tensor(m, device=c.device).to(c.dtype) for m in (grid.d1, grid.d2, grid.vectors, grid.inverse)
-    )
-    levels, k = c.mT, wavenumbers(c, torch)
-    T = (levels[:, -1, 0] - levels[:, 0, 0]).real[:, None, None]
-    stiffness = torch.tensor(grid.eigenvalues, device=c.device)[:, None] - (k * T) ** 2
-    smooth = torch.tensor(smoothing(), device=c.device) / stiffness
-    ce = d1 @ levels
-    parts = (1j * k * levels, -(k**2) * levels, ce, 1j * k * ce, d2 @ levels)
-    Wt, Wtt, We, Wte, Wee = (strip.to_columns(part, torch)[:, 1:-1] for part in parts)
-    Wt = Wt + 1j
-    missed, alpha, gamma = left_side((Wt, We, Wtt, Wte, Wee), lambda a, b: (torch.conj(a) * b).real)
-    residual = missed * (2.0 / (alpha / (T * T) + gamma))
-    update = vectors @ ((inverse @ strip.from_columns(residual, torch)) * smooth)
-    return (levels - torch.nn.functional.pad(update, (0, 0, 1, 1))).mT
 
 
 def _evaluated(c: Tensor, wall: Tensor, far: Tensor, nj: int) -> Tensor:

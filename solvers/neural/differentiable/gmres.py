@@ -1,5 +1,8 @@
 """GMRES for a batch of linear systems, each with its own Krylov space.
 
+Vectors are made orthogonal once, by classical Gram-Schmidt; what rounding leaves is seen at a restart, which
+computes the residual anew.
+
 Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856-869.
 """
 
@@ -41,10 +44,9 @@ def _cycle(times: Callable[[Tensor], Tensor], right: Tensor, goal: Tensor, most:
     turns: list[tuple[Tensor, Tensor]] = []
     for k in range(most):
         image, column = times(basis[:, k]), right.new_zeros(batch, k + 2)
-        for _ in range(2):  # orthogonal to rounding
-            parts = torch.bmm(basis[:, : k + 1], image[:, :, None])
-            image = image - torch.bmm(basis[:, : k + 1].mT, parts)[:, :, 0]
-            column[:, : k + 1] += parts[:, :, 0]
+        parts = torch.bmm(basis[:, : k + 1], image[:, :, None])
+        image = image - torch.bmm(basis[:, : k + 1].mT, parts)[:, :, 0]
+        column[:, : k + 1] = parts[:, :, 0]
         column[:, k + 1] = image.norm(dim=1)
         basis[:, k + 1] = image / column[:, k + 1, None].clamp_min(TINY)
         for i, turn in enumerate(turns):

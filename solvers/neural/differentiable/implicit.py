@@ -43,7 +43,7 @@ class Converged(torch.autograd.Function):
     @staticmethod
     def forward(equations: Equations, nodes: Tensor) -> tuple[Tensor, Tensor]:
         """Return the solution, and the number of each member."""
-        solution, number = _in_parts(equations.solve, equations.most(nodes), nodes)
+        solution, number = in_parts(equations.solve, equations.most(nodes), nodes)
         return solution, number
 
     @staticmethod
@@ -70,7 +70,7 @@ class Adjoint(torch.autograd.Function):
     @staticmethod
     def forward(equations: Equations, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
         """Return the derivative (batch, 2, ni, nj), zero at inner nodes."""
-        (result,) = _in_parts(
+        (result,) = in_parts(
             lambda *part: (equations.adjoint(*part),), equations.most(nodes), nodes, number, gradient
         )
         inner(result).zero_()
@@ -91,7 +91,7 @@ class Adjoint(torch.autograd.Function):
         return as_one_batch(Adjoint.apply, info.batch_size, in_dims, *inputs)
 
 
-def _in_parts(function: Callable[..., tuple[Tensor, ...]], most: int, *tensors: Tensor) -> tuple[Tensor, ...]:
+def in_parts(function: Callable[..., tuple[Tensor, ...]], most: int, *tensors: Tensor) -> tuple[Tensor, ...]:
     """Return the values of `function` for a batch, of which it is given at most `most` members at once."""
     parts = []
     for first in range(0, len(tensors[0]), max(most, 1)):

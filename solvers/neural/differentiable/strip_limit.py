@@ -1,0 +1,176 @@
+"""Winslow's equations in the periodic strip, in torch: Picard's step, and its limit with gradients.
+
+The formulas are those of `meshonet.solvers.conformal.strip`. Where nodes lie much closer than the circle's
+angles, thousands of plain steps would be needed; they are accelerated.
+"""
+
+from typing import Any
+
+import torch
+from torch import Tensor
+from torch.autograd.function import once_differentiable
+
+from meshonet.solvers.conformal import strip
+from meshonet.solvers.conformal.strip import across, wavenumbers
+from meshonet.solvers.elliptic.winslow import left_side
+from meshonet.solvers.neural.differentiable import anderson
+from meshonet.solvers.neural.differentiable.implicit import in_parts
+from meshonet.solvers.neural.differentiable.members import MemberError
+
+SETTLED = 1e-13  # change (radians) in a step at which a member has converged
+ADJOINT = 1e-10  # the same of the system for gradients, relative to the largest one
+MOST = 600  # accelerated steps at the most; random airfoils take up to 200
+TOGETHER = 8  # members solved at once on a CPU, so that they fit in its cache
+
+
+def picard(c: Tensor) -> Tensor:
+    """Return the modes (batch, modes, LEVELS) after a Picard step; see `strip.picard`."""
+    return _stepped(c.mT).mT
+
+
+class Settled(torch.autograd.Function):
+    """From modes (batch, modes, LEVELS), those of the start, to those that solve Winslow's equations.
+
+    The highest modes, which are filtered, remain near the start: a solution c is where
+    c = start + smoothing (Picard(c) - start), with a Picard step that is not filtered.
+    """
+
+    @staticmethod
+    def forward(ctx: Any, start: Tensor) -> Tensor:
+        """Return the limit. Raises MemberError: a member does not converge."""
+        (levels,) = in_parts(_limit, _together(start), start.mT.contiguous())
+        ctx.save_for_backward(start, levels)
+        return levels.mT
+
+    @staticmethod
+    @once_differentiable
+    def backward(ctx: Any, gradient: Tensor) -> Tensor:
+        """Return the derivative with respect to the start, by the limit of the steps' derivatives."""
+        start, levels = ctx.saved_tensors
+        (result,) = in_parts(_pulled, _together(start), start.mT.contiguous(), levels, gradient.mT)
+        return result.mT
+
+
+def _together(start: Tensor) -> int:
+    return len(start) if start.is_cuda else TOGETHER
+
+
+def _limit(start: Tensor) -> tuple[Tensor]:
+    """Return the limit of steps from levels `start` (batch, LEVELS, modes)."""
+
+    def step(inner: Tensor, members: Tensor) -> Tensor:
+        return _flat(_once(_levels(inner), start[members]))
+
+    flat = _flat(start[:, 1:-1])
+    inner, reached = anderson.limit(step, flat, torch.full_like(flat[:, 0], SETTLED), MOST)
+    if not bool(reached.all()):
+        problem, remedy = "Winslow's equations did not converge", "use layer.AirfoilGrids, or another method"
+        raise MemberError(int((~reached).nonzero()[0, 0]), problem, remedy)
+    return (torch.cat([start[:, :1], _levels(inner), start[:, -1:]], 1),)
+
+
+def _pulled(start: Tensor, levels: Tensor, gradient: Tensor) -> tuple[Tensor]:
+    """Return the derivative with respect to `start`, from that with respect to the limit, `levels`."""
+    first, slope = _flat(gradient[:, 1:-1]), _Slope(levels)
+
+    def step(flat: Tensor, members: Tensor) -> Tensor:
+        return first[members] + _flat(slope.transposed(_levels(flat), members))
+
+    share, _ = anderson.limit(step, first, ADJOINT * first.abs().amax(1), MOST)
+    with torch.enable_grad():
+        walls = start.detach().requires_grad_()
+        after = _once(levels[:, 1:-1], walls)
+    (result,) = torch.autograd.grad(after, walls, _levels(share))
+    result[:, [0, -1]] += gradient[:, [0, -1]]
+    return (result,)
+
+
+class _Slope:
+    """The derivative of a step by the levels inside, at `levels` (batch, LEVELS, modes)."""
+
+    def __init__(self, levels: Tensor) -> None:
+        self._fields = fields = _Fields(levels)
+        half = 0.5 * fields.scale**2 * fields.missed
+        self._alpha = fields.scale * fields.Wtt - half / fields.height**2
+        self._beta = -2.0 * fields.scale * fields.Wte
+        self._gamma = fields.scale * fields.Wee - half
+        self._second = [fields.scale * part for part in (fields.alpha, -2.0 * fields.beta, fields.gamma)]
+
+    def transposed(self, share: Tensor, members: Tensor) -> Tensor:
+        """Return the transposed derivative, of some `members`, times `share` (m, LEVELS - 2, modes)."""
+        grid, fields = across(), self._fields
+        filtered = _product(grid.vectors.T, share) * fields.smooth[members]
+        r = strip.to_columns(_product(grid.inverse.T, filtered), torch)
+        Wt, We = fields.Wt[members], fields.We[members]
+        by_alpha, by_beta, by_gamma = (
+            _dot(r, part[members]) for part in (self._alpha, self._beta, self._gamma)
+        )
+        t, e = 2.0 * by_gamma * Wt + by_beta * We, 2.0 * by_alpha * We + by_beta * Wt
+        tt, te, ee = (part[members] * r for part in self._second)
+        t, tt, e, te, ee = (strip.from_columns(part, torch) for part in (t, tt, e, te, ee))
+        k = wavenumbers(share, torch)
+        inside = slice(1, -1)
+        back = _product(grid.d1[inside, inside].T, e - 1j * k * te) + _product(grid.d2[inside, inside].T, ee)
+        return _filter(share) * share - (back - 1j * k * t - k**2 * tt)
+
+
+def _once(inner: Tensor, start: Tensor) -> Tensor:
+    """Return the levels inside after a step from `inner`, with the walls and the high modes of `start`."""
+    levels = torch.cat([start[:, :1], inner, start[:, -1:]], 1)
+    return _stepped(levels)[:, 1:-1] + (1.0 - _filter(start)) * (start[:, 1:-1] - inner)
+
+
+def _stepped(levels: Tensor) -> Tensor:
+    """Return levels (batch, LEVELS, modes) after a Picard step."""
+    grid, fields = across(), _Fields(levels)
+    residual = strip.from_columns(fields.missed * fields.scale, torch)
+    update = _product(grid.vectors, _product(grid.inverse, residual) * fields.smooth)
+    return levels - torch.nn.functional.pad(update, (0, 0, 1, 1))
+
+
+class _Fields:
+    """Derivatives of W, and terms of Winslow's equations, at the columns of the levels inside."""
+
+    def __init__(self, levels: Tensor) -> None:
+        grid, k = across(), wavenumbers(levels, torch)
+        self.height = T = (levels[:, -1, 0] - levels[:, 0, 0]).real[:, None, None]
+        self.smooth = _filter(levels) / (_like(grid.eigenvalues, levels)[:, None] - (k.real * T) ** 2)
+        inner, ce = levels[:, 1:-1], _product(grid.d1[1:-1], levels)
+        parts = (1j * k * inner, -(k**2) * inner, ce, 1j * k * ce, _product(grid.d2[1:-1], levels))
+        Wt, self.Wtt, self.We, self.Wte, self.Wee = (strip.to_columns(part, torch) for part in parts)
+        self.Wt = Wt + 1j
+        derivatives = self.Wt, self.We, self.Wtt, self.Wte, self.Wee
+        self.missed, self.alpha, self.gamma = left_side(derivatives, _dot)
+        self.scale = 2.0 / (self.alpha / (T * T) + self.gamma)
+
+    @property
+    def beta(self) -> Tensor:
+        """The scalar product of the first derivatives."""
+        return _dot(self.Wt, self.We)
+
+
+def _filter(like: Tensor) -> Tensor:
+    return _like(across().smooth, like)
+
+
+def _like(values: Any, like: Tensor) -> Tensor:
+    return torch.tensor(values, device=like.device)
+
+
+def _dot(a: Tensor, b: Tensor) -> Tensor:
+    return a.real * b.real + a.imag * b.imag
+
+
+def _product(matrix: Any, levels: Tensor) -> Tensor:
+    """Return a real matrix times complex levels (batch, m, modes)."""
+    pairs = torch.view_as_real(levels.contiguous()).flatten(2)
+    return torch.view_as_complex((_like(matrix, levels) @ pairs).unflatten(2, (-1, 2)))
+
+
+def _flat(levels: Tensor) -> Tensor:
+    """Return complex levels (batch, m, modes) as real values (batch, n)."""
+    return torch.view_as_real(levels.contiguous()).flatten(1)
+
+
+def _levels(flat: Tensor) -> Tensor:
+    return torch.view_as_complex(flat.view(len(flat), -1, 2 * strip.MODES + 1, 2))
