@@ -10,14 +10,11 @@ from dataclasses import dataclass, replace
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
+from meshonet.solvers.algebraic.resample.grids import check_coarse, refine_grid, thinned
 from meshonet.solvers.pipeline.methods import METHODS
 from meshonet.solvers.pipeline.wrapper import Wrapper
 from meshonet.solvers.solution import Solution
-
-LEAST_NODES = 9  # fewest coarse nodes along a direction that describe anything
 
 
 @dataclass(frozen=True)
@@ -42,8 +39,7 @@ def solve_coarse(
     those of `boundary` bitwise; residual and cycles are those of the coarse solution. Raises InputError: n <
     9.
     """
-    if n < LEAST_NODES:
-        raise InputError(f"{n} coarse nodes along a direction are too few", f"use at least {LEAST_NODES}")
+    check_coarse(n)
     counts = min(n, boundary.ni), min(n, boundary.nj)
     if counts == (boundary.ni, boundary.nj):
         return solve(boundary)

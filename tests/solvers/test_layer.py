@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -23,13 +25,15 @@ from meshonet.solvers.derivatives.optimum import OptimumDerivative
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.energy.functional import Weights, value
 from meshonet.solvers.energy.variational import solve as least
+from meshonet.solvers.pipeline.coarse import solve_coarse
 
 torch = pytest.importorskip("torch")
 from meshonet import layer  # noqa: E402 - it imports torch
 from meshonet.solvers.neural.differentiable.block_cholesky import BlockCholesky  # noqa: E402
 from meshonet.solvers.neural.differentiable.functional import Functional, aspect_of  # noqa: E402
 
-QUADS = (layer.transfinite, layer.winslow, layer.variational, layer.QuadGrids())
+LIFTED = partial(layer.winslow, coarse=9), partial(layer.variational, coarse=9)
+QUADS = (layer.transfinite, layer.winslow, layer.variational, layer.QuadGrids(), *LIFTED)
 NETWORKS = layer.BodyGrids(), layer.AirfoilGrids()
 AROUND = (layer.conformal, *NETWORKS)
 NAMES = ("south", "north", "west", "east")
@@ -105,7 +109,8 @@ def test_variational_systems_are_those_of_twofold_differentiation(counts: tuple[
 def inputs(function: Any, count: int) -> tuple[Any, list[Any]]:
     """Return the function of the sides alone, and sides of `count` members."""
     if function in QUADS:
-        return function, sides_of(domains(9, 8, 2 * count)[:count])
+        counts = (14, 11) if function in LIFTED else (9, 8)
+        return function, sides_of(domains(*counts, 2 * count)[:count])
     names = ("2412", "4412-sharp", "23012", "0024", "6409", "1408", "2424", "0010-sharp")[:count]
     sections = [naca(name).boundary(Sampling(25, 6, "o", far_field=3.0)) for name in names]
     if function in (layer.conformal, NETWORKS[1]):
@@ -143,6 +148,34 @@ def test_single_precision_has_the_nodes_of_double_precision_rounded(function: An
     single = [side.float() for side in given]
     assert nodes(*single).dtype == torch.float32
     assert torch.equal(nodes(*single), nodes(*(side.double() for side in single)).float())
+
+
+@pytest.mark.parametrize(("ni", "nj"), [(40, 33), (21, 12)])
+def test_coarse_optima_are_lifted_as_the_compiled_ones(ni: int, nj: int) -> None:
+    some = domains(ni, nj, 6)
+    for own, boundary in zip(layer.variational(*sides_of(some), coarse=12).numpy(), some, strict=True):
+        solution = solve_coarse(boundary, most_exactly, 12, smooth=False)
+        np.testing.assert_allclose(own, solution.grid.nodes, rtol=0, atol=1e-10)
+
+
+def most_exactly(boundary: Boundary) -> Any:
+    """Return the compiled minimum, moved by Newton's method on the compiled slope."""
+    solution = least(boundary, tol=1e-8, max_cycles=1000)
+    return replace(solution, grid=OptimumDerivative(solution.grid).grid)
+
+
+def test_coarse_winslow_grids_are_lifted_as_the_compiled_ones() -> None:
+    some = domains(40, 33, 8)
+    for own, boundary in zip(layer.winslow(*sides_of(some), coarse=17).numpy(), some, strict=True):
+        exact = solve_coarse(boundary, lambda few: solve(few, tol=1e-12, max_cycles=60), 17, smooth=False)
+        np.testing.assert_allclose(own, exact.grid.nodes, rtol=0, atol=1e-10)
+
+
+def test_few_coarse_nodes_are_refused_and_many_change_nothing() -> None:
+    given = sides_of(domains(10, 9, 4))
+    with pytest.raises(InputError, match=r"8 coarse nodes along a direction are too few"):
+        layer.winslow(*given, coarse=8)
+    assert torch.equal(layer.winslow(*given, coarse=10), layer.winslow(*given))
 
 
 def uneven() -> Boundary:

@@ -9,10 +9,19 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Topology, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.elementary import product
+from meshonet.geometry.errors import InputError
 from meshonet.solvers.algebraic.resample import corner_damping, quad
 from meshonet.solvers.algebraic.resample.o_grid import refine_around
 from meshonet.solvers.algebraic.resample.spline import between
 from meshonet.solvers.iteration import put_edges
+
+LEAST_NODES = 9  # fewest coarse nodes along a direction that describe anything
+
+
+def check_coarse(n: int) -> None:
+    """Raise InputError if `n` coarse nodes along a direction are too few."""
+    if n < LEAST_NODES:
+        raise InputError(f"{n} coarse nodes along a direction are too few", f"use at least {LEAST_NODES}")
 
 
 def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:

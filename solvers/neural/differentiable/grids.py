@@ -1,11 +1,15 @@
 """Functions from the four sides of a batch of domains to the nodes of its grids, with gradients."""
 
 from collections.abc import Callable
+from functools import partial
 
 from torch import Tensor
 
+from meshonet.solvers.algebraic.resample.grids import check_coarse
 from meshonet.solvers.neural.differentiable.arguments import batched, check_corners, check_sides
 from meshonet.solvers.neural.differentiable.implicit import Converged, Equations
+from meshonet.solvers.neural.differentiable.recorded import recorded
+from meshonet.solvers.neural.differentiable.resample import between, refined
 from meshonet.solvers.neural.differentiable.transfinite import Sides, arc_lengths, interpolated
 from meshonet.solvers.neural.differentiable.variational import Optimum
 from meshonet.solvers.neural.differentiable.winslow import Winslow
@@ -28,7 +32,7 @@ def transfinite(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Ten
     return _four_sided(lambda sides: interpolated(sides, arc_lengths(sides)), south, north, west, east)
 
 
-def winslow(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
+def winslow(south: Tensor, north: Tensor, west: Tensor, east: Tensor, *, coarse: int | None = None) -> Tensor:
     """Return the nodes (..., ni, nj, 2) that solve Winslow's equations, to rounding.
 
     Gradients are those of the solution, by one linear system for each backward pass.
@@ -36,19 +40,24 @@ def winslow(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
     Parameters
     ----------
     south, north, west, east : as in `transfinite`.
+    coarse : int, optional
+        Solve on at most this number of nodes along a direction, and interpolate the grid to all nodes of the
+        sides, as ``--coarse`` does, without its sweeps near kinks.
 
     Raises
     ------
     InputError
-        As `transfinite`.
+        As `transfinite`, and for `coarse` below 9.
     SolverError
         The equations of a member of the batch did not converge, or it has a coordinate that is not
         finite; the message has its index.
     """
-    return _solved(Winslow(), south, north, west, east)
+    return _solved(Winslow(), coarse, south, north, west, east)
 
 
-def variational(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
+def variational(
+    south: Tensor, north: Tensor, west: Tensor, east: Tensor, *, coarse: int | None = None
+) -> Tensor:
     """Return the nodes (..., ni, nj, 2) at the optimum of the variational functional, to rounding.
 
     The compiled solver computes the starts on the CPU. Gradients are those of the optimum, by one linear
@@ -57,35 +66,55 @@ def variational(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Ten
     Parameters
     ----------
     south, north, west, east : as in `transfinite`.
+    coarse : int, optional
+        As in `winslow`: 65 makes all grids cheap, at the price of an optimum between the coarse nodes.
 
     Raises
     ------
     InputError
-        As `transfinite`, and for more than about 400 x 400 nodes, whose systems need too much memory.
+        As `winslow`, and for more than about 400 x 400 nodes to solve on, whose systems need too much memory.
     SolverError
         No grid without folded cells was found for a member of the batch, or it has a coordinate that is
         not finite; the message has its index.
     """
-    return _solved(Optimum(), south, north, west, east)
+    return _solved(Optimum(), coarse, south, north, west, east)
 
 
-def _solved(equations: Equations, *given: Tensor) -> Tensor:
+def _solved(equations: Equations, coarse: int | None, *given: Tensor) -> Tensor:
     def make(sides: Sides) -> Tensor:
         start = interpolated(sides, arc_lengths(sides))
         nodes: Tensor = Converged.apply(equations, start)[0]  # type: ignore[no-untyped-call]
         return nodes
 
-    return _four_sided(make, *given)
+    if coarse is None:
+        return _four_sided(make, *given)
+    check_coarse(coarse)
+
+    def lifted(sides: Sides) -> Tensor:
+        few = tuple(between(side, min(coarse, side.shape[-1])) for side in sides)
+        nodes = make(few)
+        return refined(nodes, sides) if coarse < max(side.shape[-1] for side in sides) else nodes
+
+    return _four_sided(lifted, *given, decides=True)
 
 
 def _four_sided(
-    make: Callable[[Sides], Tensor], south: Tensor, north: Tensor, west: Tensor, east: Tensor
+    make: Callable[[Sides], Tensor],
+    south: Tensor,
+    north: Tensor,
+    west: Tensor,
+    east: Tensor,
+    *,
+    decides: bool = False,
 ) -> Tensor:
-    """Return the nodes (..., ni, nj, 2); `make` takes sides (batch, 2, n) and returns (batch, 2, ni, nj)."""
+    """Return the nodes (..., ni, nj, 2); `make` takes sides (batch, 2, n) and returns (batch, 2, ni, nj).
+
+    `decides`: it takes decisions by the values of tensors.
+    """
     check_sides(3, south=south, north=north, west=west, east=east)
     check_corners(south, north, west, east)
 
     def nodes(*sides: Tensor) -> Tensor:
         return make(tuple(side.movedim(-1, 1) for side in sides)).movedim(1, -1)
 
-    return batched(nodes, (south, north, west, east))
+    return batched(partial(recorded, nodes) if decides else nodes, (south, north, west, east))

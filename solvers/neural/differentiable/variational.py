@@ -47,7 +47,7 @@ class Optimum:
         ni, nj = nodes.shape[2:]
         if storage(ni, nj) > LARGEST:
             problem = f"the optimum of {ni} x {nj} nodes needs factors of {storage(ni, nj) / 1e9:.0f} GB"
-            raise InputError(problem, "use fewer nodes, or layer.winslow")
+            raise InputError(problem, "use coarse=129, fewer nodes, or layer.winslow")
         return FACTORS[nodes.is_cuda] // storage(*nodes.shape[2:])
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
