@@ -2,39 +2,57 @@
 
 from __future__ import annotations
 
-import importlib.util
-import re
+import importlib
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
 import pytest
+
+from meshonet.formats.registry import read_grids
 
 pytest.importorskip("torch")
 
 
 @pytest.fixture
 def script(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    path = Path(__file__).parents[1] / "benchmarks" / "bench_gpu.py"
-    spec = importlib.util.spec_from_file_location("bench_gpu", path)
-    assert spec is not None
-    assert spec.loader is not None
-    monkeypatch.syspath_prepend(path.parent)  # where what scripts share is
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    monkeypatch.syspath_prepend(Path(__file__).parents[1] / "benchmarks")
+    return importlib.import_module("bench_gpu")
 
 
-def test_it_measures_every_operator_and_model(script: ModuleType, tmp_path: Path) -> None:
+def test_it_measures_every_function_operator_and_model(script: ModuleType, tmp_path: Path) -> None:
     page = script.main(["--device", "cpu", "--quick", "--page", str(tmp_path / "gpu.md")])
-    rows = [line for line in page.splitlines() if line.startswith("| `")]
-    layers = ["quad-general", "winslow", "variational", "quad-general", "winslow"]
-    names = [re.findall(r"`([^`]+)`", row)[0] for row in rows]
-    assert names == [*script.FAMILIES, *layers, *script.TRAINED]
-    assert all(float(row.split("|")[4]) > 0 for row in rows[:8])
-    assert all(row.split("|")[7].strip() == "yes" for row in rows[3:8])
-    assert all(float(row.split("|")[5]) > 0 for row in rows[8:])
+    rows = [[cell.strip() for cell in line.split("|")] for line in page.splitlines() if line[:3] == "| `"]
+    layers, operators, training = rows[:10], rows[10:13], rows[13:]
+    functions = ["quad-general", "winslow", "variational", "quad-general", "winslow"]
+    assert [row[1] for row in layers] == [f"`{name}`" for name in functions for _ in range(2)]
+    assert [row[3] for row in layers] == ["2", "4"] * 3 + ["1"] * 4
+    assert all(float(row[4]) > 0 and row[7] == "yes" for row in layers)
+    assert all(float(row[5]) > 0 for row in layers[:6])
+    assert [row[1] for row in operators] == [f"`{name}`" for name in script.FAMILIES]
+    assert all(float(row[4]) > 0 for row in operators)
+    assert [row[1] for row in training] == [
+        f"`{name}`" for name in ("meshonet", "fno2d", "quad") for _ in range(3)
+    ]
+    assert [row[3:5] for row in training] == [["off", "off"], ["on", "off"], ["off", "on"]] * 3
+    assert all(float(row[5]) > 0 and float(row[7]) > 0 for row in training), "amp and compile too"
     assert "TOO FAR" not in page
+    assert "left out" not in page
     assert (tmp_path / "gpu.md").read_text(encoding="utf-8") == page
+
+
+def test_what_does_not_fit_into_the_time_is_left_out(script: ModuleType) -> None:
+    extent = replace(script.QUICK, limit=0.0, trainings=replace(script.QUICK.trainings, shapes=2))
+    left = script.Time(0.0)
+    rows = [*script.layer_rows("cpu", extent, left), *script.operator_rows("cpu", extent, left)]
+    assert sum("left out" in row for row in rows) == len(rows) - 4 == 13
+
+
+def test_the_trainings_of_a_gpu_are_those_that_the_models_take(script: ModuleType, tmp_path: Path) -> None:
+    """The quad operator takes grids of 33 x 33 nodes only, whatever the others are trained on."""
+    files = importlib.import_module("device_training").datasets(tmp_path, 6, 41)
+    sizes = [[next(iter(read_grids(file))).ni for file in files[name]] for name in ("meshonet", "quad")]
+    assert sizes == [[41], [33, 33]]
 
 
 def test_without_a_gpu_the_page_says_so(script: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:

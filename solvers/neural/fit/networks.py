@@ -92,6 +92,7 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
             rim_factor(*answer.shape[-2:], self.around), dtype=answer.dtype, device=answer.device
         )
         answer = answer * rim
+        answer = answer.to(torch.promote_types(answer.dtype, torch.float32))  # bfloat16 with --amp
         return torch.complex(answer[:, 0::2].contiguous(), answer[:, 1::2].contiguous())
 
     def layer(

@@ -133,6 +133,13 @@ def test_weights_of_no_part_are_refused(
         train("quad", given, tmp_path / "m", SMALL, ALONE, held_out=4, weights=weights, recipe={})
 
 
+def test_products_in_bfloat16_train_too(given: Quads, tmp_path: Path) -> None:
+    """`--amp`: there are no complex numbers of that precision."""
+    last = fit(given, tmp_path / "quad.safetensors", replace(SMALL, amp=True))[-1]
+    plain = fit(given, tmp_path / "plain.safetensors")[-1]
+    assert last.loss == pytest.approx(plain.loss, rel=0.05)
+
+
 def test_the_same_seed_gives_the_same_weights_cut_or_not(given: Quads, tmp_path: Path) -> None:
     whole, cut, other = (tmp_path / f"{name}.safetensors" for name in ("whole", "cut", "other"))
     expected = fit(given, whole)
