@@ -217,10 +217,10 @@ def page(rows: list[Row]) -> str:
 NOTE = """Read this page before choosing `--batch` and `--points` of `meshonet train --model meshonet`. The
 settings are explained in [paper models](../theory/paper-models.md).
 
-The model `meshonet` is trained on 30 arches of 101 x 101 nodes; times are CPU times of one thread. The
-published scheme processes one geometry per step. Whether it uses all grid points or a random sample of
-them is not known, so both were measured. Losses are over all points of all grids, after the stated number
-of geometries: median (minimum to maximum) over the seeds."""
+The model `meshonet` is trained on 30 arches of 101 x 101 nodes. Times are CPU times of one thread. The
+published scheme processes one geometry per step. It is not known whether it uses all grid points or a random
+sample of them, so the table has both. The loss is that of all points of all grids, after the stated number
+of geometries. With several random seeds it is the median (minimum to maximum)."""
 
 
 if __name__ == "__main__":

@@ -7,17 +7,25 @@ can be looked at while it goes on.
 from __future__ import annotations
 
 import argparse
-import csv
-import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from statistics import mean, pstdev
 from typing import Any
 
 import words
+from claims import lowest, quality_claims, speed_claims
+from results import (
+    FAMILIES,
+    RACERS,
+    SPLITS,
+    finished,
+    one,
+    raced,
+    read_log,
+    summary,
+    table,
+)
 
-FAMILIES = ("arch", "hexagon", "wrench", "semicircle", "airfoil", "hole")
-SPLITS = ("interpolation", "extrapolation", "random")
 WAYS = (
     ("tfi", "TFI"),
     ("pde", "PDE (Winslow)"),
@@ -28,11 +36,6 @@ WAYS = (
     ("meshonet-hard.valid", "MeshONet-hard, repaired (`infer`)"),
 )
 DELIVERED = ("meshonet.valid", "meshonet-hard.valid")
-RACERS = (
-    "meshonet", "meshonet-hard", "deeponet", "pod-deeponet", "fno1d", "fno2d", "wno", "kno", "lno", "mionet",
-)  # fmt: skip
-BASELINES = ("deeponet", "pod-deeponet", "fno1d", "fno2d")
-NEWER = ("wno", "kno", "lno")
 PHYSICS = (
     ("mgnet", "Winslow's equations and the boundary (`mgnet`)"),
     ("mgnet-finite", "the same, derivatives by central differences (`finite=0.01`)"),
@@ -51,7 +54,14 @@ def main() -> None:
     options = parser.parse_args()
     pages: Path = options.pages
     results = pages / "results"
-    parts = [words.HEAD, options.note, words.STANDS, lowest(results), words.CLAIMS, claims(results)]
+    parts = [
+        words.HEAD,
+        options.note,
+        words.STANDS,
+        lowest(results),
+        quality_claims(results),
+        speed_claims(results),
+    ]
     parts += [words.QUALITY, *quality(results), words.RACE, race(results, pages)]
     parts += [shelf(results), words.PHYSICS, physics(results)]
     parts += [words.TIME.format(machine=options.machine), times(results), words.MAPS, maps(pages)]
@@ -81,45 +91,6 @@ def quality(results: Path) -> Iterable[str]:
             yield f"### {family}\n\n{words.PAPER[family]}\n\n{table(head, rows)}"
 
 
-def claims(results: Path) -> str:
-    """Return what the figures say of the paper's claims about quality, a row a case and split."""
-    rows = []
-    for family in FAMILIES:
-        for split in SPLITS:
-            ways = ("tfi", "pde", "meshonet.pasted", "meshonet-hard.raw", *DELIVERED)
-            found = {way: summary(results / f"{family}.{split}.{way}.json") for way in ways}
-            if not all(found[way] for way in ways[:3]):
-                continue
-            angles = {way: told["max_angle"]["mean"] for way, told in found.items() if told}
-            folded = {way: told["folded"]["sum"] for way, told in found.items() if told}
-            paper = "meshonet.pasted"
-            told = [
-                "below"
-                if angles[paper] < angles[way] - 0.1
-                else "above"
-                if angles[paper] > angles[way] + 0.1
-                else "equal"
-                for way in ("tfi", "pde")
-            ]
-            cells = [f"{folded[way]:.0f}" if way in folded else "-" for way in ways[2:]]
-            rows.append([family, split, *told, *cells])
-    head = [
-        "case",
-        "split",
-        "max angle against TFI",
-        "against PDE",
-        "folded, boundary pasted",
-        "folded, MeshONet-hard",
-        "repaired, MeshONet",
-        "repaired, MeshONet-hard",
-    ]
-    if not rows:
-        return ""
-    below = [sum(row[k] == "below" for row in rows) for k in (2, 3)]
-    count = f"It is below TFI's in {below[0]} of {len(rows)} cases, and below the PDE solver's in {below[1]}."
-    return f"{count}\n\n{table(head, rows)}"
-
-
 def figures(told: dict[str, Any]) -> list[str]:
     """Return a row's figures of a summary."""
     folded = told["folded"]
@@ -130,44 +101,6 @@ def figures(told: dict[str, Any]) -> list[str]:
         f"{told['mean_angle']['mean']:.1f}",
         f"{folded['sum']:.0f} ({folded['members']} of {told['members']})",
     ]
-
-
-def lowest(results: Path) -> str:
-    """Return whether MeshONet's loss is the least of a race, in one sentence a case."""
-    sentences = []
-    for case in raced(results):
-        logs = {name: finished(results, case, name) for name in RACERS}
-        last = {name: [read_log(path)[-1]["mean_square"] for path in found] for name, found in logs.items()}
-        last = {name: found for name, found in last.items() if found and name != "meshonet-hard"}
-        if "meshonet" not in last:
-            continue
-        means = {name: mean(found) for name, found in last.items()}
-        order = sorted(means, key=means.__getitem__)
-        below = [name for name in order if name in BASELINES and means[name] < means["meshonet"]]
-        known = sum(name in means for name in BASELINES)
-        verdict = (
-            f"is above that of {len(below)} of {known} baselines" if below else "is the lowest, as claimed"
-        )
-        newer = [name for name in NEWER if name in means]
-        if newer:
-            fewer = sum(means[name] < means["meshonet"] for name in newer)
-            verdict += f", and above that of {fewer} of {len(newer)} newer operators ({', '.join(newer)})"
-        figures = ", ".join(f"{name} {means[name]:.1e} ± {pstdev(last[name]):.0e}" for name in order)
-        sentences.append(
-            f"**Loss on one budget** ({case}): MeshONet's {verdict}. Mean square error: {figures}."
-        )
-    return words.LOWEST + "\n\n".join(sentences) if sentences else ""
-
-
-def finished(results: Path, case: str, model: str) -> list[Path]:
-    """Return the logs of the runs of a model that have been evaluated."""
-    logs = sorted(results.glob(f"{case}.{model}.race*.csv"))
-    return [log for log in logs if log.with_suffix(".json").exists()]
-
-
-def raced(results: Path) -> list[str]:
-    """Return the cases of which there are races."""
-    return sorted({path.name.rsplit(".", 2)[0].rsplit(".", 1)[0] for path in results.glob("*.race*.json")})
 
 
 def race(results: Path, pages: Path) -> str:
@@ -219,7 +152,7 @@ def shelf(results: Path) -> str:
         cells = []
         for model in models:
             errors = own.get(model, [])
-            text = f"{mean(errors):.1e} ± {pstdev(errors):.0e}" if len(errors) > 1 else "-"
+            text = f"{mean(errors):.1e} ± {pstdev(errors):.0e}" if errors else "-"
             cells.append(f"**{text}**" if errors and mean(errors) == least else text)
         rows.append([family, split, *cells])
     counts = [
@@ -253,18 +186,6 @@ def physics(results: Path) -> str:
             rows.append([learns, f"{error:.1e}", f"{away:.0e}", f"{angle:.1f}", f"{folded:.0f}", *spent])
     head = ["learns from", "relative L2", "boundary error", "max angle", "folded cells", "steps", "seconds"]
     return table(head, rows) if rows else ""
-
-
-def read_log(path: Path) -> list[dict[str, float]]:
-    """Return the rows of a log; ``mean_square`` weighs the parts of the loss as the baselines do."""
-    weights = {"interior": 1.0, "boundary": 1.0}
-    if ".meshonet.race" in path.name:
-        weights = {"interior": 1 / 900.0, "boundary": 1 / 1000.0}
-    with path.open(encoding="utf-8") as file:
-        rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
-    for row in rows:
-        row["mean_square"] = sum(row[part] * weights[part] for part in weights if part in row)
-    return rows
 
 
 def draw(curves: dict[str, list[list[dict[str, float]]]], path: Path) -> None:
@@ -324,25 +245,6 @@ def budgets(results: Path) -> str:
             last = log[-1]
             rows.append([path.stem, f"{last['epoch']:.0f}", f"{last['seen']:,.0f}", f"{last['seconds']:.0f}"])
     return table(["run", "epochs", "shapes seen", "seconds (of the last process)"], rows) if rows else ""
-
-
-def summary(path: Path) -> dict[str, Any]:
-    """Return a summary that `quality --summary --json` wrote, nothing when there is none."""
-    return one(path).get("summary", {})
-
-
-def one(path: Path) -> dict[str, Any]:
-    """Return the JSON object of a file, nothing when there is none."""
-    if not path.exists() or not path.read_text(encoding="utf-8").strip():
-        return {}
-    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8").splitlines()[-1])
-    return found
-
-
-def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a table in Markdown."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
 if __name__ == "__main__":
