@@ -34,12 +34,13 @@ LONGEST = {"off | off": 20.0, "on | off": 20.0, "off | on": 75.0}
 
 @dataclass(frozen=True)
 class Trainings:
-    """What is trained: shapes of n x n nodes, epochs, and the number of batch sizes of each model."""
+    """What is trained: shapes of n x n nodes, epochs, batch sizes of a model, models that are compiled."""
 
     shapes: int = 260
     nodes: int = 65
     epochs: int = 12
     sizes: int = 2
+    compiled: tuple[str, ...] = tuple(TRAINED)
 
 
 def datasets(folder: Path, count: int, n: int) -> dict[str, list[str]]:
@@ -62,7 +63,8 @@ def training_rows(device: Device, folder: Path, extent: Trainings, left: Time) -
     yield "| --- | --- | --- | --- | --- | --- | --- | --- |"
     for model, batches in TRAINED.items():
         for batch in batches[: extent.sizes]:
-            ways = WAYS if batch == batches[0] else list(WAYS)[:2]  # compiling takes longest
+            compiled = batch == batches[0] and model in extent.compiled
+            ways = WAYS if compiled else list(WAYS)[:2]
             plan = {"epochs": extent.epochs, "batch": min(batch, extent.shapes - 4)}
             plain: tuple[float, float] | None = None
             for way in ways:
