@@ -31,8 +31,10 @@ class LoftedBody(Body):
     The attributes ``meridian`` and ``y`` describe a similar body of revolution: the radius of a section is
     the mean of half the width and half the height, and the axis passes through the middle of the largest
     section. Between sections that are far apart, the meridian has further points. At the arc length s of the
-    meridian and the angle theta, a point of the surface is (x, middle - up * shape * cos(theta), across *
-    shape * sin(theta)). Next to the nose and the tail, cross-sections are ellipses.
+    meridian and the angle theta, a point of the surface is
+    (x, middle - up * shape * cos(theta), across * shape * sin(theta)). Here ``across`` is half the width of
+    the section, ``up`` half the height, ``middle`` the y of the middle (see `sizes`), and ``shape`` is 1 for an
+    ellipse. Next to the nose and the tail, cross-sections are ellipses.
 
     Parameters
     ----------

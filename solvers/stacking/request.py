@@ -26,7 +26,7 @@ class StackRequest(FirstCell):
     Parameters
     ----------
     around : int, optional
-        Number of nodes around a section; odd, and the first node counts twice. None: 129.
+        Number of nodes around a section, an odd number; the closing node is counted. None: 129.
     span : int, optional
         Number of nodes from the first section to the last. None: 49.
     cells : int, optional
