@@ -25,10 +25,11 @@ def test_it_measures_every_function_operator_and_model(script: ModuleType, tmp_p
     page = script.main(["--device", "cpu", "--quick", "--page", str(tmp_path / "gpu.md")])
     lines = [line for line in page.splitlines() if line[:3] == "| `"]
     rows = [[cell.strip() for cell in line.split("|")] for line in lines]
-    layers, operators, training = rows[:10], rows[10:13], rows[13:]
-    functions = ["quad-general", "winslow", "variational", "quad-general", "winslow"]
+    layers, operators, training = rows[:14], rows[14:17], rows[17:]
+    functions = ["quad-general", "winslow", "variational"]
+    functions += ["quad-general", "winslow", "winslow, coarse=65", "variational, coarse=65"]
     assert [row[1] for row in layers] == [f"`{name}`" for name in functions for _ in range(2)]
-    assert [row[3] for row in layers] == ["2", "4"] * 3 + ["1"] * 4
+    assert [row[3] for row in layers] == ["2", "4"] * 3 + ["1"] * 8
     assert all(float(row[4]) > 0 and row[7] == "yes" for row in layers)
     assert all(float(row[5]) > 0 for row in layers[:6])
     assert [row[1] for row in operators] == [f"`{name}`" for name in script.FAMILIES]
@@ -45,7 +46,7 @@ def test_what_does_not_fit_into_the_time_is_left_out(script: ModuleType) -> None
     extent = replace(script.QUICK, limit=0.0, trainings=replace(script.QUICK.trainings, shapes=2))
     left = script.Time(0.0)
     rows = [*script.layer_rows("cpu", extent, left), *script.operator_rows("cpu", extent, left)]
-    assert sum("left out" in row for row in rows) == len(rows) - 4 == 13
+    assert sum("left out" in row for row in rows) == len(rows) - 4 == 17
 
 
 def test_the_trainings_of_a_gpu_are_those_that_the_models_take(script: ModuleType, tmp_path: Path) -> None:
