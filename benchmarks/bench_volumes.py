@@ -1,6 +1,7 @@
 """Volumes inside six faces: time beside a copy of the nodes, and quality of the methods.
 
-    python benchmarks/bench_volumes.py [--domains 50] [--largest 257] [--page docs/benchmarks/volumes.md]
+    python benchmarks/bench_volumes.py [--domains 50] [--largest 257] [--networks 4] [--epochs 500]
+      [--page docs/benchmarks/volumes.md]
 
 Times are processor seconds of one thread, the least of several runs; a copy is one into memory in use.
 Angles are deviations from 90 degrees, the worst of the three at a corner; SJ is the scaled corner Jacobian.
@@ -8,20 +9,24 @@ Angles are deviations from 90 degrees, the worst of the three at a corner; SJ is
 
 from __future__ import annotations
 
+import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import count
+from pathlib import Path
 
 import numpy as np
 from clock import clocked
 from page import arguments, publish
 
+import meshonet
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.threads import limited_to
+from meshonet.solvers.neural.volumes.network import infer_volume
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.volumes.interpolate import interpolate
 from meshonet.solvers.volumes.laws import arc_laws, mean_laws, uniform_laws
@@ -40,6 +45,18 @@ compares them with the time of copying the nodes into memory that is already all
 counts the largest deviation from 90 degrees of its three angles. SJ is the scaled Jacobian at the
 corners.
 """
+
+NETWORKS = """## A network: 3DMeshNet
+
+`train --model meshnet` trains a 3DMeshNet for each of the first {count} of these domains, with {epochs} steps
+(15,000 by default), default settings and seed 0. The training is part of the CPU time. The faces of the network
+miss the given ones by {off} % of the size of the domain (largest distance, median). They are replaced by the
+given ones (`infer --answer pasted`). *Repaired* is the output of `infer` by default.
+"""
+
+METHODS: dict[str, Callable[[SixFaces], Solution]] = {
+    "interpolation": tfi, "Winslow": winslow, "variational": variational,
+}  # fmt: skip
 
 
 def random_faces(seed: int, n: int, size: float = 0.06) -> SixFaces:
@@ -118,45 +135,84 @@ def times(sizes: list[int]) -> str:
     return "\n".join(lines)
 
 
-def domains(number: int, n: int) -> str:
-    """Return the table of random domains whose faces do not fold cells by themselves."""
-    methods: dict[str, Callable[[SixFaces], Solution]] = {
-        "interpolation": tfi, "Winslow": winslow, "variational": variational,
-    }  # fmt: skip
-    found: dict[str, list[tuple[float, ...]]] = {name: [] for name in methods}
-    refused = 0
-    for seed in count(1000):
-        faces = random_faces(seed, n)
-        row = {}
-        try:
-            for name in reversed(methods):
-                begun = time.process_time()
-                nodes = methods[name](faces).grid.nodes
-                row[name] = (time.process_time() - begun, *quality(nodes))
-        except InputError:
-            refused += 1
-            continue
-        for name, values in row.items():
-            found[name].append(values)
-        if len(found["Winslow"]) == number:
-            break
-    table = {name: np.array(rows) for name, rows in found.items()}
-    lines = [f"{number} random domains of {n}³ nodes ({refused} more are refused: their faces fold cells).\n"]
-    lines += [
+def measured(method: Callable[[SixFaces], Solution], faces: SixFaces) -> tuple[float, ...]:
+    """Return processor seconds and `quality` of a method's grid."""
+    begun = time.process_time()
+    nodes = method(faces).grid.nodes
+    return (time.process_time() - begun, *quality(nodes))
+
+
+def table(found: dict[str, list[tuple[float, ...]]]) -> list[str]:
+    """Return a table of what `measured` gave for each method."""
+    lines = [
         "| method | valid | minimum SJ, median | deviation: mean / 99 %, medians | CPU s: median / 90 % |"
     ]
     lines += ["| --- | --- | --- | --- | --- |"]
-    for name, rows in table.items():
-        spent, folded, sj, mean, high = rows.T
+    for name, rows in found.items():
+        spent, folded, sj, mean, high = np.array(rows).T
         middle = f"{np.median(sj):.3f} | {np.median(mean):.1f} / {np.median(high):.1f}"
         seconds = f"{np.median(spent):.3f} / {np.quantile(spent, 0.9):.3f}"
-        lines.append(f"| {name} | {int((folded == 0).sum())} of {number} | {middle} | {seconds} |")
-    own, other = table["variational"], table["Winslow"]
+        lines.append(f"| {name} | {int((folded == 0).sum())} of {len(rows)} | {middle} | {seconds} |")
+    return lines
+
+
+def domains(number: int, n: int) -> tuple[str, list[SixFaces]]:
+    """Return the table of random domains whose faces do not fold cells by themselves, and these."""
+    found: dict[str, list[tuple[float, ...]]] = {name: [] for name in METHODS}
+    chosen: list[SixFaces] = []
+    refused = 0
+    for seed in count(1000):
+        faces = random_faces(seed, n)
+        try:
+            row = {name: measured(METHODS[name], faces) for name in reversed(METHODS)}
+        except InputError:
+            refused += 1
+            continue
+        chosen.append(faces)
+        for name, values in row.items():
+            found[name].append(values)
+        if len(chosen) == number:
+            break
+    lines = [f"{number} random domains of {n}³ nodes ({refused} more are refused: their faces fold cells).\n"]
+    lines += table(found)
+    own, other = (np.array(found[name]) for name in ("variational", "Winslow"))
     worse = int(((own[:, 2] < other[:, 2] - 1e-9) | (own[:, 3] > other[:, 3])).sum())
     lines.append(
         f"\nMean deviation or minimum SJ are worse than those of Winslow's grid in {worse} of {number}."
     )
-    return "\n".join(lines)
+    return "\n".join(lines), chosen
+
+
+def networks(chosen: Sequence[SixFaces], epochs: int) -> str:
+    """Return the table of 3DMeshNet, trained for each of the domains, beside the solvers."""
+    with tempfile.TemporaryDirectory() as folder:
+        files, model = [], str(Path(folder, "model.safetensors"))
+        for k, faces in enumerate(chosen):
+            files.append(Path(folder, f"{k}.vts"))
+            tfi(faces).grid.write(files[-1])
+        begun = time.process_time()
+        meshonet.train(files, model, model="meshnet", epochs=epochs, seed=0)
+        training = (time.process_time() - begun) / len(chosen)
+        answers: dict[str, Callable[[SixFaces], Solution]] = {
+            "3DMeshNet, given faces": partial(infer_volume, model=model, answer="pasted"),
+            "3DMeshNet, repaired": partial(infer_volume, model=model),
+        }
+        found = {
+            name: [measured(act, faces) for faces in chosen] for name, act in (METHODS | answers).items()
+        }
+        off = [_off(infer_volume(faces, model=model, answer="raw").grid.nodes, faces) for faces in chosen]
+    for name in answers:
+        found[name] = [(spent + training, *rest) for spent, *rest in found[name]]
+    head = NETWORKS.format(count=len(chosen), epochs=epochs, off=f"{100 * np.median(off):.1f}")
+    return "\n".join([head, *table(found)])
+
+
+def _off(nodes: Floats, faces: SixFaces) -> float:
+    """Return the largest distance of outer nodes from the given faces, relative to the largest extent."""
+    own = SixFaces.of_block(nodes).faces
+    pairs = zip(own, faces.faces, strict=True)
+    size = max(np.ptp(np.concatenate([face.reshape(-1, 3) for face in faces.faces]), axis=0))
+    return float(max(np.linalg.norm(a - b, axis=-1).max() for a, b in pairs) / size)
 
 
 def main() -> None:
@@ -164,10 +220,14 @@ def main() -> None:
     parser = arguments(__doc__)
     parser.add_argument("--domains", type=int, default=50)
     parser.add_argument("--largest", type=int, default=257)
+    parser.add_argument("--networks", type=int, default=4, help="domains for which 3DMeshNet is trained")
+    parser.add_argument("--epochs", type=int, default=500)
     chosen = parser.parse_args()
     with limited_to(1):
-        parts = [times([n for n in (129, 257) if n <= chosen.largest]), domains(chosen.domains, 33)]
-    publish(f"{HEAD}\n## Time\n\n{parts[0]}\n\n## Quality\n\n{parts[1]}\n", chosen.page)
+        spent = times([n for n in (129, 257) if n <= chosen.largest])
+        found, faces = domains(chosen.domains, 33)
+        learnt = networks(faces[: chosen.networks], chosen.epochs)
+    publish(f"{HEAD}\n## Time\n\n{spent}\n\n## Quality\n\n{found}\n\n{learnt}\n", chosen.page)
 
 
 if __name__ == "__main__":
