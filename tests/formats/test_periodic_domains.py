@@ -14,6 +14,7 @@ from periodic_domains import BOTH, HEIGHT, LENGTH, write_bank
 from simple_foam import converged
 
 import meshonet
+from meshonet.geometry.blocks.grid import Grid
 
 VISCOSITY = 0.02
 SIDES = '"left|right|bottom|top" { type cyclic; } frontAndBack { type empty; }'
@@ -44,18 +45,26 @@ def made(file: Path, name: str, *words: str) -> Path:
     return path
 
 
-def test_an_option_says_what_the_property_does(file: Path) -> None:
+@pytest.fixture(scope="module")
+def bank(file: Path) -> Grid:
+    """The grid of the file, made once."""
+    grid = meshonet.read(made(file, "property.h5"))
+    assert isinstance(grid, Grid)
+    return grid
+
+
+def test_an_option_says_what_the_property_does(file: Path, bank: Grid) -> None:
     write_bank(file.parent / "plain.geojson", None)
     pairs = [word for pair in BOTH for word in ("--periodic", ",".join(pair))]
-    by_option = made(file.parent / "plain.geojson", "option.h5", *pairs)
-    own, other = (meshonet.read(path) for path in (made(file, "property.h5"), by_option))
-    assert own.connections == other.connections
-    for block, like in zip(own.blocks, other.blocks, strict=True):
+    other = meshonet.read(made(file.parent / "plain.geojson", "option.h5", *pairs))
+    assert bank.connections == other.connections
+    for block, like in zip(bank.blocks, other.blocks, strict=True):
         np.testing.assert_array_equal(block.nodes, like.nodes)
 
 
-def test_gmsh_has_the_pairs_with_their_nodes(file: Path) -> None:
-    mesh = meshio.read(made(file, "bank.msh"))
+def test_gmsh_has_the_pairs_with_their_nodes(bank: Grid, tmp_path: Path) -> None:
+    bank.write(tmp_path / "bank.msh")
+    mesh = meshio.read(tmp_path / "bank.msh")
     assert len(mesh.gmsh_periodic) == 2
     for (_, _, affine, pairs), shift in zip(mesh.gmsh_periodic, ((LENGTH, 0), (0, HEIGHT)), strict=True):
         moved, master = mesh.points[pairs[:, 0]], mesh.points[pairs[:, 1]]
@@ -63,8 +72,9 @@ def test_gmsh_has_the_pairs_with_their_nodes(file: Path) -> None:
         np.testing.assert_array_equal(np.reshape(affine, (4, 4))[:2, 3], shift)
 
 
-def test_su2_has_the_line_of_its_configuration(file: Path) -> None:
-    text = made(file, "bank.su2").read_text().splitlines()
+def test_su2_has_the_line_of_its_configuration(bank: Grid, tmp_path: Path) -> None:
+    bank.write(tmp_path / "bank.su2")
+    text = (tmp_path / "bank.su2").read_text().splitlines()
     assert text[1] == (
         "% MARKER_PERIODIC= ( left, right, 0, 0, 0, 0, 0, 0, 2, 0, 0, "
         "bottom, top, 0, 0, 0, 0, 0, 0, 0, 1.2, 0 )"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import subprocess
 from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -58,7 +59,7 @@ class Su2:
 
     @staticmethod
     def _rows(lines: Iterator[str], count: int, kind: type) -> np.ndarray:
-        return np.array([next(lines).split() for _ in range(count)], dtype=kind)
+        return np.array(" ".join(islice(lines, count)).split(), dtype=kind).reshape(count, -1)
 
     def on(self, marker: str) -> np.ndarray:
         """Points on a marker."""
