@@ -33,8 +33,8 @@ class LoftedBody(Body):
     section. Between sections that are far apart, the meridian has further points. At the arc length s of the
     meridian and the angle theta, a point of the surface is
     (x, middle - up * shape * cos(theta), across * shape * sin(theta)). Here ``across`` is half the width of
-    the section, ``up`` half the height, ``middle`` the y of the middle (see `sizes`), and ``shape`` is 1 for an
-    ellipse. Next to the nose and the tail, cross-sections are ellipses.
+    the section, ``up`` half the height, ``middle`` the y of the middle (see `sizes`), and ``shape`` is 1
+    for an ellipse. Next to the nose and the tail, cross-sections are ellipses.
 
     Parameters
     ----------
