@@ -49,9 +49,9 @@ corners.
 NETWORKS = """## A network: 3DMeshNet
 
 `train --model meshnet` trains a 3DMeshNet for each of the first {count} of these domains, with {epochs} steps
-(15,000 by default), default settings and seed 0. The training is part of the CPU time. The faces of the network
-miss the given ones by {off} % of the size of the domain (largest distance, median). They are replaced by the
-given ones (`infer --answer pasted`). *Repaired* is the output of `infer` by default.
+(15,000 by default), default settings and seed 0. The training is part of the CPU time. The faces of the
+network miss the given ones by {off} % of the size of the domain (largest distance, median).
+They are replaced by the given ones (`infer --answer pasted`). *Repaired* is the output of `infer` by default.
 """
 
 METHODS: dict[str, Callable[[SixFaces], Solution]] = {

@@ -10,12 +10,15 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from yardstick.files import read_boundaries, read_grids, read_plot3d, write_boundaries, write_grids
 from yardstick.judge import judge, summary
+from yardstick.networks import OPERATORS, PHYSICS, answered, trained
 from yardstick.shapes import BODIES, KINDS, Shape, shapes
+from yardstick.words import HEAD, TAIL
 
 from meshonet.formats.registry import read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.measure import measure
 from meshonet.solvers.algebraic.tfi import tfi
+from meshonet.solvers.neural.models.architectures import ARCHITECTURES
 
 FOLDER = Path(__file__).parents[1] / "benchmarks"
 PROGRAM = """
@@ -130,3 +133,24 @@ def test_transfinite_surfaces_of_gmsh_are_structured_and_keep_the_boundary(tmp_p
     subprocess.run([sys.executable, script, tmp_path / "in.h5", tmp_path / "out.h5"], check=True)
     figures = judge(drawn[0], read_grids(tmp_path / "out.h5")["wavy-0"])
     assert (figures.folded, figures.boundary) == (0, 0.0)
+
+
+def test_every_network_that_can_be_trained_has_entered() -> None:
+    assert (*OPERATORS, *PHYSICS) == tuple(ARCHITECTURES)
+    page = (FOLDER.parent / "docs" / "benchmarks" / "yardstick.md").read_text(encoding="utf-8")
+    for model in ARCHITECTURES:
+        for what in ("four-sided", "body"):
+            assert f"| {what} | meshonet train --model {model} | " in page
+    assert page.startswith(HEAD.format(count=20, seed=1))
+    assert page.endswith(TAIL)
+
+
+def test_networks_are_trained_and_asked_for_the_shapes_of_a_file(tmp_path: Path) -> None:
+    pytest.importorskip("torch")
+    drawn = list(shapes("wavy", 1, 2, 17, 17))
+    write_boundaries(tmp_path / "wavy.h5", drawn)
+    network = trained(tmp_path / "trained", "quad", "pod-deeponet", shapes=6, epochs=1)
+    assert trained(tmp_path / "trained", "quad", "pod-deeponet") == network, "kept"
+    answered(tmp_path / "wavy.h5", tmp_path / "one.h5", "mgnet", steps=1)
+    assert list(read_grids(tmp_path / "one.h5")) == ["wavy-0"], "a network for one geometry"
+    assert judge(drawn[0], read_grids(tmp_path / "one.h5")["wavy-0"]).boundary == 0.0

@@ -26,6 +26,7 @@ from page import publish
 
 from yardstick.files import read_boundaries, read_grids, write_boundaries
 from yardstick.judge import summary
+from yardstick.networks import OPERATORS, PHYSICS, trained
 from yardstick.shapes import BODIES, KINDS, shapes
 from yardstick.words import HEAD, TAIL
 
@@ -46,6 +47,7 @@ ENTRIES = {f"meshonet {name}": words for name, words in _OURS.items()} | {
     "Gmsh transfinite, 50 smoothing steps": f"{_GMSH} 50",
 }
 """The first entries: what is called for each kind of shape."""
+_ASKED = f"{PYTHON} -m meshonet_cli infer {{boundaries}} -o {{grids}} -q --model"
 ONLY = {"quad-general": "quad", "quad-winslow": "quad", "hole-o": "o", "airfoil-o": "o"}
 """Topology of the networks."""
 
@@ -73,12 +75,30 @@ def main() -> None:
     else:
         if options.command == "entries":
             draw(folder, options.seed, options.count)
-            for name, program in ENTRIES.items():
-                topology = ONLY.get(name.rpartition(" ")[2])
-                run(folder, name, program, [k for k in KINDS if topology in (None, _topology(k))])
+            for name, program, kinds in entries(folder):
+                print(f"{name}: {', '.join(kinds)}", file=sys.stderr)
+                run(folder, name, program, kinds)
         table = "\n".join(judged(folder))
         head = HEAD.format(count=options.count, seed=options.seed)
         publish(f"{head}\n{table}\n{TAIL}" if options.page else table, options.page)
+
+
+def entries(folder: Path) -> Iterator[tuple[str, str, list[str]]]:
+    """Yield name, program and kinds of shapes of the entries of this repository and of Gmsh.
+
+    Networks are trained before their turn, and kept in `folder`.
+    """
+    for name, program in ENTRIES.items():
+        topology = ONLY.get(name.rpartition(" ")[2])
+        yield name, program, [kind for kind in KINDS if topology in (None, _topology(kind))]
+    for model in OPERATORS:
+        for topology in NODES:
+            network = shlex.quote(str(trained(folder / "trained", topology, model)))
+            program = f"{_ASKED} {network} --answer pasted --allow-invalid"
+            yield f"meshonet train --model {model}", program, [k for k in KINDS if _topology(k) == topology]
+    for model in PHYSICS:
+        program = f"{PYTHON} {shlex.quote(str(HERE / 'networks.py'))} {{boundaries}} {{grids}} {model}"
+        yield f"meshonet train --model {model}", program, list(KINDS)
 
 
 def draw(folder: Path, seed: int, count: int, *, plot3d: bool = False) -> None:
@@ -130,12 +150,13 @@ def _row(folder: Path, own: Path, kinds: list[str]) -> str:
     told = summary(drawn, grids)
     if "largest" not in told:
         return ""
+    made = told["shapes"] - told["missing"]
     return " | ".join([
-        (own / "name").read_text(encoding="utf-8"), f"{told['shapes'] - told['missing']} of {told['shapes']}",
+        (own / "name").read_text(encoding="utf-8"), f"{made} of {told['shapes']}",
         f"{told['folded_grids']} ({told['folded_cells']})",
         f"{told['largest_mean']:.1f} / {told['largest']:.1f}",
         f"{told['smallest']:.1f}", f"{told['skew']:.1f}", f"{told['boundary']:.0e}",
-        f"{1e3 * seconds / len(drawn):.0f}" if seconds else "-",
+        f"{1e3 * seconds / made:.0f}" if seconds else "-",
     ])  # fmt: skip
 
 

@@ -5,35 +5,51 @@ HEAD = """# A comparison that is open to other programs
 <!-- made by python benchmarks/yardstick entries build/yardstick --page docs/benchmarks/yardstick.md -->
 
 Use this page to compare a program that makes structured grids with the ones below, on shapes that none of them was
-made for. Shapes, judge and files are in `benchmarks/yardstick`: a few hundred lines that need NumPy and h5py, and nothing
-of meshonet.
+made for. The shapes, the judge and the files are in `benchmarks/yardstick`. They need NumPy and h5py, and nothing of
+meshonet.
 
-Nine kinds of shapes are drawn by seed, here {count} of each with seed {seed}: four-sided domains with 65 x 65 nodes (`wavy`,
-`sector`, `duct`, `bumps`, `kinked`, `lens`) and bodies with 65 x 33 nodes (`star`, `slab`, `section`). The boundary nodes are
-given. *Folded* are grids, and in brackets cells, with a corner whose Jacobian is not positive. Angles are included angles of
-cells in degrees. *Skew* is the mean over cells of the largest deviation of an angle from 90 degrees. The boundary error is
-relative to the size of the shape. Milliseconds are processor time of the whole command per shape; the start of the program
-is part of it.
+There are nine kinds of random shapes, here {count} of each, drawn with seed {seed}. Six kinds are four-sided domains with
+65 x 65 nodes: `wavy`, `sector`, `duct`, `bumps`, `kinked` and `lens`. Three are bodies with 65 x 33 nodes: `star`, `slab`
+and `section`. The boundary nodes are given.
+
+- *Grids*: the number of shapes for which there is a grid.
+- *Folded*: grids, and in brackets cells, with a corner whose Jacobian is not positive.
+- *Largest angle*, *least angle*: included angles of cells, in degrees.
+- *Skew*: the largest deviation of a cell's angles from 90 degrees, mean over the cells.
+- *Boundary error*: the largest distance of a boundary node from the given one, relative to the size of the shape.
+- *ms*: milliseconds of processor time of the whole command, start included, divided by the number of grids.
 
 | shapes | program | grids | folded | largest angle, mean / worst | least angle | skew | boundary error | ms |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
 
 TAIL = """
-Folded cells are repaired by `meshonet`, except with `--no-repair`. Networks that are trained on one family of shapes, such as those of [the paper](paper/index.md), are not among the entries: they answer
-shapes of their family only.
+`meshonet` repairs folded cells, except with `--no-repair` and in the rows `meshonet train`.
+
+These rows are the [networks of the MeshONet paper](../theory/paper-models.md) and the operators with which they are
+compared. Each operator is trained twice, with its default settings, seed 0 and 15 epochs: on 600 four-sided domains with
+33 x 33 nodes, and on 576 bodies with 65 x 33 nodes. The latter are those of 600 for which Winslow's equations converge. An
+operator so sees 9,000 shapes in 300 steps, as in
+[the table of every model on every case](paper/index.md#every-model-on-every-case). The grids for training are Winslow's, for
+random shapes of `sample-boundary --family four-sided` and `--family bodies`. None of the nine kinds is among them. The
+boundary nodes of an answer are replaced by the given ones, as in the paper (`infer --answer pasted`), and folded cells stay.
+Almost all of their grids are folded: they have learnt little in 300 steps, and the shapes here have other sizes and places
+than those they learnt from. On one family of shapes their errors are those of [the paper's page](paper/index.md).
+
+`mgnet` and `meshnet` learn one geometry each. They are trained for the first shape of each kind only, with 500 steps;
+the training is part of their time.
 
 ## How to enter
 
-1. Draw the shapes. Every kind is one file, `build/yardstick/KIND.h5`, with the arrays `south`, `north` (n, ni, 2), `west`,
-   `east` (n, nj, 2) and `names`. With `--plot3d` there is also a folder `KIND` with a 2D ASCII Plot3D file for each shape,
-   whose four blocks are the sides. Around a body, south is the body, clockwise, and north the far field; west and east are
-   the same cut, which may move.
+1. Draw the shapes. Each kind is a file `build/yardstick/KIND.h5` with the arrays `south`, `north` (n, ni, 2), `west`, `east`
+   (n, nj, 2) and `names`. With `--plot3d` each kind is also a folder `KIND`. It has a 2D ASCII Plot3D file for each shape, whose
+   four blocks are the sides. For a body, south is the body, clockwise, and north the far field. West and east are the same
+   cut between them, whose nodes may move.
 
        python benchmarks/yardstick shapes build/yardstick --seed 1
 
-2. Run your program. It gets the file (or, with `--plot3d`, the folder) of the boundaries and the path of the grids to write:
-   a `.h5` file with `nodes` (n, ni, nj, 2) and `names`, or a folder of Plot3D files with the names of the shapes. Shapes that
-   your program cannot do may be left out.
+2. Run your program. It gets two paths: that of the boundaries, and that of the grids to write. Grids are a `.h5` file with
+   `nodes` (n, ni, nj, 2) and `names`, or with `--plot3d` a folder of Plot3D files with the names of the shapes. Leave out
+   shapes that your program cannot do.
 
        python benchmarks/yardstick run build/yardstick 'My program 1.0' 'myprogram --in {boundaries} --out {grids}'
 
@@ -41,6 +57,7 @@ shapes of their family only.
 
        python benchmarks/yardstick judge build/yardstick
 
-Use another seed to check that a result does not hang on these shapes. `gmsh_transfinite.py` is an entry of 90 lines to start
-from.
+With another `--seed` you see whether a result depends on these shapes. `gmsh_transfinite.py` is an entry of 80 lines to start
+from. The table above is made by `python benchmarks/yardstick entries build/yardstick`, which keeps the trained networks in
+`build/yardstick/trained`.
 """
