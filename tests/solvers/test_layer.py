@@ -206,6 +206,46 @@ def test_a_body_without_a_map_is_named() -> None:
         layer.conformal(south, north, 6)
 
 
+@pytest.mark.parametrize("function", QUADS + AROUND)
+def test_grids_of_any_size_are_those_of_unit_size(function: Any) -> None:
+    nodes, given = inputs(function, 2)
+    for size in (2.0**-500, 2.0**500):
+        scaled = [(side * size).requires_grad_() for side in given]
+        found = nodes(*scaled)
+        torch.testing.assert_close(found.detach() / size, nodes(*given), rtol=0, atol=1e-11)
+        (found / size).sum().backward()
+        assert all(bool(side.grad.isfinite().all()) for side in scaled)
+
+
+@pytest.mark.parametrize("function", QUADS + AROUND)
+def test_an_empty_batch_has_no_grids(function: Any) -> None:
+    nodes, given = inputs(function, 1)
+    none = [side[:0].requires_grad_() for side in given]
+    found = nodes(*none)
+    assert found.shape == (0, *nodes(*given).shape[1:])
+    found.sum().backward()
+    assert none[0].grad.shape == none[0].shape
+
+
+@pytest.mark.parametrize("function", QUADS + AROUND)
+def test_grids_are_made_in_inference_mode_too(function: Any) -> None:
+    nodes, given = inputs(function, 1)
+    with torch.inference_mode():
+        found = nodes(*given)
+    torch.testing.assert_close(found, nodes(*given), rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("function", QUADS + AROUND)
+def test_one_side_may_have_a_gradient_alone_and_any_memory_layout(function: Any) -> None:
+    nodes, given = inputs(function, 2)
+    for k in range(len(given)):
+        some = [side.mT.contiguous().mT.requires_grad_(i == k) for i, side in enumerate(given)]
+        every = [side.clone().requires_grad_() for side in given]
+        for sides in (some, every):
+            nodes(*sides).square().sum().backward()
+        torch.testing.assert_close(some[k].grad, every[k].grad, rtol=1e-9, atol=1e-9)
+
+
 def test_sides_keep_their_nodes_and_dtype() -> None:
     given = [side.float() for side in sides_of(domains(17, 9, 3))]
     nodes = layer.winslow(*given)
@@ -242,6 +282,7 @@ def test_a_member_without_a_solution_is_named(function: Any) -> None:
     [
         (lambda s: s[0].__getitem__((slice(None), slice(None, -1))), "opposite sides need equal counts"),
         (lambda s: s[0].float(), "of one type on one device"),
+        (lambda s: s[0].long(), r"south is torch\.int64; give floating-point numbers"),
         (lambda s: s[0][..., :1], "n at least 3"),
         (lambda s: s[0][:2], "different batches"),
     ],

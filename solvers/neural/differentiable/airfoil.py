@@ -58,7 +58,7 @@ class AirfoilGrids:
         """
         check_sides(4, nj, south=south, north=north)
         make = partial(recorded, partial(self._nodes, nj=nj))
-        return batched(make, (south, north), device=self._device)
+        return batched(make, (south, north), nj, device=self._device)
 
     def _nodes(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
         edges = [torch.complex(edge[:, :-1, 0], -edge[:, :-1, 1]) for edge in (south, north)]

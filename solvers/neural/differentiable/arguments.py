@@ -17,10 +17,12 @@ def check_sides(least: int, nj: int = 2, **sides: Tensor) -> None:
     names = list(sides)
     first = sides[names[0]]
     for name, side in sides.items():
-        if side.ndim < 2 or side.shape[-1] != 2 or side.shape[-2] < least or not side.numel():
+        if side.ndim < 2 or side.shape[-1] != 2 or side.shape[-2] < least:
             problem = f"{name} has shape {tuple(side.shape)}"
             raise InputError(problem, f"give (..., n, 2) with n at least {least}")
-        if not side.is_floating_point() or side.dtype != first.dtype or side.device != first.device:
+        if not side.is_floating_point():
+            raise InputError(f"{name} is {side.dtype}", "give floating-point numbers, float64 or float32")
+        if side.dtype != first.dtype or side.device != first.device:
             problem = (
                 f"{name} is {side.dtype} on {side.device} and {names[0]} {first.dtype} on {first.device}"
             )
@@ -70,14 +72,31 @@ def check_corners(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> N
 
 
 def batched(
-    make: Callable[..., Tensor], sides: Sequence[Tensor], dtype: torch.dtype = torch.float64,
-    device: str | torch.device | None = None,
+    make: Callable[..., Tensor], sides: Sequence[Tensor], nj: int | None = None,
+    dtype: torch.dtype = torch.float64, device: str | torch.device | None = None,
 ) -> Tensor:  # fmt: skip
     """Return nodes (..., ni, nj, 2) inside `sides` (..., n, 2), of their type and on their device.
 
-    `make` takes sides (batch, n, 2) and returns nodes (batch, ni, nj, 2), of type `dtype` and on `device`.
+    `make` takes sides (batch, n, 2) and returns nodes (batch, ni, nj, 2), of type `dtype` and on `device`;
+    `nj` is the node count from one side to the other, where no side has it.
     """
+    if torch.is_inference_mode_enabled():  # solvers differentiate, which tensors of this mode do not allow
+        with torch.inference_mode(False), torch.no_grad():
+            return batched(make, [side.clone() for side in sides], nj, dtype, device)
     lead = torch.broadcast_shapes(*(side.shape[:-2] for side in sides))
+    if 0 in lead:
+        counts = sides[0].shape[-2], sides[2].shape[-2] if nj is None else nj
+        return sum(side.sum() for side in sides) * sides[0].new_zeros(*lead, *counts, 2)
     wide = [side.expand(*lead, *side.shape[-2:]).reshape(-1, *side.shape[-2:]) for side in sides]
     nodes = make(*(side.to(device=device, dtype=dtype) for side in wide)).to(sides[0])
     return nodes.reshape(*lead, *nodes.shape[1:])
+
+
+def unit_of(values: Tensor) -> Tensor:
+    """Return powers of 2 near the extents of `values` (batch, ...), of as many dimensions.
+
+    Divided by them, which is exact, squares of squares neither overflow nor vanish.
+    """
+    flat = values.detach().flatten(1)
+    power = torch.frexp(flat.amax(1) - flat.amin(1)).exponent
+    return torch.ldexp(torch.ones_like(flat[:, 0]), power).view(-1, *[1] * (values.ndim - 1))

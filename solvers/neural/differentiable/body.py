@@ -36,7 +36,7 @@ class BodyGrids(NetworkGrids):
         with the index of the member.
         """
         check_sides(4, nj, south=south, north=north)
-        return self._batched(partial(self._nodes, nj=nj), south, north)
+        return self._batched(partial(self._nodes, nj=nj), south, north, nj=nj)
 
     def _nodes(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
         sides = [edge.movedim(-1, 1) for edge in (south, north)]

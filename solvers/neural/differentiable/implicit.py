@@ -11,6 +11,7 @@ from typing import Any, Protocol
 import torch
 from torch import Tensor
 
+from meshonet.solvers.neural.differentiable.arguments import unit_of
 from meshonet.solvers.neural.differentiable.members import MemberError, as_one_batch
 
 
@@ -43,8 +44,9 @@ class Converged(torch.autograd.Function):
     @staticmethod
     def forward(equations: Equations, nodes: Tensor) -> tuple[Tensor, Tensor]:
         """Return the solution, and the number of each member."""
-        solution, number = in_parts(equations.solve, equations.most(nodes), nodes)
-        return solution, number
+        unit = unit_of(nodes)
+        solution, number = in_parts(equations.solve, equations.most(nodes), nodes / unit)
+        return unit * solution, number
 
     @staticmethod
     def setup_context(ctx: Any, inputs: tuple[Equations, Tensor], output: tuple[Tensor, Tensor]) -> None:
@@ -71,7 +73,11 @@ class Adjoint(torch.autograd.Function):
     def forward(equations: Equations, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
         """Return the derivative (batch, 2, ni, nj), zero at inner nodes."""
         (result,) = in_parts(
-            lambda *part: (equations.adjoint(*part),), equations.most(nodes), nodes, number, gradient
+            lambda *part: (equations.adjoint(*part),),
+            equations.most(nodes),
+            nodes / unit_of(nodes),
+            number,
+            gradient,
         )
         inner(result).zero_()
         return result

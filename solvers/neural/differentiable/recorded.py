@@ -11,6 +11,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
+from meshonet.solvers.neural.differentiable.arguments import unit_of
 from meshonet.solvers.neural.differentiable.members import as_one_batch, check_finite
 
 
@@ -32,11 +33,12 @@ class _Function(torch.autograd.Function):
     def forward(record: _Record, *sides: Tensor) -> Tensor:
         for side in sides:
             check_finite(side)
+        unit = unit_of(torch.cat(sides, 1))
         if not record.wanted:
-            return record.function(*sides)
+            return unit[..., None] * record.function(*(side / unit for side in sides))
         with torch.enable_grad():
             record.sides = [side.detach().requires_grad_() for side in sides]
-            record.nodes = record.function(*record.sides)
+            record.nodes = unit[..., None] * record.function(*(side / unit for side in record.sides))
         return record.nodes.detach()
 
     @staticmethod

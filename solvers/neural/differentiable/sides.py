@@ -43,8 +43,8 @@ class NetworkGrids:
         self._network.load_state_dict(state)
         self._network.to(device=device, dtype=dtype).requires_grad_(False)
 
-    def _batched(self, make: Callable[..., Tensor], *sides: Tensor) -> Tensor:
-        return batched(partial(recorded, make), sides, self._dtype, self._device)
+    def _batched(self, make: Callable[..., Tensor], *sides: Tensor, nj: int | None = None) -> Tensor:
+        return batched(partial(recorded, make), sides, nj, self._dtype, self._device)
 
     def _answer(self, near: Tensor, step: Tensor) -> Tensor:
         return self._network(features(near, step, torch, self.topology == "o"))[:, self._head]
