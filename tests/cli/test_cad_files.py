@@ -17,6 +17,12 @@ def _files(meshonet: Meshonet) -> None:
     BRepTools.Write_s(BRepPrimAPI_MakeBox(1.0, 2.0, 3.0).Shape(), "box.brep")
 
 
+@pytest.fixture
+def untried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have files read without the trial in a process of its own, which takes a second."""
+    monkeypatch.setattr("meshonet.formats.cad.read._is_readable", lambda *_: True)
+
+
 def test_a_ball_becomes_a_surface_and_a_volume(meshonet: Meshonet) -> None:
     done = meshonet("sample-boundary", "ball.brep", "--res", "16", "-o", "ball.xyz", "--json")
     assert (done.code, done.only["blocks"]) == (0, 1)
@@ -26,6 +32,7 @@ def test_a_ball_becomes_a_surface_and_a_volume(meshonet: Meshonet) -> None:
     assert "became a core" in done.err
 
 
+@pytest.mark.usefixtures("untried")
 @pytest.mark.parametrize(
     ("options", "message"),
     [
@@ -42,12 +49,14 @@ def test_options_without_use_are_refused(options: list[str], message: str, mesho
     assert not Path("box.xyz").exists()
 
 
+@pytest.mark.usefixtures("untried")
 def test_other_commands_say_what_to_do_with_a_cad_file(meshonet: Meshonet) -> None:
     done = meshonet("infer", "box.brep", "-o", "box.vts")
     assert done.code == 2
     assert "make patches first: meshonet sample-boundary" in done.err
 
 
+@pytest.mark.usefixtures("untried")
 def test_files_of_one_run_are_of_one_kind(meshonet: Meshonet) -> None:
     done = meshonet("sample-boundary", "box.brep", "naca:0012", "-o", "{stem}.vtm")
     assert "is no CAD file, and the first input is one" in done.err
