@@ -32,6 +32,7 @@ K = TypeVar("K")
 MOST_TOGETHER = 64  # shapes that are solved together at the most
 MOST_NODES = 1 << 22  # nodes of grids from which no more are solved together: some hundred MB
 _OTHER_METHODS = "try {method} variational, or {allow_invalid}"  # where cells of a volume fold
+_OTHER_NODES = "try another {res}, or {allow_invalid}"  # where they do by that method
 _NOT_REPAIRED = "use {repair}, an elliptic method or {allow_invalid}"  # where cells of one block do
 
 
@@ -287,7 +288,8 @@ def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, flo
     begun = time.perf_counter()
     solution = make_volume(shape, request)
     _add_times(seconds, solution, time.perf_counter() - begun)
-    return judged(solution, seconds, request, remedy=_OTHER_METHODS)
+    remedy = _OTHER_NODES if solution.method == "variational" else _OTHER_METHODS
+    return judged(solution, seconds, request, remedy=remedy)
 
 
 def _add_times(seconds: dict[str, float], solution: Solution, spent: float) -> None:

@@ -10,6 +10,8 @@ from spatial_shapes import box, cubed_sphere
 import meshonet as library
 from meshonet.geometry.blocks.block import PLACES, Block
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.solvers.pipeline import volumes
+from meshonet.solvers.solution import Outcome, Solution
 
 MARCH = ("--method", "hyperbolic", "--wall-spacing", "1e-3", "--layers", "21", "--far-field", "4")
 
@@ -172,3 +174,18 @@ def test_python_marches_as_the_command_does(sphere: str) -> None:
         sphere, method="hyperbolic", wall_spacing=1e-3, layers=21, far_field=4.0, threads=1
     )
     assert (len(grid.blocks), grid.quality().folded) == (6, 0)
+
+
+@pytest.mark.parametrize(
+    ("method", "remedy"), [("variational", "another --res"), ("winslow", "--method variational")]
+)
+def test_folded_volumes_are_not_answered_by_the_method_that_made_them(
+    meshonet: Meshonet, duct: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, method: str, remedy: str
+) -> None:
+    nodes = box().copy()
+    nodes[2, 2, 2] = nodes[0, 0, 0]
+    solution = Solution(Grid((Block(nodes),)), method, outcome=Outcome.FOLDED)
+    monkeypatch.setattr(volumes, "make_volume", lambda *_: solution)
+    done = meshonet("solve-pde", duct, "--method", method, "-o", tmp_path / "out.vts")
+    assert done.code == 3
+    assert f"cells are folded; try {remedy}, or --allow-invalid" in done.err
