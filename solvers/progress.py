@@ -5,12 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.stages import Listeners
+from meshonet.solvers.stages import added
 
 if TYPE_CHECKING:
     from meshonet.solvers.solution import Solution
@@ -34,17 +35,17 @@ class Cycle:
 
 
 Listener = Callable[[Cycle], None]
-_listeners: Listeners[Cycle] = Listeners("cycles")
+_listeners: ContextVar[tuple[Listener, ...]] = ContextVar("cycles", default=())
 
 
 def listening(listener: Listener) -> AbstractContextManager[None]:
     """Return a context in which `listener` is called after every cycle, in the thread of the cycle."""
-    return _listeners.added(listener)
+    return added(_listeners, listener)
 
 
 def listened_to() -> bool:
     """Return whether there are listeners."""
-    return bool(_listeners)
+    return bool(_listeners.get())
 
 
 def cycle_ended(
@@ -52,10 +53,12 @@ def cycle_ended(
     functional: float | None = None,
 ) -> None:  # fmt: skip
     """Call the listeners after a cycle of `method` with the resulting `nodes` (ni, nj, 2)."""
-    if not _listeners:
+    if not listened_to():
         return
     counts = nodes.shape[0], nodes.shape[1]
-    _listeners(Cycle(method, *counts, number, residual, change, count_folded(nodes), functional))
+    cycle = Cycle(method, *counts, number, residual, change, count_folded(nodes), functional)
+    for listener in _listeners.get():
+        listener(cycle)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -19,29 +19,16 @@ from meshonet.geometry.arrays import Floats
 Event = TypeVar("Event")
 
 
-class Listeners(Generic[Event]):
-    """Functions that are called with an event, separate for each thread."""
-
-    def __init__(self, name: str) -> None:
-        self._all: ContextVar[tuple[Callable[[Event], None], ...]] = ContextVar(name, default=())
-
-    def __bool__(self) -> bool:
-        """Return whether there are any."""
-        return bool(self._all.get())
-
-    def __call__(self, event: Event) -> None:
-        """Call all of them."""
-        for listener in self._all.get():
-            listener(event)
-
-    @contextlib.contextmanager
-    def added(self, listener: Callable[[Event], None]) -> Iterator[None]:
-        """Return a context in which `listener` is one of them."""
-        token = self._all.set((*self._all.get(), listener))
-        try:
-            yield
-        finally:
-            self._all.reset(token)
+@contextlib.contextmanager
+def added(
+    listeners: ContextVar[tuple[Callable[[Event], None], ...]], listener: Callable[[Event], None]
+) -> Iterator[None]:
+    """Return a context in which `listener` is one of the `listeners` of this thread."""
+    token = listeners.set((*listeners.get(), listener))
+    try:
+        yield
+    finally:
+        listeners.reset(token)
 
 
 @dataclass(frozen=True)
@@ -57,17 +44,18 @@ class Stage:
 Timings = dict[str, float]
 """Seconds by stage."""
 Watcher = Callable[[Stage], None]
-_watchers: Listeners[Stage] = Listeners("stages")
+_watchers: ContextVar[tuple[Watcher, ...]] = ContextVar("stages", default=())
 
 
 def watching(watcher: Watcher) -> contextlib.AbstractContextManager[None]:
     """Return a context in which `watcher` is called at the start of every stage, in its thread."""
-    return _watchers.added(watcher)
+    return added(_watchers, watcher)
 
 
 def reached(name: str, unit: str = "", done: int = 0, count: int = 0) -> None:
     """Call the watchers: the stage `name` starts, or has completed `done` of `count` steps."""
-    _watchers(Stage(name, unit, count, lambda: done))
+    for watcher in _watchers.get():
+        watcher(Stage(name, unit, count, lambda: done))
 
 
 @contextlib.contextmanager
@@ -87,11 +75,12 @@ def filling(name: str, unit: str, marks: Floats) -> Iterator[None]:
 
     Until then the marks are NaN. After the context `done` does not read them any more.
     """
-    if not _watchers:
+    if not (watchers := _watchers.get()):
         yield
         return
     marks[:] = np.nan
-    _watchers(Stage(name, unit, len(marks), lambda: len(marks) - int(np.count_nonzero(np.isnan(marks)))))
+    for watcher in watchers:
+        watcher(Stage(name, unit, len(marks), lambda: int(np.count_nonzero(~np.isnan(marks)))))
     try:
         yield
     finally:
