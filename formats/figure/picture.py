@@ -11,8 +11,27 @@ from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, meant
 from meshonet.geometry.polygon.area import check_extent
+from meshonet.geometry.quality.figure import COUNTS, FIGURES
 from meshonet.geometry.quality.measure import per_cell_of_blocks
-from meshonet.geometry.quality.metrics import ALL_NAMES, metric_of
+from meshonet.geometry.quality.metrics import ALL_NAMES, FACE_NAMES, metric_of
+
+DRAWN = (*ALL_NAMES, *FACE_NAMES)
+"""Names of the metrics by which cells can be coloured."""
+_RATIO, _ANGLE = "area_ratio, of volumes volume_ratio", "max_angle"
+_RELATED = {
+    "folded": "scaled_jacobian, which is 0 or less there",
+    "bezier_folded": "bezier_ratio, which is 0 or less there",
+    "growth": _RATIO,
+    "growth_across": _RATIO,
+    "wall_growth": _RATIO,
+    "equal_wall_cells": _RATIO,
+    "deviation_mean": _ANGLE,
+    "deviation_p99": _ANGLE,
+    "bend_across": _ANGLE,
+    "far_field": "the whole grid",
+    "irregular": "any metric: these vertices are marked",
+}
+"""What shows where a figure of the whole grid comes from."""
 
 
 @dataclass(frozen=True)
@@ -25,8 +44,11 @@ class Picture(View):
     metric: str | None = "max_angle"
 
     def __post_init__(self) -> None:
-        if self.metric not in (*ALL_NAMES, None):
-            known = meant(str(self.metric), ALL_NAMES) + "use none or one of " + ", ".join(ALL_NAMES)
+        if self.metric in (*COUNTS, *FIGURES) and self.metric not in DRAWN:
+            remedy = f"draw {_RELATED[self.metric]}"
+            raise InputError(f"{self.metric} is one figure of the whole grid", remedy, parameter="metric")
+        if self.metric not in (*DRAWN, None):
+            known = meant(str(self.metric), DRAWN) + "use none or one of " + ", ".join(DRAWN)
             raise InputError(f"metric {self.metric!r} is not known", known, parameter="metric")
         super().__post_init__()
 

@@ -25,7 +25,7 @@ primitiveMeshTools.C and primitiveMeshCheck.C (thresholds 70 degrees, 4, 1000).
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -37,10 +37,11 @@ from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import arctan2, cos
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.checkmesh_solid import cell_at, cells_of, solid_faces
+from meshonet.geometry.quality.checkmesh_solid import Cells, cell_at, cells_of, solid_faces
 from meshonet.geometry.quality.growth import Extreme, Tally, strips
+from meshonet.geometry.quality.metrics import FACE_NAMES
 
-FACES = ("non_orthogonality", "face_skewness", "box_ratio")
+FACES = FACE_NAMES
 """Figures of `FaceMeasures`."""
 
 Values: TypeAlias = tuple[tuple[int, ...], Floats | None, Floats]
@@ -65,7 +66,9 @@ def faces(grid: Grid) -> FaceMeasures:
     Raises InputError: a surface, whose cells have no faces.
     """
     if grid.form == "volume":
-        return _of_volume(grid)
+        cells = [cells_of(block.nodes) for block in grid.blocks]
+        ratios = (((number, 0, 0, 0), own.aspect) for number, own in enumerate(cells))
+        return _summed(_of_volume(grid, cells), ratios)
     if grid.form == "surface":
         problem = f"a surface has no faces between cells, of which {', '.join(FACES)} are"
         raise InputError(problem, "make a volume of it, or judge it by other figures")
@@ -77,13 +80,31 @@ def faces(grid: Grid) -> FaceMeasures:
     return _summed(_of_blocks(grid), boxes, alone=grid.topology != "blocks")
 
 
-def _of_volume(grid: Grid) -> FaceMeasures:
-    cells = [cells_of(block.nodes) for block in grid.blocks]
-    values: Iterator[Values] = (
-        (place, None if angle is None else np.expand_dims(angle, axis), np.expand_dims(skew, axis))
-        for place, axis, angle, skew in solid_faces(grid, cells)
-    )
-    return _summed(values, (((number, 0, 0, 0), own.aspect) for number, own in enumerate(cells)))
+def worst_faces(grid: Grid, name: str) -> list[Floats]:
+    """Return for each block the measure `name`, (ni-1, nj-1[, nk-1]): the greatest of the faces of a cell.
+
+    A face between two cells counts for the first one, whose indices `faces` gives. Raises InputError: as
+    `faces`.
+    """
+    if name == "box_ratio":
+        volume = grid.form == "volume"
+        return [cells_of(block.nodes).aspect if volume else _box_ratio(block.nodes) for block in grid.blocks]
+    values = [np.zeros([count - 1 for count in block.counts]) for block in grid.blocks]
+    measured = _of_blocks(grid)
+    if grid.form == "volume":
+        measured = _of_volume(grid, [cells_of(block.nodes) for block in grid.blocks])
+    for (number, *first), angle, skew in measured:
+        own = angle if name == "non_orthogonality" else skew
+        if own is not None:
+            part = values[number][tuple(slice(k, k + n) for k, n in zip(first, own.shape, strict=True))]
+            np.maximum(part, own, out=part)
+    return values
+
+
+def _of_volume(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
+    """Yield the measures of the faces of volumes with these `cells`."""
+    for place, axis, angle, skew in solid_faces(grid, cells):
+        yield place, None if angle is None else np.expand_dims(angle, axis), np.expand_dims(skew, axis)
 
 
 def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:

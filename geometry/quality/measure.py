@@ -18,7 +18,7 @@ from meshonet.geometry.blocks.block import form_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality import metrics
 from meshonet.geometry.quality.cell_run import FEW, PERCENTS, CellRun, run_over, summary_of
-from meshonet.geometry.quality.metrics import NAMES, QUAD_METRICS, metric_of
+from meshonet.geometry.quality.metrics import FACE_NAMES, NAMES, QUAD_METRICS, metric_of
 from meshonet.geometry.summary import Quality, Summary
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
@@ -175,6 +175,8 @@ def per_cell(grid: Grid, name: str) -> Floats:
     metric = metric_of(grid, name)
     if metric.cells:
         return metric.cells(grid.nodes)
+    if name in FACE_NAMES:
+        return per_cell_of_blocks(grid, name)[0]
     k = NAMES.index(name)
     return np.asarray(_run(grid, slice(k, k + 1)).values[0])
 
@@ -187,6 +189,10 @@ def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
     metric = metric_of(grid, name)
     if metric.cells:
         return [metric.cells(block.nodes) for block in grid.blocks]
+    if name in FACE_NAMES:
+        from meshonet.geometry.quality.checkmesh import worst_faces
+
+        return worst_faces(grid, name)
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import solid_metric
 

@@ -106,7 +106,15 @@ SOLID_METRICS: tuple[Metric, ...] = (
     Metric("volume_ratio", "", "max", "volume against the neighbours'"),
 )
 
+# those of geometry/quality/checkmesh.py: drawn, but no part of the table, since faces have them and not cells
+FACE_METRICS: tuple[Metric, ...] = (
+    Metric("non_orthogonality", "deg", "max", "greatest of its faces, as in checkMesh"),
+    Metric("face_skewness", "", "max", "greatest of its faces, as in checkMesh"),
+    Metric("box_ratio", "", "max", "aspect ratio, as in checkMesh"),
+)
+
 SOLID_NAMES: tuple[str, ...] = tuple(map(_NAME, SOLID_METRICS))
+FACE_NAMES: tuple[str, ...] = tuple(map(_NAME, FACE_METRICS))
 ALL_NAMES = tuple(dict.fromkeys((*NAMES, *SOLID_NAMES, *map(_NAME, METRICS))))
 """Names of the metrics of planes, surfaces and volumes."""
 
@@ -118,11 +126,13 @@ def metrics_of(grid: Grid) -> tuple[Metric, ...]:
 
 def metric_of(grid: Grid, name: str) -> Metric:
     """Return the metric called `name`; raise InputError if cells of `grid` have none of that name."""
-    metrics = metrics_of(grid)
+    metrics = (*metrics_of(grid), *(() if grid.form == "surface" else FACE_METRICS))
     for metric in metrics:
         if metric.name == name:
             return metric
     what = f"metric {name!r} is not known"
+    if name in FACE_NAMES:
+        what = f"metric {name!r} is none of surfaces, whose cells have no faces between them"
     if name in ALL_NAMES:
         cells = "volumes" if grid.form == "volume" else "quadrilaterals"
         what = f"metric {name!r} is none of {cells}"

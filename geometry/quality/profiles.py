@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.centres import centre_of
 from meshonet.geometry.quality.figure import Figure
 from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import Gate, beyond, end_of, in_short
@@ -50,12 +51,14 @@ class Check:
 class CheckResult:
     """The outcome of a check: the figure (None if this grid has none) and the verdict.
 
-    `profile` is the profile that the check belongs to; `gated`: a user's gates replace its limits.
+    `profile` is the profile that the check belongs to, `centre` (2 or 3) that of the cell of the figure;
+    `gated`: a user's gates replace its limits.
     """
 
     check: Check
     figure: Figure | None
     profile: str
+    centre: tuple[float, ...] | None = None
     gated: bool = False
 
     @property
@@ -188,10 +191,11 @@ def profile_report(figures: Figures, *profiles: str) -> ProfileReport:
             raise InputError(f"profile {profile!r} is not known", known, parameter="profile")
     names = tuple(dict.fromkeys(profiles))
     return ProfileReport(
-        names,
-        _once(
-            CheckResult(check, figures(check.figure, end_of(check.limits[0].compare)), name)
-            for name in names
-            for check in PROFILES[name]
-        ),
+        names, _once(_result(figures, check, name) for name in names for check in PROFILES[name])
     )
+
+
+def _result(figures: Figures, check: Check, profile: str) -> CheckResult:
+    figure = figures(check.figure, end_of(check.limits[0].compare))
+    centre = tuple(centre_of(figures.grid, figure.at).tolist()) if figure and figure.at else None
+    return CheckResult(check, figure, profile, centre)

@@ -268,6 +268,7 @@ def _check(result: CheckResult) -> dict[str, Any]:
         "figure": result.check.figure,
         "value": result.value,
         "at": list(result.at) if result.at else None,
+        "centre": list(result.centre) if result.centre else None,
         "limits": [{"level": x.level, "when": x.compare, "value": x.value} for x in result.check.limits],
         "gated": result.gated,
         "verdict": result.verdict,

@@ -25,6 +25,8 @@ from meshonet_cli.terminal.text import aligned, figure
 
 _PLACES = {2: "i, j", 3: "block, i, j", 4: "block, i, j, k"}
 """Names of indices, by their number."""
+_AXES = {2: "at x, y", 3: "at x, y, z"}
+"""Headings of the column with centres of cells."""
 
 
 @dataclass
@@ -156,7 +158,7 @@ def _cell(grid: Grid, at: tuple[int, ...]) -> tuple[str, str]:
 
 def _axes(grid: Grid) -> str:
     """Return the heading of the column with centres of cells."""
-    return "at x, y" if grid.form == "plane" else "at x, y, z"
+    return _AXES[2 if grid.form == "plane" else 3]
 
 
 def comparison_lines(comparison: Comparison) -> str:
@@ -201,16 +203,19 @@ def y_plus_table(flow: Flow, y_plus: Mapping[str, YPlus]) -> str:
 
 def growth_table(figures: Figures) -> str:
     """Return the growth of cells as a table."""
-    rows = [["growth", "mean", "max", _places_of(figures)]]
+    grid = figures.grid
+    rows = [["growth", "mean", "max", _places_of(figures), _axes(grid)]]
     for name, extreme in figures.growth.families().items():
-        rows.append([f"along {name}", figure(extreme.mean), figure(extreme.max), _place(extreme.at)])
+        values = (figure(extreme.mean), figure(extreme.max))
+        rows.append([f"along {name}", *values, *_cell(grid, extreme.at)])
     return aligned(rows)
 
 
 def profile_table(profile: ProfileReport) -> str:
     """Return the checks of a profile as a table."""
     places = max((len(result.at) for result in profile.results if result.at), default=2)
-    rows = [[f"profile {profile.name}", "figure", f"at {_PLACES[places]}", "limits", "verdict"]]
+    axes = _AXES[max((len(result.centre) for result in profile.results if result.centre), default=2)]
+    rows = [[f"profile {profile.name}", "figure", f"at {_PLACES[places]}", axes, "limits", "verdict"]]
     return aligned(rows + [_check_row(result) for result in profile.results])
 
 
@@ -223,9 +228,10 @@ def _places_of(figures: Figures) -> str:
 def _check_row(result: CheckResult) -> list[str]:
     value = "-" if result.value is None else figure(result.value)
     place = _place(result.at) if result.at else ""
+    centre = ", ".join(map(figure, result.centre or ()))
     limits = ", ".join(limit_text(limit) for limit in result.check.limits)
     limits += " (--fail-on)" if result.gated else ""
-    return [result.check.figure, value, place, limits, verdict_word(result.verdict)]
+    return [result.check.figure, value, place, centre, limits, verdict_word(result.verdict)]
 
 
 def limit_text(limit: Limit) -> str:

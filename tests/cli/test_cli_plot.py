@@ -5,7 +5,9 @@ from pathlib import Path
 import pytest
 from command_line import Meshonet, Process
 
+from meshonet.formats.figure.picture import DRAWN
 from meshonet.formats.registry import picture_format
+from meshonet.geometry.quality.profiles import PROFILES
 
 
 @pytest.fixture
@@ -61,6 +63,7 @@ def test_a_batch_becomes_one_picture_each(meshonet: Meshonet, three_h5: Path) ->
     [
         (("-o", "g.vts"), "g.vts: vts is no picture; use .png, .svg, .pdf or .html"),
         (("-o", "g.png", "--metric", "beauty"), "--metric: metric 'beauty' is not known; use none or one of"),
+        (("-o", "g.png", "--metric", "wall_growth"), "of the whole grid; draw area_ratio, of volumes volume"),
         (("-o", "g.png", "--zoom", "1,0,0,1"), "--zoom: '1,0,0,1' is not a box; use x0,x1,y0,y1"),
         (("-o", "g.png", "--zoom", "a"), "--zoom: 'a' is not a box"),
         (("-o", "g.png", "--zoom", "90,91,90,91"), "shows none of the grid"),
@@ -73,3 +76,16 @@ def test_mistakes_get_a_line(meshonet: Meshonet, grid_vts: Path, words: tuple[st
     assert told in done.err
     assert done.err.count("\n") == 1
     assert not list(Path().glob("g.*"))
+
+
+@pytest.mark.parametrize("figure", sorted({check.figure for each in PROFILES.values() for check in each}))
+def test_each_figure_that_a_profile_judges_is_drawn_or_says_what_to_draw(
+    meshonet: Meshonet, grid_vts: Path, figure: str
+) -> None:
+    for picture in ("g.png", "g.html"):
+        done = meshonet("plot", grid_vts, "-o", picture, "--metric", figure)
+        if done.code == 0:
+            assert f"coloured by {figure}" in done.err
+            assert figure in DRAWN
+        else:
+            assert f"{figure} is one figure of the whole grid; draw " in done.err

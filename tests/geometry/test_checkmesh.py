@@ -1,12 +1,17 @@
 """Face measures against a plain transcription of OpenFOAM's, in 3D on a mesh of merged nodes."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
+from block_grids import joined
 from test_grid import c_grid
 
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality import growth as steps
-from meshonet.geometry.quality.checkmesh import faces
+from meshonet.geometry.quality.checkmesh import FACES, faces
+from meshonet.geometry.quality.measure import per_cell_of_blocks
 
 HEIGHT = 0.3
 
@@ -142,3 +147,24 @@ def test_one_cell_has_no_faces_inside() -> None:
     result = faces(Grid.from_nodes(shaken().nodes[:2, :2]))
     assert result.non_orthogonality is None
     assert result.face_skewness is not None
+
+
+@pytest.mark.parametrize("name", FACES)
+@pytest.mark.parametrize(
+    "make",
+    [
+        shaken,
+        ring,
+        c_grid,
+        lambda: joined([shaken().nodes[:5], shaken().nodes[4:]], lambda _: "wall"),
+        lambda: extruded(shaken(), [0.0, 0.3, 1.0]),
+    ],
+)
+def test_cells_have_the_measure_of_their_worst_face(make: Callable[[], Grid], name: str) -> None:
+    grid = make()
+    values = per_cell_of_blocks(grid, name)
+    extreme = getattr(faces(grid), name)
+    assert [each.shape for each in values] == [tuple(n - 1 for n in b.counts) for b in grid.blocks]
+    assert max(float(each.max()) for each in values) == extreme.max
+    block, *at = extreme.at if grid.topology == "blocks" or grid.form == "volume" else (0, *extreme.at)
+    assert values[block][tuple(at)] == extreme.max

@@ -115,3 +115,12 @@ def test_what_is_no_number_breaks_every_limit() -> None:
     assert beyond(float("nan"), "<", 0.3)
     assert beyond(float("nan"), ">", 4)
     assert not beyond(4.0, ">", 4)
+
+
+def test_places_have_the_centre_of_their_cell() -> None:
+    grid = oblique(0.5)
+    place = result(judged(grid, "verdict"), "max_angle")
+    assert place.at is not None
+    i, j = place.at
+    assert place.centre == pytest.approx(grid.nodes[i : i + 2, j : j + 2].mean(axis=(0, 1)))
+    assert result(judged(grid, "verdict"), "folded").centre is None

@@ -48,7 +48,7 @@ def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: V
     """
     start = _start(grid, metric, view or View())
     chosen = start["slice"]
-    scene = scene_of(grid, chosen and (chosen["name"], chosen["at"]))
+    scene = scene_of(grid, chosen and (chosen["name"], chosen["at"]), metric)
     path.write_text(page_text(grid.name, scene, start), encoding="utf-8")
 
 

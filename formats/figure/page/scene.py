@@ -29,7 +29,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.vertices import irregular_points
 from meshonet.geometry.quality.measure import per_cell_of_blocks
-from meshonet.geometry.quality.metrics import Metric, metrics_of
+from meshonet.geometry.quality.metrics import Metric, metric_of, metrics_of
 
 MOST_NODES = 1_500_000
 """Largest number of nodes of a volume in a page; of a larger one it has the boundary and some layers."""
@@ -92,8 +92,11 @@ class Scene:
     numbers: dict[str, Packed] = field(default_factory=dict)
 
 
-def scene_of(grid: Grid, layer: tuple[str, int] | None = None) -> Scene:
-    """Return the scene of a grid, with all its metrics; that of a large volume has the given `layer`."""
+def scene_of(grid: Grid, layer: tuple[str, int] | None = None, shown: str | None = None) -> Scene:
+    """Return the scene of a grid, with all its metrics and that which is `shown` first.
+
+    That of a large volume has the given `layer`.
+    """
     lattices, sheets = _whole(grid) if _fits(grid) else _in_part(grid, layer)
     low = np.min([lattice.nodes.reshape(-1, lattice.nodes.shape[-1]).min(axis=0) for lattice in lattices], 0)
     high = np.max([lattice.nodes.reshape(-1, lattice.nodes.shape[-1]).max(axis=0) for lattice in lattices], 0)
@@ -104,7 +107,7 @@ def scene_of(grid: Grid, layer: tuple[str, int] | None = None) -> Scene:
         for axis, name in enumerate("xyz"[: len(low)])
     }
     metrics = []
-    for metric in metrics_of(grid):
+    for metric in dict.fromkeys((*metrics_of(grid), *((metric_of(grid, shown),) if shown else ()))):
         values = [np.asarray(cells) for cells in per_cell_of_blocks(grid, metric.name)]
         scale = scale_of(np.concatenate([cells.ravel() for cells in values]))
         metrics.append(_metric(grid, metric, values, scale))
