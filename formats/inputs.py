@@ -150,9 +150,18 @@ class Inputs:
         return sys.stdin.buffer.read()
 
 
+def is_dataset(entry: str) -> bool:
+    """Return whether an input is a dataset, or some of its samples, by its name.
+
+    >>> is_dataset("wings.h5#0:3"), is_dataset("wing.dat")
+    (True, False)
+    """
+    return _IS_DATASET.search(entry) is not None
+
+
 def samples_in(entry: str | InputError) -> DatasetSamples | None:
     """Return the samples of an input that is a dataset, None for any other and one that cannot be read."""
-    if isinstance(entry, InputError) or not _IS_DATASET.search(entry):
+    if isinstance(entry, InputError) or not is_dataset(entry):
         return None
     from meshonet.formats.hdf5.read import samples_of
 

@@ -148,7 +148,7 @@ class Checked:
         if data is None or k >= len(data):
             return ""
         text = _text(data[k])
-        return printable(text) if name in ("names", "split") else text
+        return printable(text) if name in ("names", "titles", "split") else text
 
     def parameter_names(self) -> tuple[str, ...]:
         """Return the names that go with the columns of 'parameters'."""

@@ -126,12 +126,13 @@ def _grid(data: Checked, k: int) -> Grid:
 
 
 def _origin(data: Checked, k: int) -> Origin:
+    split, title = data.text("split", k), data.text("titles", k)
     if "parameters" not in data:
-        return Origin(split=data.text("split", k))
+        return Origin((), split, title)
     row = data.sample("parameters", k)
     names = data.parameter_names() or tuple(f"parameter {m}" for m in range(len(row)))
     pairs = tuple((name, float(value)) for name, value in zip(names, row, strict=False))
-    return Origin(pairs, data.text("split", k))
+    return Origin(pairs, split, title)
 
 
 def _patches(data: Checked, k: int) -> tuple[Patch, ...]:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 BLOCK = 1 << 22
 """Bytes of samples that are collected before they are written together."""
-TEXTS = ("names", "split", "parts", "provenance")
+TEXTS = ("names", "titles", "split", "parts", "provenance")
 """Datasets of texts, one text per sample."""
 CHUNK = 1 << 14
 """Largest row, in bytes, that shares a chunk with other samples."""
@@ -67,7 +67,7 @@ class Writer:
             if values.shape != shape:
                 problem = f"{name} of sample {self._count} has shape {values.shape}"
                 raise InputError(problem, f"the first has {shape}")
-        texts = {"names": sample.name, "split": sample.origin.split}
+        texts = {"names": sample.name, "titles": sample.origin.title, "split": sample.origin.split}
         rows = [[p.name, p.side, p.start, p.stop, p.block, p.across, p.kind] for p in sample.patches]
         texts["parts"] = json.dumps([row if _is_of_blocks(sample) else row[:4] for row in rows])
         if isinstance(sample, Grid) and sample.provenance:

@@ -47,10 +47,14 @@ _MOST_SHOWN = 6
 
 @dataclass(frozen=True)
 class Origin:
-    """Names and values of the parameters that a sample was made from, and ``train``, ``test`` or nothing."""
+    """Names and values of the parameters that a sample was made from, and ``train``, ``test`` or nothing.
+
+    `title` is what its file calls the shape, where its name is that of the file.
+    """
 
     parameters: tuple[tuple[str, float], ...] = ()
     split: str = ""
+    title: str = ""
 
 
 UNKNOWN = Origin()

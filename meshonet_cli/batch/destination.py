@@ -66,7 +66,8 @@ class Destination:
             check_space(self.format, space, printable(text))
         self._put = put or getattr(self.format, f"write_{kind}")
         self._taken: dict[str, str] = {}
-        self.can_have_parts = self.format.name == "hdf5" and not self.each and text != "-"
+        self.is_dataset = self.format.name == "hdf5"
+        self.can_have_parts = self.is_dataset and not self.each and text != "-"
         if part_size is not None and not self.can_have_parts:
             remedy = "write one .h5 file, or leave it out"
             raise InputError("only a dataset has parts", remedy, parameter="part_size")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.hdf5.parts import Failed, OtherPartsError, PartFiles, State
@@ -12,6 +12,7 @@ from meshonet.solvers.stages import stage
 from meshonet_cli.batch.destination import same_size
 from meshonet_cli.batch.input_digests import digests_of
 from meshonet_cli.batch.item import Item, Make, made
+from meshonet_cli.batch.keys import Keys
 from meshonet_cli.batch.sources import records
 from meshonet_cli.terminal.errors import explained
 
@@ -85,7 +86,7 @@ class PartMaker:
 
     def _samples(self, part: PartTask, done: PartDone, failed: list[Failed]) -> Iterator[Grid | Boundary]:
         """Yield the samples of the part, and record a report or an error for each member."""
-        size = ""
+        size, keys = "", Keys()
 
         def fail(item: Item[Any], error: Exception) -> None:
             done.members.append((item.without_content(), error))
@@ -102,6 +103,8 @@ class PartMaker:
         for item, outcome in self.work(readable()):
             try:
                 what, report = made(outcome)
+                what = keys.named(item, what)
+                report.item = replace(report.item, name=what.name)
                 size = same_size(what, size)
             except Exception as error:
                 fail(item, error)

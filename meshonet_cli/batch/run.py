@@ -156,11 +156,16 @@ class Batch:
 
     def _streamed(self, pairs: Iterator[Pair], destination: Destination, written: Written) -> Iterator[Any]:
         """Yield the results for a single file; each is reported when the next one is requested."""
-        size = ""
+        from meshonet_cli.batch.keys import Keys
+
+        size, keys = "", Keys()
         for item, outcome in pairs:
             fits = False
             with self.session.member(item.label, item.source):
                 what, report = made(outcome)
+                if destination.is_dataset:
+                    what = keys.named(item, what)
+                    report.item = replace(report.item, name=what.name)
                 if destination.format.one_size:
                     size = same_size(what, size)
                 fits = True
@@ -189,6 +194,11 @@ class MemberWork:
                 report.item = bare
                 if self.destination is not None:
                     try:
+                        if self.destination.is_dataset:
+                            from meshonet_cli.batch.keys import Keys
+
+                            what = Keys().named(item, what)
+                            report.item = replace(bare, name=what.name)
                         with stage("write", report.seconds):
                             self.destination.write(item.path, [what])
                         outcome = None, report

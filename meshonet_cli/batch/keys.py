@@ -1,0 +1,42 @@
+"""Keys of the samples of a dataset: stems of files, each once."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from meshonet.formats.inputs import is_dataset
+from meshonet.formats.registry import is_designation
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet_cli.batch.item import Item
+
+
+class Keys:
+    """The keys of the samples that a dataset, or a part of one, has so far."""
+
+    def __init__(self) -> None:
+        self._taken: set[str] = set()
+
+    def named(self, item: Item[Any], what: Any) -> Any:
+        """Return a grid or boundary with its key as name; another name that it had becomes its title."""
+        if not isinstance(what, Grid | Boundary):
+            return what
+        wanted = item.stem if _of_file(item) else what.name
+        key, again = wanted, 1
+        while wanted and key in self._taken:
+            again += 1
+            key = f"{wanted}-{again}"
+        self._taken.add(key)
+        if key == what.name:
+            return what
+        return replace(what, name=key, origin=replace(what.origin, title=what.origin.title or what.name))
+
+
+def _of_file(item: Item[Any]) -> bool:
+    """Return whether a member is all of a file that is no dataset, whose samples have keys of their own."""
+    source = item.source
+    if not item.only or source == "-" or is_designation(source) or is_dataset(source):
+        return False
+    return bool(item.called or Path(source).suffix) or Path(source).is_file()
