@@ -64,7 +64,8 @@ def sweep(
     )] = 0.0,
     scale: Annotated[float, _volume(
         "--scale", metavar="F", show_default=True,
-        help="Size of the section at the end of the path relative to its size at the start.",
+        help="Taper: size of the section at the end of the path relative to its size at the start. It is not "
+        "a unit, for which see convert --scale.",
     )] = 1.0,
     revolve: o.Revolve = None,
     axis: o.Axis = None,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.revolve import FLOWS, Revolution, revolved
 from meshonet.geometry.curves.path import Path
+from meshonet.geometry.quality.walls import wall_rows
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.pipeline.request import GridRequest
@@ -14,6 +15,8 @@ from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import stage
 from meshonet.solvers.sweeping.sweep import Sweep, check_planes, reach_of, self_crossing, sweep, walled
 
+SMALL = 0.1
+"""Size of the last section relative to the first, or the other way round, below which it may be a mistake."""
 _REMEDY = "use a wider bend, a smaller section or more {planes}"  # where cells fold
 
 
@@ -38,9 +41,25 @@ def make_sweep(
                 grid = revolved(walled(section), path, FLOWS)
             else:
                 grid = sweep(section, path, settings)
+                if settings and settings.scale != 1.0:
+                    notes = _tapered(notes, grid, settings.scale, layers=request.at_walls)
                 notes = (*notes, *_crossing_notes(path, section))
         solution = Solution(grid, "sweep", notes=notes)
         return judged(solution, seconds, request, remedy=_REMEDY)
+
+
+def _tapered(notes: tuple[str, ...], grid: Grid, scale: float, *, layers: bool) -> tuple[str, ...]:
+    """Return the notes on a section with those on first cells, which change along the path with its size."""
+    notes = tuple(f"at the start of the path: {note}" if "first cell" in note else note for note in notes)
+    if layers:
+        heights = ((row.name, row.height) for row in wall_rows(grid, grid.walls()))
+        notes += tuple(
+            f"{name}: first cells {h.min:.6g} to {h.max:.6g} along the path" for name, h in heights
+        )
+    if not SMALL <= scale <= 1.0 / SMALL:
+        what = f"the section ends {scale:g} times as large as it begins"
+        notes += (f"{what}: this {{scale}} is a taper; lengths of a grid are changed by that of convert",)
+    return notes
 
 
 def _crossing_notes(path: Path, section: Grid) -> tuple[str, ...]:

@@ -157,3 +157,18 @@ def test_what_cannot_be_swept_gets_a_line(meshonet: Meshonet, words: tuple[str, 
     assert (done.code, done.err.count("\n")) == (2, 1), done.err
     assert problem in done.err
     assert not Path("made.h5").exists()
+
+
+def test_first_cells_of_a_taper_are_those_along_the_whole_path(meshonet: Meshonet) -> None:
+    Path("line.csv").write_text("0 0 0\n5 0 0\n10 0 0\n")
+    words = ("sweep", "circle:1", "line.csv", "--first-cell", "0.01", "--planes", "6", "-o", "pipe.h5")
+    plain = meshonet(*words).err
+    assert "  wall: first cells 0.01, growth" in plain
+    assert "taper" not in plain
+    half = meshonet(*words, "--scale", ".5").err
+    assert "  at the start of the path: wall: first cells 0.01, growth" in half
+    assert "  wall: first cells 0.005 to 0.01 along the path" in half
+    assert "taper" not in half
+    needle = meshonet(*words, "--scale", ".001").err
+    assert "  wall: first cells 1e-05 to 0.01 along the path" in needle
+    assert "the section ends 0.001 times as large as it begins: this --scale is a taper" in needle
