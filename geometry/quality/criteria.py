@@ -21,10 +21,13 @@ class Criteria:
         Conditions under which a grid fails.
     profiles : tuple of str, optional
         Names in `meshonet.geometry.quality.profiles.PROFILES`.
+    leave_out : bool, optional
+        Whether grids that fail are left out of what is written.
     """
 
     gates: tuple[Gate, ...] = ()
     profiles: tuple[str, ...] = ()
+    leave_out: bool = False
 
     @property
     def percentiles(self) -> bool:

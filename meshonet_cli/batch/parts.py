@@ -103,6 +103,9 @@ class PartMaker:
         for item, outcome in self.work(readable()):
             try:
                 what, report = made(outcome)
+                if report.left_out:
+                    done.members.append((item, report))
+                    continue
                 what = keys.named(item, what)
                 report.item = replace(report.item, name=what.name)
                 size = same_size(what, size)

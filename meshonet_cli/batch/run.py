@@ -163,6 +163,9 @@ class Batch:
             fits = False
             with self.session.member(item.label, item.source):
                 what, report = made(outcome)
+                if report.left_out:
+                    written(report, destination.text)
+                    continue
                 if destination.is_dataset:
                     what = keys.named(item, what)
                     report.item = replace(report.item, name=what.name)
@@ -192,7 +195,9 @@ class MemberWork:
             elif not isinstance(outcome, Exception):
                 what, report = outcome
                 report.item = bare
-                if self.destination is not None:
+                if report.left_out and self.destination is not None:
+                    outcome = None, report
+                elif self.destination is not None:
                     try:
                         if self.destination.is_dataset:
                             from meshonet_cli.batch.keys import Keys

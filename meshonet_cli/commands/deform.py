@@ -19,7 +19,7 @@ def deform(
     grid: o.Grids,
     files: o.FileOptions,
     run: o.RunOptions,
-    gates: o.GateOptions,
+    gates: o.WrittenGateOptions,
     wall: Annotated[list[str] | None, _option(
         "--wall", metavar="[NAME=]FILE",
         help="New shape of a wall: a file with an outline, a designation such as naca:2412, or a grid whose "

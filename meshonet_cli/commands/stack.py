@@ -40,7 +40,7 @@ def stack(
     )],
     files: VolumeFiles,
     run: o.RunOptions,
-    gates: o.GateOptions,
+    gates: o.WrittenGateOptions,
     around: Annotated[int | None, _sampling(
         "--around", metavar="N", help="Number of nodes around each section, an odd number. [default: 129]",
     )] = None,

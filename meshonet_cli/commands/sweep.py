@@ -36,7 +36,7 @@ def sweep(
         "point x y z per line. With --revolve there is no path.",
     )],
     run: o.RunOptions,
-    gates: o.GateOptions,
+    gates: o.WrittenGateOptions,
     files: SectionFiles,
     res: Annotated[str | None, _sampling(
         "--res", metavar="N|NIxNJ",

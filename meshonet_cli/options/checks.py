@@ -1,7 +1,7 @@
 """Options for the validity of grids, and for quality limits that set the exit code."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Annotated
 
@@ -75,4 +75,30 @@ class GateOptions:
         return Criteria(
             parse_gates(self.fail_on or (), more), tuple(profile.value for profile in self.profile or ())
         )
+
+
+@dataclass(frozen=True, kw_only=True)
+class WrittenGateOptions(GateOptions):
+    """Quality limits of a grid that is written."""
+
+    leave_out_failed: Annotated[bool, _option(
+        "--leave-out-failed",
+        help="Do not write grids that fail a --fail-on or a --profile; each is named. The exit code is 1 all "
+        "the same.",
+    )] = False
+
+    def criteria(self, more: Sequence[str] = ()) -> "Criteria | None":
+        """Return gates and profiles as `GateOptions.criteria`.
+
+        Raises InputError: an invalid gate; grids are to be left out and there is no gate and no profile.
+        """
+        criteria = super().criteria(more)
+        if not self.leave_out_failed:
+            return criteria
+        if criteria is None:
+            from meshonet.geometry.errors import InputError
+
+            problem = "there is nothing that a grid could fail"
+            raise InputError(problem, "give {fail_on} or {profile} too", parameter="leave_out_failed")
+        return replace(criteria, leave_out=True)
 # fmt: on

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from meshonet_cli.options.boundary_layer import LayerOptions, at_walls
-from meshonet_cli.options.checks import CheckOptions, GateOptions
+from meshonet_cli.options.checks import CheckOptions, WrittenGateOptions
 from meshonet_cli.options.groups import values_of
 from meshonet_cli.options.io import FileOptions, RunOptions, Threads
 from meshonet_cli.options.sampling import SamplingOptions
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GridOptions(RunOptions, SamplingOptions, LayerOptions, CheckOptions, GateOptions, FileOptions):
+class GridOptions(RunOptions, SamplingOptions, LayerOptions, CheckOptions, WrittenGateOptions, FileOptions):
     """Options for making, checking and writing grids."""
 
     threads: Threads = None

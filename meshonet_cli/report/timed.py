@@ -17,12 +17,16 @@ STAGES = ("read", "boundary", "load", "layout", "grid", "guard", "quality", "com
 
 @dataclass
 class Timed:
-    """Report of a member of a batch: the member, its output file, and seconds by stage."""
+    """Report of a member of a batch: the member, its output file, and seconds by stage.
+
+    `left_out`: its result is not written.
+    """
 
     item: Item[Any]
     notes: tuple[str, ...] = field(default=(), kw_only=True)
     seconds: dict[str, float] = field(init=False)
     output: str | None = field(default=None, init=False)
+    left_out: bool = field(default=False, init=False)
 
     def __post_init__(self) -> None:
         self.seconds = {"read": self.item.seconds}

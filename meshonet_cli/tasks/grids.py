@@ -69,6 +69,7 @@ def reported(
             )
         if criteria:
             report.judgement = judgement = criteria.judge(grid, result.quality)
+            report.left_out = criteria.leave_out and judgement.verdict == "fail"
             facts |= {"verdict": judgement.verdict, "limits_exceeded": ", ".join(judgement.beyond)}
     return grid.with_provenance(**facts), report
 

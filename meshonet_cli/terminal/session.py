@@ -53,6 +53,7 @@ class Session:
         self._stdout_is_taken = False
         self._errors: Counter[str] = Counter()
         self.members = self.done = self.failed = self.skipped = self.beyond = self.changed = 0
+        self.left_out = 0
         self._advice: dict[str, None] = {}  # what is told once, at the end of a batch
         self._begun = time.perf_counter()
         self.live = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
@@ -109,14 +110,17 @@ class Session:
 
     def written(self, report: Timed, path: str) -> None:
         """Report a member with the output file `path`: in full if it is the only one, else in one line."""
-        report.output = path
+        report.output = None if report.left_out else path
         if report.warning:
             self.warn(report.warning)
-        self.done += 1
+        self.done += not report.left_out
+        self.left_out += report.left_out
         if self._line and not self.batch:
             self._unwatch()
         if self.as_json:
             self.result(report.as_json())
+        elif report.left_out:
+            self._write(f"{report.item.label}: left out, as it fails")
         elif not self.quiet:
             self._write(report.line() if self.batch else report.lines())
         if report.notes:
@@ -222,8 +226,10 @@ class Session:
             self._tabulate(self.rows)
         if self.batch and not (self.quiet or self.as_json):
             spent = time.perf_counter() - self._begun
-            gates = f" ({self.beyond} of them beyond a gate)" if self.beyond else ""
-            parts = [f"{self.done} done{gates}", f"{self.skipped} there already" if self.skipped else "",
+            beyond = self.beyond - self.left_out
+            gates = f" ({beyond} of them beyond a gate)" if beyond else ""
+            parts = [f"{self.done} done{gates}", f"{self.left_out} left out" if self.left_out else "",
+                     f"{self.skipped} there already" if self.skipped else "",
                      f"{self.failed} failed" if self.failed else ""]  # fmt: skip
             left_out = f" and not in {self.dataset}" if self.failed and self.done and self.dataset else ""
             self._write(", ".join(filter(None, parts)) + left_out + f" in {spent:.2f} s")

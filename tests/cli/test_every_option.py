@@ -91,6 +91,7 @@ def judged(base: str, folded: str) -> dict[str, Effect]:
     return {
         "--threads": (f"{base} --threads 2", "OPTION 0", "code"),
         "--fail-on": (base, "OPTION max_angle>90.5", "code"),
+        "--leave-out-failed": (f"{base} --fail-on max_angle>90.5", "OPTION", "files"),
         "--allow-invalid": (folded, "OPTION", "code"),
     }
 

@@ -117,3 +117,30 @@ def test_grids_of_a_dataset_say_their_verdicts(meshonet: Meshonet) -> None:
     assert sharp.provenance["limits_exceeded"].startswith("max_angle.max 17")
     assert meshonet("infer", *words, "-o", "none.h5").code == 0
     assert all("verdict" not in grid.provenance for grid in read_grids("none.h5"))
+
+
+@pytest.mark.parametrize(
+    "words", [("-o", "all.h5"), ("-o", "all.h5", "--part-size", "1"), ("-o", "{index}.h5")]
+)
+@pytest.mark.parametrize("jobs", [(), ("--jobs", "2")])
+def test_grids_that_fail_are_left_out_if_asked_for_and_named(
+    meshonet: Meshonet, words: tuple[str, ...], jobs: tuple[str, ...]
+) -> None:
+    gate = ("--res", "41x15", "--fail-on", "max_angle>150", "--leave-out-failed")
+    foils = ("naca:0012-sharp", "naca:2412", "naca:0012")
+    done = meshonet("infer", *foils, *gate, *words, *jobs)
+    assert done.code == 1
+    assert "naca:0012-sharp: left out, as it fails\ngate not met: naca:0012-sharp: max_angle" in done.err
+    assert "\n2 done, 1 left out in " in done.err
+    assert "verdicts: 2 pass, 1 FAIL" in done.out
+    written = ["all.h5"] if "all.h5" in words else ["1.h5", "2.h5"]
+    assert sorted(path.name for path in Path().glob("*.h5")) == written
+    assert [grid.name for path in written for grid in read_grids(path)] == ["NACA 2412", "NACA 0012"]
+    objects = meshonet("infer", *foils, *gate, "-o", "{index}.vts", "--json").objects
+    assert [one["output"] for one in objects] == [None, "1.vts", "2.vts"]
+
+
+def test_nothing_is_left_out_where_there_is_no_gate(meshonet: Meshonet) -> None:
+    done = meshonet("tfi", "naca:0012", "--leave-out-failed", "-o", "g.h5")
+    assert done.code == 2
+    assert done.err.startswith("error: --leave-out-failed: there is nothing that a grid could fail; give ")
