@@ -107,6 +107,7 @@ def _as_asked(shape: Shape, sampling: Sampling) -> tuple[Shape, tuple[str, ...]]
     if not isinstance(shape, Airfoil):
         return shape, tuple(getattr(shape, "notes", ()))
     airfoil = shape.normalised() if sampling.normalise else shape
+    airfoil = airfoil.opened(sampling.base) if sampling.base else airfoil
     te, off = sampling.te, airfoil.curve.departure() / airfoil.chord
     body = airfoil.rounded() if te == "round" else airfoil.wedged() if te == "wedge" else airfoil
     departure = (departure_note(off),) if off > DEPARTURE else ()

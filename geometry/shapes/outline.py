@@ -94,6 +94,7 @@ class Outline:
             ),
             (sampling.wake or sampling.wake_nodes, "only an airfoil has a wake", "leave {wake} out"),
             (sampling.smooth, "only an airfoil can be smoothed", "leave {smooth} out"),
+            (sampling.base, "only an airfoil has a trailing edge to open", "leave {base} out"),
             (sampling.base_nodes, "only an airfoil has a base", "leave {base_nodes} out"),
             (sampling.normalise, "only an airfoil can be normalised", "leave {normalise} out"),
             (

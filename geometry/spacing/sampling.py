@@ -58,6 +58,9 @@ class Sampling:
     base_nodes : int, optional
         Number of nodes on a blunt base, including both corners; it must be odd for an O grid. None: derived
         from the width of the base and the cells next to it.
+    base : float, optional
+        Thickness in chords to which thinner trailing edges of airfoils are opened: both sides move apart, in
+        proportion to the distance from the leading edge.
     smooth : float, optional
         Largest deviation, in chords, of smoothing splines that replace the points of an airfoil. Choose three
         times the standard deviation of the noise. A base higher than twice this value keeps its corners; a
@@ -92,6 +95,7 @@ class Sampling:
     viscous: bool = False
     nk: int | None = None
     base_nodes: int | None = None
+    base: float | None = None
     smooth: float | None = None
     refined: int = 1
 
@@ -106,9 +110,14 @@ class Sampling:
         ):
             if name not in known:
                 raise InputError(f"{what} {name!r} is not known", "use " + "/".join(known))
-        for name, size in (("le_spacing", self.le_spacing), ("te_spacing", self.te_spacing)):
-            if size is not None and not 1e-9 <= size <= 0.2:
-                raise InputError(f"{size:g} chords", "use 1e-9 to 0.2", parameter=name)
+        for name, size, least, most in (
+            ("le_spacing", self.le_spacing, "1e-9", "0.2"),
+            ("te_spacing", self.te_spacing, "1e-9", "0.2"),
+            ("base", self.base, "5e-4", "0.2"),
+            ("smooth", self.smooth, "1e-7", "0.01"),
+        ):
+            if size is not None and not float(least) <= size <= float(most):
+                raise InputError(f"{size:g} chords", f"use {least} to {most}", parameter=name)
         if self.far_field is not None and not 0.0 < self.far_field < math.inf:
             raise InputError(f"{self.far_field:g} is no distance", "give e.g. 20", parameter="far_field")
         if self.wake is not None and not 0.5 <= self.wake <= 1e6:
@@ -117,8 +126,6 @@ class Sampling:
             raise InputError(f"the wake has {self.wake_nodes} nodes", f"use 3 to {MOST_NODES}")
         if self.base_nodes is not None and not 3 <= self.base_nodes <= MOST_NODES:
             raise InputError(f"the base has {self.base_nodes} nodes", f"use 3 to {MOST_NODES}")
-        if self.smooth is not None and not 1e-7 <= self.smooth <= 1e-2:
-            raise InputError(f"{self.smooth:g} chords", "use 1e-7 to 0.01", parameter="smooth")
         if self.corners is not None and len(set(self.corners)) != 4:
             problem = f"corners {self.corners} are not four different points"
             raise InputError(problem, "give four point indices")

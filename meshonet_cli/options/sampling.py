@@ -79,6 +79,11 @@ class SamplingOptions:
         help="Number of nodes along the wake of a C grid, including the trailing edge. The cells grow by a "
         "constant ratio. [default: about a fifth of NI]",
     )] = None
+    base: Annotated[float | None, _option(
+        "--base", metavar="T",
+        help="Open trailing edges that are thinner than T chords to a base of this thickness, by moving both "
+        "sides apart in proportion to the distance from the leading edge. --te then applies to this base.",
+    )] = None
     base_nodes: Annotated[int | None, _option(
         "--base-nodes", metavar="N",
         help="Number of nodes on the base of a blunt trailing edge, including its two corners. It must be "

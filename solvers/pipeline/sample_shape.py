@@ -47,6 +47,8 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
     if request.sampling.nk is not None:
         problem = f"{request.sampling.nk} nodes along a third direction of a grid in the plane"
         raise InputError(problem, "give NI x NJ", parameter="res")
+    if request.sampling.base and hasattr(shape, "opened"):
+        shape = shape.opened(request.sampling.base)
     if request.asks_for_blocks or request.names_walls or getattr(shape, "many", False):
         from meshonet.solvers.pipeline.blocks import as_blocks
 

@@ -29,7 +29,7 @@ SETTINGS = {"polish": "auto", "answer": "valid", "blending": "arclength"}
 
 
 _SHAPE = "topology spacing le_spacing te_spacing far_field corners normalise te wake wake_nodes "
-_SHAPE += "base_nodes smooth refined"
+_SHAPE += "base base_nodes smooth refined"
 _SIDES = "spacing_south spacing_north spacing_west spacing_east"
 _FIRST = "first_cell y_plus reynolds chord_fraction length growth"
 
@@ -46,7 +46,7 @@ GIVEN_SECTION = "a section that is a grid"
 
 _OF_MARCHED = _row("res", _SHAPE, _FIRST, "constant_layers repair_margin blocks refine", _SIDES)
 _OF_ONE = _OF_MARCHED | _row("slide wall_angle coarse initial walls")
-_OF_MANY = _row("res far_field te normalise", _FIRST, "constant_layers refine") | _row(
+_OF_MANY = _row("res far_field te base normalise", _FIRST, "constant_layers refine") | _row(
     "cells cell_size walls pitch inlet outlet layout periodic count"
 )
 USES: dict[str, frozenset[str]] = {

@@ -106,6 +106,7 @@ SHAPES = COMMON | chosen("@shapes.txt -o made-{stem}.h5 -q", "*C*") | engines(MA
     "--le-spacing": (f"{BODY} {MADE}", "OPTION .02", "nodes"),
     "--te-spacing": (f"{BODY} {MADE}", "OPTION .02", "nodes"),
     "--te": (f"{BODY} {MADE}", "OPTION wedge", "nodes"),
+    "--base": (f"{BODY} {MADE}", "OPTION .02", "nodes"),
     "--far-field": (f"{BODY} {MADE}", "OPTION 7", "nodes"),
     "--wake": (f"{BODY} --topology c {MADE}", "OPTION 9", "nodes"),
     "--wake-nodes": (f"{BODY} --topology c {MADE}", "OPTION 11", "nodes"),

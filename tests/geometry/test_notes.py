@@ -118,3 +118,19 @@ def test_in_blocks_a_curve_far_from_the_lines_between_its_points_is_named() -> N
     (note,) = assembled([coarse], ["body"], Sampling()).notes
     assert "is a smooth curve through the points, up to 0.0" in note
     assert coarse.boundary(O_GRID).notes == (note,)
+
+
+@pytest.mark.parametrize("base", [0.0, 0.002])
+def test_an_edge_opened_to_a_base_is_named_and_thicker_ones_stay(base: float) -> None:
+    section = Airfoil(selig(0.12, base=base))
+    opened = section.boundary(Sampling(121, 31, "o", base=0.01))
+    assert opened.notes == (
+        f"the outline is changed: its trailing edge, {section.gap:.2g} chords thick, is opened to 0.01",
+    )
+    gap = section.opened(0.01).gap
+    assert gap == pytest.approx(0.01, rel=1e-3)
+    nose = np.argmin(opened.south[:, 0])
+    np.testing.assert_allclose(opened.south[nose], section.leading_edge, atol=2e-4)
+    thick = Airfoil(selig(0.12, base=0.02))
+    assert thick.boundary(Sampling(121, 31, "o", base=0.01)).notes == ()
+    assert changes_in(assembled([section], ["a"], Sampling(base=0.01)).notes) == opened.notes

@@ -23,6 +23,7 @@ from meshonet.geometry.shapes.airfoil.section_curve import (
     farthest_arc,
     moved_note,
     nose_radius,
+    opened_note,
     section_curve,
     shape_notes,
     swapped_note,
@@ -218,6 +219,7 @@ class Airfoil:
             raise InputError("an airfoil has no corners to choose", "leave {corners} out")
         body = self.smoothed(sampling.smooth) if sampling.smooth else self
         body = body.normalised() if sampling.normalise else body
+        body = body.opened(sampling.base) if sampling.base else body
         try:
             return body._around(sampling)
         except CrossingError:
@@ -234,6 +236,17 @@ class Airfoil:
         a, b, c, d = self.curve.at(np.array([first, first + step, last - step, last]))
         ways = (a - b) / np.hypot(*(a - b)), (d - c) / np.hypot(*(d - c))
         return Airfoil(wedged_base(self.curve.points[1:], ways), self.name, notes=self.notes)
+
+    def opened(self, thickness: float) -> Airfoil:
+        """Return the airfoil with a base at least `thickness` chords thick."""
+        height = self.gap / self.chord
+        if height >= thickness * (1.0 - 1e-3):  # opened before, in chords a little longer
+            return self
+        from meshonet.geometry.shapes.airfoil.trailing_edge import opened_base
+
+        body = Airfoil(opened_base(self, thickness * self.chord), self.name, notes=self.notes)
+        body.notes += (opened_note(height, thickness),)
+        return body
 
     def _around(self, sampling: Sampling) -> Boundary:
         topology, te = sampling.topology, sampling.te

@@ -173,6 +173,12 @@ def base_note(wall: Floats, corner: Floats, base: float, chord: float) -> tuple[
     )
 
 
+def opened_note(height: float, thickness: float) -> str:
+    """Return the note on a trailing edge that is opened to a base; both are in chords."""
+    was = f"its trailing edge, {height:.2g} chords thick,"
+    return Change(f"the outline is changed: {was} is opened to {thickness:g}")
+
+
 def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, asked: TrailingEdge) -> tuple[str, ...]:
     """Return a note on how `te` changed a base, or that there is none although a change was `asked` for."""
     base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"

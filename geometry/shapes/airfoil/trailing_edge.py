@@ -13,7 +13,10 @@
     lower surface ---+--``         those on the base, which are dropped.
 """
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +25,9 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.elementary import arctan2, power, product
 from meshonet.geometry.spacing.size_field import GROWTH, limited_size
+
+if TYPE_CHECKING:
+    from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 _ACROSS = 0.9  # fraction of half the base that a fillet takes
 _ALONG = 2.0  # length of the fillet along the surface, over that along the base
@@ -128,3 +134,22 @@ def wedged_base(points: Floats, tangents: tuple[Floats, Floats]) -> Floats:
         bend = u * (1 - u) ** 2 * float(np.hypot(*way)) * leaving - u * u * (1 - u) * way
         sides.append(corner + u * u * (3 - 2 * u) * way + bend)
     return np.concatenate([[tip], sides[0][-2::-1], points, sides[1][:-1]])
+
+
+def opened_base(airfoil: Airfoil, gap: float) -> Floats:
+    """Return points (n, 2) with sides moved apart in proportion to the distance from the nose, to `gap`."""
+    curve = airfoil.curve
+    _, nose, _ = airfoil._arcs
+    lower = curve.points[(curve.knots > 0.0) & (curve.knots < nose)]
+    upper = curve.points[curve.knots > nose]
+    ends = [curve.points[:1], curve.points[:1]]
+    if airfoil.blunt:
+        ends = [lower[:0], upper[:0]]
+    chord = airfoil.trailing_edge - airfoil.leading_edge
+    normal = np.array([-chord[1], chord[0]]) / airfoil.chord
+    missing = 0.5 * (gap - airfoil.gap)
+    sides = []
+    for side, sign in ((np.concatenate([ends[0], lower]), -1.0), (np.concatenate([upper, ends[1]]), 1.0)):
+        along = product(side - airfoil.leading_edge, chord) / airfoil.chord**2
+        sides.append(side + sign * missing * np.clip(along, 0.0, None)[:, None] * normal)
+    return np.concatenate([sides[0], airfoil.leading_edge[None], sides[1]])

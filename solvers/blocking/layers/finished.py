@@ -14,6 +14,7 @@ from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetr
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
 from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
+from meshonet.solvers.blocking.layers.marched import AT_SHARP_EDGE
 from meshonet.solvers.energy.quads import optimise
 
 FEW_ITERATIONS = 10  # after untangling: only nodes around folds move
@@ -34,7 +35,8 @@ def finished(layout: Layout, settings: LayerSettings, held: Bools) -> Layout:
     corner = smallest_jacobians(layout.mesh.nodes, layout.mesh.quads)
     if corner.min() <= 0.0:
         x, y = layout.mesh.nodes[layout.mesh.quads[int(corner.argmin())]].mean(axis=0)
-        raise NoValidGridError(f"layers or cells beside them are folded at ({x:.6g}, {y:.6g})")
+        where = f"at ({x:.6g}, {y:.6g})"
+        raise NoValidGridError(f"layers or cells beside them are folded {where}; {AT_SHARP_EDGE}")
     return layout
 
 

@@ -27,6 +27,8 @@ MARCH_GROWTH = 1.2
 THINNER = 0.6
 """Factor of the thickness after the march has folded with all settings."""
 TRIES = 4  # thicknesses, the last a fifth of the first
+AT_SHARP_EDGE = "at the sharp edge of an airfoil give {base} 0.005, or {te} round in place of a wedge"
+"""Remedy where layers fold because a wall turns by nearly 180 degrees."""
 FEWEST_CELLS = 4.0
 """Smallest thickness of layers in first cells."""
 
@@ -78,7 +80,8 @@ def fitted(
             return levels
         thickness *= THINNER
     raise InputError(
-        "layers fold at the wall however thin", "smooth the wall there, or leave its layers out",
+        "layers fold at the wall however thin",
+        f"{AT_SHARP_EDGE}; elsewhere smooth the wall, or leave its layers out",
         place=place(int(np.argmax(folded))),
     )  # fmt: skip
 
