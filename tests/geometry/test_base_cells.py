@@ -75,6 +75,11 @@ def test_a_wide_base_has_enough_cells_of_the_size_of_its_neighbours() -> None:
             Sampling(base_nodes=8),
             "base_nodes: a base of 8 nodes has none in its middle, .* use 7 or 9",
         ),
+        (
+            "0012",
+            Sampling(base_nodes=61, refined=4),
+            "half of a base of 61 nodes has 30 cells, and refine needs a multiple of 4; use 57 or 65",
+        ),
         ("0012", Sampling(41, base_nodes=43), "43 of 41 nodes on the base .*; use at most 37"),
     ],
 )

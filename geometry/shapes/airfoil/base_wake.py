@@ -156,7 +156,9 @@ def _base(
     if nodes is not None:
         cells = nodes - 1
         if cells % every[-1]:
-            problem = f"{nodes} nodes on the base of a grid refined by {every[-1]}"
+            problem = (
+                f"a base of {nodes} nodes has {cells} cells, and {{refine}} needs a multiple of {every[-1]}"
+            )
             near = _whole(cells, every) + 1
             raise InputError(problem, f"use {near}", parameter="base_nodes")
         needed = layer_steps(np.empty(cells), width, min(first, width / cells), min(first, width / cells), 1)

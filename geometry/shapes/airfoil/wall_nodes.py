@@ -174,6 +174,9 @@ def _asked_half(cells: int, nodes: int, sampling: Sampling) -> int:
         less = base // every * every + 1
         near = f"{less} or {less + every}" if less > 1 else f"{less + every}"
         problem = f"a base of {base + 1} nodes has none in its middle, where an O grid begins"
+        if base % 2 == 0:
+            halves = f"each half of a base of {base + 1} nodes has {base // 2} cells"
+            problem = f"{halves}, and {{refine}} needs a multiple of {sampling.refined}"
         raise InputError(problem, f"use {near}", parameter="base_nodes")
     if base + 4 > cells:
         problem = f"{base + 1} of {cells + 1} nodes on the base leave too few for the sides"
