@@ -30,13 +30,14 @@ FirstCell = Annotated[str | None, _option(
 )]
 YPlus = Annotated[float | None, _option(
     "--y-plus", metavar="Y",
-    help="Height of the first cell as y+, instead of --first-cell. The conversion assumes a turbulent flat "
-    "plate and needs --reynolds.",
+    help="Height of the first cell as y+, instead of --first-cell; at the centre of the cell y+ is half. The "
+    "conversion assumes a turbulent flat plate and needs --reynolds.",
 )]
 YPlusAtWalls = Annotated[str | None, _option(
     "--y-plus", metavar="Y|WALL=Y,...",
-    help="Height of the first cell as y+, instead of --first-cell; WALL=Y,WALL=Y for named walls of a "
-    "multi-block grid. The conversion assumes a turbulent flat plate and needs --reynolds.",
+    help="Height of the first cell as y+, instead of --first-cell; at the centre of the cell y+ is half. "
+    "WALL=Y,WALL=Y for named walls of a multi-block grid. The conversion assumes a turbulent flat plate and "
+    "needs --reynolds.",
 )]
 Length = Annotated[float | None, _option(
     "--length", metavar="L",
