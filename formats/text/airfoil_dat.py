@@ -61,7 +61,8 @@ def sniff(head: bytes) -> bool:
 def _name(lines: list[Line], first: int) -> str:
     """Return the first text above line `first` of the data, or a number in its place."""
     for line in lines[: first - 1]:
-        title = " ".join(line.text.strip("#!%*/ \t").split())
+        percent = "%" if line.text.lstrip().startswith("%") else ""  # at the end alone it is part of the name
+        title = " ".join(line.text.lstrip("#!%*/ \t").rstrip(f"#!*/ \t{percent}").split())
         if title:
             return printable(title[:80])
     return ""

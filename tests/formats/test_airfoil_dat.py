@@ -260,3 +260,16 @@ def test_sniffing_knows_airfoils_from_other_text():
 def test_what_is_read_can_be_sampled():
     b = parse("T\n" + lines(SELIG), "a.dat").boundary(Sampling(ni=61, nj=21))
     assert (b.ni, b.nj, b.topology, b.name) == (61, 21, "o", "T")
+
+
+@pytest.mark.parametrize(
+    ("line", "name"),
+    [
+        ("flatback 7%", "flatback 7%"),
+        ("% plate %", "plate"),
+        ("/* plate */", "plate"),
+        ("## plate ##", "plate"),
+    ],
+)
+def test_a_percent_sign_at_the_end_belongs_to_the_name_unless_it_marks_the_line(line: str, name: str) -> None:
+    assert parse(f"{line}\n1 0\n.5 .05\n0 0\n.5 -.05\n1 0\n", "plate.dat").name == name
