@@ -72,12 +72,22 @@ class Measured(Timed):
         rows += [_period_line(row) for row in periods(grid)]
         if report.profile or not many:
             rows.append(growth_table(report.figures))
+        if many:
+            rows += _largest_growth(grid, report.figures)
         if report.profile:
             rows.append(profile_table(report.profile))
         rows += [f"folded at {cell_text(cell)}" for cell in report.worst]
         if report.comparison:
             rows.append(comparison_lines(report.comparison))
         return "\n".join(rows)
+
+
+def _largest_growth(grid: Grid, figures: Figures) -> list[str]:
+    """Return the largest growth of all directions, inside blocks and across sides, as a line."""
+    most = figures("growth")
+    if most is None or most.at is None:
+        return []
+    return [f"largest growth: {figure(most.value)}{most.where}, ({_cell(grid, most.at)[1]})"]
 
 
 def _period_line(row: Period) -> str:

@@ -362,3 +362,14 @@ def test_a_page_that_cannot_be_written_is_refused(
 def test_the_shift_of_periodic_sides_has_its_direction(meshonet: Meshonet) -> None:
     meshonet("infer", "naca:0012", "--pitch", "0,0.9", "--cells", "1500", "-o", "passage.cgns")
     assert "periodic sides: shifted by 0.9 along (0, 1, 0), nodes" in meshonet("quality", "passage.cgns").out
+
+
+def test_many_blocks_have_one_line_with_the_largest_growth(meshonet: Meshonet) -> None:
+    Path("step.wkt").write_text("POLYGON ((0 1, 2 1, 2 0, 6 0, 6 2, 0 2, 0 1))")
+    assert meshonet("infer", "step.wkt", "--cells", "400", "-o", "g.vtm", "-q").code == 0
+    done = meshonet("quality", "g.vtm")
+    growth = meshonet("quality", "g.vtm", "--fail-on", "growth>1", "--json").only
+    (line,) = [line for line in done.out.splitlines() if line.startswith("largest growth: ")]
+    told = growth["gates_not_met"][0]
+    assert told.split(" is ")[1].split(",")[0][:4] == line.split(": ")[1][:4]
+    assert " at block=" in line
