@@ -54,7 +54,8 @@ def plot(
     zoom: Annotated[str | None, _option(
         "--zoom", metavar="x0,x1,y0,y1",
         help="Show only this region: x0,x1,y0,y1 for a planar grid, x0,x1,y0,y1,z0,z1 for a grid in space. "
-        "With --slice both forms are possible.",
+        "With --slice both forms are possible: in the plane x=2.9 the four numbers are y0,y1,z0,z1, and y "
+        "points to the right.",
     )] = None,
     slice_: Annotated[str | None, _option(
         "--slice", metavar="SLICE",
