@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import runpy
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.ring import ring_loop
 
 LENGTH, HEIGHT, RADIUS = 2.0, 1.2, 0.3
+BANK = runpy.run_path(str(Path(__file__).parents[1] / "examples" / "tube-bank" / "bank.py"))
 BOTH = (("left", "right"), ("bottom", "top"))
 
 
@@ -22,21 +23,7 @@ def circle(x: float, y: float, radius: float, first: float = 0.0, last: float = 
 
 def bank_rings():
     """Return the rings of a cell of a staggered tube bank, its corners and names: quarter tubes, one tube."""
-    long, high, r = LENGTH, HEIGHT, RADIUS
-    parts = [
-        ("bottom", np.array([[r, 0.0], [long - r, 0.0]])),
-        ("tubes", circle(long, 0.0, r, 180.0, 90.0, 24)),
-        ("right", np.array([[long, r], [long, high - r]])),
-        ("tubes", circle(long, high, r, 270.0, 180.0, 24)),
-        ("top", np.array([[long - r, high], [r, high]])),
-        ("tubes", circle(0.0, high, r, 0.0, -90.0, 24)),
-        ("left", np.array([[0.0, high - r], [0.0, r]])),
-        ("tubes", circle(0.0, 0.0, r, 90.0, 0.0, 24)),
-    ]
-    counts = [len(points) - 1 for _, points in parts]
-    corners = np.cumsum([0, *counts[:-1]]).tolist()
-    outer = np.concatenate([points[:-1] for _, points in parts])
-    return [outer, circle(0.5 * long, 0.5 * high, r)[:-1]], corners, [name for name, _ in parts]
+    return BANK["rings"](LENGTH, HEIGHT, RADIUS)
 
 
 def bank() -> Domain:
@@ -60,10 +47,5 @@ def parallelogram(skew: float = 0.4, tube: tuple[float, float] = (0.9, 0.45)) ->
 
 def write_bank(path: Path, periodic: object = BOTH) -> None:
     """Write the tube bank as GeoJSON."""
-    (outer, tube), corners, names = bank_rings()
-    facts = {"names": [names, "tube"], "corners": [corners, []], "periodic": periodic}
-    if periodic is None:
-        del facts["periodic"]
-    rings = [[*ring.tolist(), ring[0].tolist()] for ring in (outer, tube)]
-    feature = {"type": "Feature", "properties": facts, "geometry": {"type": "Polygon", "coordinates": rings}}
-    path.write_text(json.dumps(feature))
+    more = {} if periodic is None else {"periodic": periodic}
+    path.write_text(BANK["feature"](LENGTH, HEIGHT, RADIUS, **more))

@@ -35,6 +35,16 @@ def test_the_domains_say_how_they_are_written() -> None:
     assert "writes each as GeoJSON into FOLDER" in done.stdout
 
 
+def test_the_tube_bank_has_the_pitches_that_are_asked_for(tmp_path: Path) -> None:
+    program = [sys.executable, "examples/tube-bank/bank.py", str(tmp_path / "bank.geojson")]
+    subprocess.run([*program, "--across", "2", "--along", "1.25", "--diameter", ".02"], cwd=ROOT, check=True)
+    shape = json.loads((tmp_path / "bank.geojson").read_text())
+    outer, tube = (np.array(ring) for ring in shape["geometry"]["coordinates"])
+    assert np.ptp(outer, axis=0) == pytest.approx([2 * 1.25 * 0.02, 2 * 0.02])
+    assert np.ptp(tube, axis=0) == pytest.approx([0.02, 0.02])
+    assert set(shape["properties"]["names"][0]) == {"left", "right", "bottom", "top", "tubes"}
+
+
 @pytest.fixture
 def folder(inputs: Path, tmp_path: Path) -> Path:
     """The inputs in a folder of their own, so that one example cannot live on what another left behind."""
