@@ -150,3 +150,18 @@ def test_a_flap_kink_is_a_corner():
 def test_refuses_what_is_no_section(points, message):
     with pytest.raises(InputError, match=message):
         clean_section(points)
+
+
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize("start", [0, 1])
+@pytest.mark.parametrize("base", [0.01, 2.2e-4, 0.2])
+def test_points_of_a_curve_that_begins_in_the_middle_of_its_base_give_the_same_section(
+    base: float, start: int, way: int
+) -> None:
+    """Its ends are the middle and a corner: half a base apart, which alone may look like a sharp edge."""
+    section = clean_section(selig(0.3, 0.03, base=base))
+    ring = np.concatenate([[0.5 * (section.points[0] + section.points[-1])], section.points])
+    again = clean_section(np.roll(ring, -start, axis=0)[::way])
+    assert again.blunt
+    assert again.gap == pytest.approx(base)
+    np.testing.assert_array_equal(again.points, section.points)

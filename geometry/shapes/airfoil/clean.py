@@ -24,6 +24,7 @@ ON_BASE = 5e-5
 MOST_CORNERS = 12
 """More corners than this, the trailing edge's among them, are noise of the points and count as none."""
 _CORNER = np.radians(35.0)  # least turn of a corner of the trailing edge
+_STRAIGHT = np.radians(5.0)  # largest turn of the middle of a base
 _EDGE = np.radians(120.0)  # least turn of a single corner that is a sharp edge
 _REACH = 8  # number of first and of last points among which the corners of a base are sought
 
@@ -73,6 +74,18 @@ def clean_section(points: Floats) -> CleanSection:
     open_gap = np.hypot(*(ring[0] - ring[-1])) > SAME_POINT * extent
     if not open_gap:
         ring, index = ring[:-1], index[:-1]
+    if open_gap and len(ring) > 5:
+        turn, last = np.abs(turning(ring, closed=True)), len(ring) - 1
+        for k, before, after in ((0, last, 1), (last, last - 1, 0)):
+            off = float(norms(ring[k] - 0.5 * (ring[before] + ring[after])))
+            if (
+                off <= SAME_POINT * extent
+                and turn[k] < _STRAIGHT
+                and max(turn[before], turn[after]) > _CORNER
+            ):
+                # the middle of a base, where the points of a curve begin: they end at one of its corners
+                ring, index = np.roll(ring, -k, axis=0)[1:], np.roll(index, -k)[1:]
+                break
     if len(ring) < 4:
         remedy = "an airfoil needs at least 4, and many more to be smooth"
         raise InputError(f"{len(ring)} distinct points", remedy)
