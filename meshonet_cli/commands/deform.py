@@ -19,7 +19,7 @@ def deform(
     grid: o.Grids,
     files: o.FileOptions,
     run: o.RunOptions,
-    gates: o.WrittenGateOptions,
+    gates: o.GateOptions,
     wall: Annotated[list[str] | None, _option(
         "--wall", metavar="[NAME=]FILE",
         help="New shape of a wall: a file with an outline, a designation such as naca:2412, or a grid whose "
@@ -37,13 +37,14 @@ def deform(
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
+    leave_out_failed: o.LeaveOutFailed = False,
 ) -> int:
     """Deform grids to changed walls, and keep their layers."""
     from meshonet_cli.tasks.deformations import walls_of, write_deformed
 
     walls = walls_of(wall or (), rotate or (), shift or ())
     return write_deformed(
-        run.batch(run.inputs(grid, grids=True), files), walls, gates.criteria(),
+        run.batch(run.inputs(grid, grids=True), files), walls, gates.criteria(leave_out_failed),
         allow_invalid=allow_invalid, threads=threads,
     )
 # fmt: on

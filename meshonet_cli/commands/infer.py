@@ -68,5 +68,5 @@ def infer(
     settings["fallback"] = fallback or None
     request = grids.request("best", settings, volume, refine=refine, blocks=blocks, **domain.parameters())
     batch = grids.batch(grids.inputs(boundary), grids)
-    return write_grids(batch, request, grids.criteria(), assemble=domain.assemble)
+    return write_grids(batch, request, grids.criteria(grids.leave_out_failed), assemble=domain.assemble)
 # fmt: on

@@ -72,7 +72,7 @@ def quality(
     with limited_to(threads):
         return measure_grids(
             run.inputs(grid, grids=True), run.session(),
-            fmt=from_format, criteria=gates.criteria(names), compare=compare,
+            fmt=from_format, criteria=gates.criteria(more=names), compare=compare,
             pairing=pair or "auto", summary=summary, plot=plot, html=html, per_cell=per_cell,
             reynolds=reynolds, length=length,
         )

@@ -91,6 +91,6 @@ def solve_pde(
         refine=refine, initial=initial_grid(initial), history=history is not None, slide=slide,
         wall_angle=wall_angle, repair_margin=repair_margin, blocks=blocks, **domain.parameters(),
     )
-    batch, criteria = grids.batch(grids.inputs(boundary), grids), grids.criteria()
+    batch, criteria = grids.batch(grids.inputs(boundary), grids), grids.criteria(grids.leave_out_failed)
     return write_grids(batch, request, criteria, history=history, assemble=domain.assemble)
 # fmt: on

@@ -40,7 +40,7 @@ def stack(
     )],
     files: VolumeFiles,
     run: o.RunOptions,
-    gates: o.WrittenGateOptions,
+    gates: o.GateOptions,
     around: Annotated[int | None, _sampling(
         "--around", metavar="N", help="Number of nodes around each section, an odd number. [default: 129]",
     )] = None,
@@ -102,6 +102,7 @@ def stack(
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
+    leave_out_failed: o.LeaveOutFailed = False,
 ) -> int:
     """Make volume grids of wings, ducts, rows and aircraft.
 
@@ -119,6 +120,7 @@ def stack(
     parameters = {name: value for name, value in chosen.items() if value is not None}
     return write_stacks(
         run.batch(run.inputs(sections, suffixes=(".toml",)), files),
-        parameters | {"allow_invalid": allow_invalid}, gates.criteria(), tip=tip, surface=surface,
+        parameters | {"allow_invalid": allow_invalid}, gates.criteria(leave_out_failed),
+        tip=tip, surface=surface,
     )
 # fmt: on

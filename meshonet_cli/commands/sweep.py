@@ -36,7 +36,7 @@ def sweep(
         "point x y z per line. With --revolve there is no path.",
     )],
     run: o.RunOptions,
-    gates: o.WrittenGateOptions,
+    gates: o.GateOptions,
     files: SectionFiles,
     res: Annotated[str | None, _sampling(
         "--res", metavar="N|NIxNJ",
@@ -102,6 +102,7 @@ def sweep(
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
+    leave_out_failed: o.LeaveOutFailed = False,
 ) -> int:
     """Sweep cross-sections along curves: pipes and ducts."""
     from meshonet.geometry.blocks.revolve import revolution
@@ -124,5 +125,5 @@ def sweep(
     batch, settings = run.batch(run.inputs(outlines), files), Sweep(planes, direction, twist, scale)
     if turn and settings != Sweep(planes):
         raise InputError("{up}, {twist} and {scale} belong to a path", "leave them out")
-    return write_sweeps(batch, path, section, settings, gates.criteria(), around=around)
+    return write_sweeps(batch, path, section, settings, gates.criteria(leave_out_failed), around=around)
 # fmt: on

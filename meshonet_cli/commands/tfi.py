@@ -38,5 +38,6 @@ def tfi(
     from meshonet_cli.tasks.grids import write_grids
 
     request = grids.request(method, {"blending": blending}, sides)
-    return write_grids(grids.batch(grids.inputs(boundary), grids), request, grids.criteria())
+    batch = grids.batch(grids.inputs(boundary), grids)
+    return write_grids(batch, request, grids.criteria(grids.leave_out_failed))
 # fmt: on

@@ -1,7 +1,7 @@
 """Options for the validity of grids, and for quality limits that set the exit code."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Annotated
 
@@ -28,6 +28,13 @@ class Profile(Enum):
 # fmt: off
 AllowInvalid = Annotated[bool, _option(
     "--allow-invalid", help="Write the grid even if it has folded cells.",
+)]
+
+
+LeaveOutFailed = Annotated[bool, _option(
+    "--leave-out-failed",
+    help="Do not write grids that fail a --fail-on or a --profile; each is named. The exit code is 1 all the "
+    "same.",
 )]
 
 
@@ -62,43 +69,22 @@ class GateOptions:
         "documentation lists the thresholds. Repeatable.",
     )] = None
 
-    def criteria(self, more: Sequence[str] = ()) -> "Criteria | None":
+    def criteria(self, leave_out: bool = False, *, more: Sequence[str] = ()) -> "Criteria | None":
         """Return gates and profiles, None if none is given; gates may refer to the names in `more` too.
 
-        Raises InputError: an invalid gate.
+        Raises InputError: an invalid gate; grids are to be left out and there is no gate and no profile.
         """
         if not (self.fail_on or self.profile):
+            if leave_out:
+                from meshonet.geometry.errors import InputError
+
+                problem = "there is nothing that a grid could fail"
+                raise InputError(problem, "give {fail_on} or {profile} too", parameter="leave_out_failed")
             return None
         from meshonet.geometry.quality.criteria import Criteria
         from meshonet.geometry.quality.gates import parse_gates
 
-        return Criteria(
-            parse_gates(self.fail_on or (), more), tuple(profile.value for profile in self.profile or ())
-        )
+        profiles = tuple(profile.value for profile in self.profile or ())
+        return Criteria(parse_gates(self.fail_on or (), more), profiles, leave_out)
 
-
-@dataclass(frozen=True, kw_only=True)
-class WrittenGateOptions(GateOptions):
-    """Quality limits of a grid that is written."""
-
-    leave_out_failed: Annotated[bool, _option(
-        "--leave-out-failed",
-        help="Do not write grids that fail a --fail-on or a --profile; each is named. The exit code is 1 all "
-        "the same.",
-    )] = False
-
-    def criteria(self, more: Sequence[str] = ()) -> "Criteria | None":
-        """Return gates and profiles as `GateOptions.criteria`.
-
-        Raises InputError: an invalid gate; grids are to be left out and there is no gate and no profile.
-        """
-        criteria = super().criteria(more)
-        if not self.leave_out_failed:
-            return criteria
-        if criteria is None:
-            from meshonet.geometry.errors import InputError
-
-            problem = "there is nothing that a grid could fail"
-            raise InputError(problem, "give {fail_on} or {profile} too", parameter="leave_out_failed")
-        return replace(criteria, leave_out=True)
 # fmt: on

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from meshonet_cli.options.boundary_layer import LayerOptions, at_walls
-from meshonet_cli.options.checks import CheckOptions, WrittenGateOptions
+from meshonet_cli.options.checks import CheckOptions, GateOptions, LeaveOutFailed
 from meshonet_cli.options.groups import values_of
 from meshonet_cli.options.io import FileOptions, RunOptions, Threads
 from meshonet_cli.options.sampling import SamplingOptions
@@ -15,9 +15,10 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GridOptions(RunOptions, SamplingOptions, LayerOptions, CheckOptions, WrittenGateOptions, FileOptions):
+class GridOptions(RunOptions, SamplingOptions, LayerOptions, CheckOptions, GateOptions, FileOptions):
     """Options for making, checking and writing grids."""
 
+    leave_out_failed: LeaveOutFailed = False
     threads: Threads = None
 
     def request(

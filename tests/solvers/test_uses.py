@@ -43,7 +43,7 @@ OF_REQUESTS = {
     for each in fields(kind)
 }
 OF_RUNS = {each.name for kind in (Files, Engine) for each in fields(kind)} | {
-    "as_json", "quiet", "debug", "pick", "shard", "fail_on", "profile", "engine",
+    "as_json", "quiet", "debug", "pick", "shard", "fail_on", "profile", "leave_out_failed", "engine",
 }  # fmt: skip
 OTHERS = {
     "boundary", "domain", "sections", "names", "grid",  # what is read
