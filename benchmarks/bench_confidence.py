@@ -20,17 +20,19 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import torch
 from page import arguments, publish
 from scipy.stats import spearmanr
 from yardstick.shapes import BODIES, KINDS, shapes
 
 import meshonet
+from meshonet import layer
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.conformal.solve import solve as conformal
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
 from meshonet.solvers.neural.confidence import THRESHOLD
@@ -38,11 +40,18 @@ from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.registry import load
 
 SEED = 7
+
+
+def _conformal(boundary: Boundary) -> Floats:
+    walls = torch.tensor(boundary.south), torch.tensor(boundary.north)
+    return layer.conformal(*walls, boundary.nj).numpy()
+
+
 QUADS = tuple(kind for kind in KINDS if kind not in BODIES)
 EXACT: dict[str, Callable[[Boundary], Grid]] = {
     "variational": lambda boundary: variational(boundary).grid,
     "winslow": lambda boundary: winslow(boundary, tol=1e-8).grid,
-    "conformal": lambda boundary: conformal([boundary], 12)[0].grid,
+    "conformal": lambda boundary: boundary.grid(_conformal(boundary), {}),
 }
 """The grids that networks imitate, to more accuracy than their answers have."""
 

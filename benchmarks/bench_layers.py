@@ -36,7 +36,7 @@ from meshonet.solvers.energy.variational import solve as variational
 
 HEAD = """# Layers
 
-<!-- made by python benchmarks/bench_layers.py --page docs/benchmarks/layers.md -->
+<!-- made by python benchmarks/bench_layers.py --count 32 --page docs/benchmarks/layers.md -->
 
 Use this page to see how exactly [`meshonet.layer`](../guide/layers.md) solves what the compiled
 solvers solve, and what a gradient costs. Each function computes one batch, in double precision and, from
