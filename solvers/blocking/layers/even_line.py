@@ -21,11 +21,20 @@ from meshonet.geometry.cached import cached_property
 from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.layers.attach import loop_nodes
-from meshonet.solvers.blocking.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
+from meshonet.solvers.blocking.layers.growth_limit import (
+    CHANGE,
+    EXCESS,
+    MOST_WEIGHT,
+    RISE,
+    GrowthLimit,
+    damped,
+)
 from meshonet.solvers.least_squares import NormalEquations, Residuals
 
 MOVE = 1e-2
 """σ."""
+FRONTS = 0.2
+"""μ along fronts: fewer nodes move, so that angles beside them are better."""
 MARGIN = 0.006
 """Margin by which ratios, in logarithms, should be below the limit."""
 STEPS = 24  # of Gauss-Newton at the most; the weight reaches its largest value in 15
@@ -93,15 +102,15 @@ NO_LINKS = PlaceLinks(np.empty((0, 2), dtype=np.intp), np.empty((0, 2)), np.empt
 
 def evened_places(
     places: Floats, fixed: Bools, measures: Measures, limit: float, closed: bool,
-    links: PlaceLinks = NO_LINKS, most: float = MOST,
+    links: PlaceLinks = NO_LINKS, most: float = MOST, change: float = CHANGE,
 ) -> Floats:  # fmt: skip
     """Return places (n,) near the given ascending ones whose neighbouring steps differ by a limited ratio.
 
     Places that are `fixed` (n,) do not change. `limit` is the logarithm of the ratio; if it cannot be kept,
     it is exceeded as little as possible. On a closed curve the last step leads to the first place. Where
-    places would move by more than `most` steps, the limit is less strict.
+    places would move by more than `most` steps, the limit is less strict. `change` is μ.
     """
-    line = _Line.of(places, fixed, measures, closed, links)
+    line = _Line.of(places, fixed, measures, closed, links, change)
     new = places
     for _ in range(TRIES):
         if fixed.all() or not line.exceeded(places, limit):
@@ -137,8 +146,8 @@ def evened_loops(
         fixed = mesh.places.cells[order] > 0
         if not fixed.any():
             fixed[0] = True  # else all may go round
-        new = evened_places(arcs[order], fixed, measure, limit, closed=True, most=most) % measure.arcs[-1]
-        arcs[order] = new
+        new = evened_places(arcs[order], fixed, measure, limit, closed=True, most=most, change=FRONTS)
+        arcs[order] = new = new % measure.arcs[-1]
         shift = np.zeros_like(nodes)
         shift[order] = mesh.domain.loops[number].at(new) - mesh.nodes[order]
         nodes += _spread(layout, number, shift)
@@ -171,9 +180,12 @@ class _Line:
     stiffness: Floats
     """(f,) σ / s²."""
     links: PlaceLinks
+    change: float
 
     @classmethod
-    def of(cls, places: Floats, fixed: Bools, measures: Measures, closed: bool, links: PlaceLinks) -> _Line:
+    def of(
+        cls, places: Floats, fixed: Bools, measures: Measures, closed: bool, links: PlaceLinks, change: float
+    ) -> _Line:
         n = len(places)
         first = np.arange(n if closed else n - 2)
         triples = (first[:, None] + np.arange(3)) % n
@@ -182,7 +194,7 @@ class _Line:
         if not closed:
             around[[0, -1]] = 2.0 * places[0] - places[1], 2.0 * places[-1] - places[-2]
         step = np.diff(around)
-        return cls(measures, closed, free, triples, (MOVE / (step[1:] * step[:-1]))[free], links)
+        return cls(measures, closed, free, triples, (MOVE / (step[1:] * step[:-1]))[free], links, change)
 
     @cached_property
     def equations(self) -> NormalEquations:
@@ -218,7 +230,7 @@ class _Line:
         places, start, weight = places.copy(), places[self.free], EXCESS
         limits = self._limits(limit)
         terms = [
-            GrowthLimit.at(each, most - MARGIN)
+            GrowthLimit.at(each, most - MARGIN, self.change)
             for each, most in zip(self.growth(places), limits, strict=True)
         ]
 

@@ -23,7 +23,7 @@ from meshonet.solvers.least_squares import Residuals
 EXCESS, RISE, MOST_WEIGHT = 10.0, 1.6, 1e4
 """Initial w, its factor in each step, and its largest value."""
 CHANGE = 1.0
-"""μ."""
+"""μ, if none is given."""
 NEARLY = 0.05
 """Difference from the limit, in logarithms, within which ratios are treated as if they exceeded it."""
 LINEAR = 0.1
@@ -37,28 +37,29 @@ Numbers = TypeVar("Numbers", Floats, Complexes)
 
 @dataclass(frozen=True, eq=False)
 class GrowthLimit:
-    """The term for logarithms of ratios (k,): `limit` is L, one or (k,), `wanted` (k,) is ρ0."""
+    """The term for logarithms of ratios (k,): `limit` is L, one or (k,), `wanted` (k,) is ρ0, `change` μ."""
 
     limit: float | Floats
     wanted: Floats
+    change: float = CHANGE
 
     @classmethod
-    def at(cls, growth: Floats, limit: float | Floats) -> GrowthLimit:
+    def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> GrowthLimit:
         """Return the term of a limit for initial logarithms `growth` (k,) of the ratios."""
-        return cls(limit, np.clip(growth, -limit, limit))
+        return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:
         """Return the contribution of each ratio (k,) to the term, for w = `weight`."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         near = np.minimum(excess, LINEAR)
-        return np.asarray(weight * near * (2.0 * excess - near) + CHANGE * (growth - self.wanted) ** 2)
+        return np.asarray(weight * near * (2.0 * excess - near) + self.change * (growth - self.wanted) ** 2)
 
     def residuals(self, growth: Floats, derivatives: Floats, weight: float) -> Residuals:
         """Return the residuals for a Gauss-Newton step, from derivatives (k, m) of the logarithms."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         pull = weight * np.minimum(1.0, LINEAR / np.maximum(excess, LINEAR))
-        stiffness = np.where(np.abs(growth) > self.limit - NEARLY, CHANGE + pull, CHANGE)
-        slope = CHANGE * (growth - self.wanted) + pull * np.copysign(excess, growth)
+        stiffness = np.where(np.abs(growth) > self.limit - NEARLY, self.change + pull, self.change)
+        slope = self.change * (growth - self.wanted) + pull * np.copysign(excess, growth)
         return Residuals(derivatives, stiffness, slope)
 
 

@@ -32,6 +32,18 @@ def test_arcs_keep_their_ends_and_grow_by_no_more_than_the_limit():
     assert np.abs(new - arcs)[:10].max() < 0.5  # and move most near where they differed
 
 
+def test_the_less_ratios_are_kept_the_fewer_places_move():
+    places = np.concatenate([np.arange(20.0), 20.0 + 1.5 * np.arange(20)])
+    around = Measures(np.array([0.0, 50.0]), np.array([[0.0, 50.0]]))
+    kept, given = (
+        evened_places(places, np.arange(40) == 0, around, LIMIT, closed=True, change=change)
+        for change in (1.0, 0.2)
+    )
+    assert largest_growth(np.diff(np.append(given, 50.0))) <= 1.2 + 1e-9
+    moved = [np.count_nonzero(np.abs(new - places) > 0.1) for new in (kept, given)]
+    assert moved[1] < 0.75 * moved[0]
+
+
 def test_held_arcs_stay():
     arcs = np.concatenate([[0.0, 0.3], 0.3 + np.arange(1.0, 41.0)])
     new = evened_arcs(arcs, LIMIT, 2)
