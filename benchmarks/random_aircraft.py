@@ -1,9 +1,9 @@
-"""Random bodies with a wing of real sections, by seed."""
+"""Random bodies with a wing of real sections, and those with a fin and a tail plane too, by seed."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +12,11 @@ from random_rows import readable_airfoils
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.aircraft.fin import Fin
 from meshonet.geometry.sections.section import Section
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.airfoil.naca import naca
 
 Floats = NDArray[np.float64]
 RADIUS, LENGTH, SPAN = 0.06, 1.1, 0.5
@@ -50,6 +52,48 @@ def drawn_aircraft(airfoils: list[Airfoil], seed: int, count: int) -> list[Drawn
     """
     generator = np.random.default_rng(seed)
     return [_drawn(airfoils, generator, number) for number in range(count)]
+
+
+def drawn_with_fins(airfoils: list[Airfoil], seed: int, count: int) -> list[DrawnAircraft]:
+    """Return the aircraft of `drawn_aircraft` with a fin, every other one with a tail plane too.
+
+    The fin begins at 0.7 to 0.8 of the body's length; its chord is 1.5 to 2.5 body radii, its height above
+    the axis 2.5 to 4.5, its sweep 0 to 50 degrees. The tail plane begins 1 radius ahead of it to 1 behind,
+    0.3 radii below to 0.3 above the axis; its chord is 1.2 to 2 radii, its span 2.5 to 4.5, its sweep 0 to 40
+    degrees. Both are 8 to 12 % thick, with a taper of 0.4 to 0.8.
+    """
+    generator = np.random.default_rng([seed, 1])
+    drawn = drawn_aircraft(airfoils, seed, count)
+    return [_with_fin(each, generator, tail=bool(number % 2)) for number, each in enumerate(drawn)]
+
+
+def _with_fin(drawn: DrawnAircraft, generator: np.random.Generator, *, tail: bool) -> DrawnAircraft:
+    x = generator.uniform(0.7, 0.8) * LENGTH
+    sections, words = _trapezium(generator, x, 0.0, (1.5, 2.5), 50.0)
+    others: list[Stack] = [Fin(sections, tip="flat", name="fin")]
+    words = f"{drawn.words}; fin at {x:.3f}, {words}"
+    if tail:
+        x += generator.uniform(-1.0, 1.0) * RADIUS
+        y = generator.uniform(-0.3, 0.3) * RADIUS
+        sections, more = _trapezium(generator, x, y, (1.2, 2.0), 40.0)
+        others.append(Stack(sections, tip="flat", name="tail"))
+        words += f"; tail plane at {x:.3f}, y {y / RADIUS:+.2f} radii, {more}"
+    return replace(drawn, aircraft=replace(drawn.aircraft, others=tuple(others)), words=words)
+
+
+def _trapezium(
+    generator: np.random.Generator, x: float, y: float, chords: tuple[float, float], most: float
+) -> tuple[tuple[Section, Section], str]:
+    """Return the sections of a fin or a tail plane that begins at x, y, and what it was drawn with."""
+    chord, taper = generator.uniform(*chords) * RADIUS, generator.uniform(0.4, 0.8)
+    span, sweep = generator.uniform(2.5, 4.5) * RADIUS, generator.uniform(0.0, most)
+    shape = naca(f"00{generator.integers(8, 13):02d}")
+    behind = span * math.tan(math.radians(sweep))
+    sections = Section(shape, chord, 0.0, x, y), Section(shape, chord * taper, span, x + behind, y)
+    words = (
+        f"chord {chord / RADIUS:.2f}, span {span / RADIUS:.2f} radii, taper {taper:.2f}, sweep {sweep:.0f}"
+    )
+    return sections, words
 
 
 def _drawn(airfoils: list[Airfoil], generator: np.random.Generator, number: int) -> DrawnAircraft:

@@ -27,8 +27,8 @@ from meshonet.solvers.aircraft.exact_cells import at_height, between_walls
 from meshonet.solvers.aircraft.lofted_map import map_around, points_above
 from meshonet.solvers.aircraft.plan import AircraftPlan, plan_of
 from meshonet.solvers.aircraft.request import AircraftRequest
-from meshonet.solvers.aircraft.tip_cells import last_cells
-from meshonet.solvers.aircraft.wall_normals import off_body, off_tip, off_wing
+from meshonet.solvers.aircraft.tip_cells import arcs_beyond, last_cells
+from meshonet.solvers.aircraft.wall_normals import across_tip, off_body, off_tip, off_wing
 from meshonet.solvers.blocking.layers.attach import sampled
 from meshonet.solvers.rows.columns import resampled, with_first
 from meshonet.solvers.rows.span_lines import SpanLines
@@ -36,7 +36,6 @@ from meshonet.solvers.rows.span_spacing import (
     SAMPLES,
     Ends,
     LineArcs,
-    smooth_arcs,
     spaced_cells,
     two_sided,
 )
@@ -87,13 +86,14 @@ def planned_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, fl
     on_tip = np.append(walls, np.arange(len(last), len(tip)))
     ends = np.append(last, np.full(len(tip) - len(last), first))
     beyond = _beyond_tip(space, tip, on_tip, ends, growth)
-    low = _flat(space.points(beside), aircraft)
+    low, high = (_flat(space.points(places), aircraft) for places in (beside, beyond))
+    for wing, ring in zip(plan.wings, rings, strict=True):
+        low, high = across_tip(low, high, ring, wing, first)
     low = off_body(low, points_above(space, beside[0], first), rings, first)
     for wing, ring in zip(plan.wings, rings, strict=True):
         low = off_wing(low, ring, first, closed=not wing.fin)
         wall, near = ring[:, 0], ring[:, 1]
         low[1, near] = between_walls((low[1, wall], low[0, near]), low[1, near], first)
-    high = _flat(space.points(beyond), aircraft)
     inside = lattices[plan.levels.patches :]
     for wing, ring, *cap in zip(plan.wings, rings, inside[::2], inside[1::2], strict=True):
         high = off_tip(high, np.concatenate([each.ravel() for each in cap]), ring, wing)
@@ -125,7 +125,7 @@ def _flat(points: Floats, aircraft: Aircraft) -> Floats:
 def _level(space: BodyMap, plan: AircraftPlan, k: int, first: float) -> list[Floats]:
     """Return the patches (ni, nj, 3) of s, theta, zeta of the key level `k`."""
     columns = [[each[k] for each in column] for column in plan.holes]
-    patches = level_patches(plan.levels, columns)
+    patches = level_patches(space, plan.levels, columns)
     holes = [hole for column in columns for hole in column]
     for number, hole, sections in zip(plan.levels.collar_patches, holes, plan.sections, strict=True):
         made = patches[number]
@@ -204,7 +204,7 @@ def _beyond_tip(space: BodyMap, tip: Floats, on_tip: Indices, first: Floats, gro
     table[..., 2] += np.linspace(0.0, 1.0, _FINE) * (1.0 - tip[:, 2:])
     arcs = _arcs(space, table)
     cells = spaced_cells(float(arcs[:, -1].max()), (float(first.min()), _UNBOUNDED), growth, _UNBOUNDED, 8)
-    wanted = smooth_arcs(arcs[:, -1], (first, None), cells)
+    wanted = arcs_beyond(arcs[:, -1], first, cells)
     places = np.moveaxis(sampled(table, arcs, np.minimum(wanted, arcs[:, -1:])), 1, 0)
     places[1, on_tip] = at_height(space, places[0, on_tip], places[1, on_tip], float(first.min()))
     return places

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import arctan2, cos, sin
 from meshonet.geometry.surface.pole_core import PoleCore, core_of
-from meshonet.solvers.aircraft.collar_level import FEWEST, WIDEST, lines_between
+from meshonet.solvers.aircraft.collar_level import FEWEST, WIDEST
+from meshonet.solvers.aircraft.level_lines import Points, Side, lines_between, ways_between
 from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
 
 _POLE_CELL = 0.5
@@ -35,10 +37,11 @@ class BodyEnd:
     cells: int
 
     @classmethod
-    def of(cls, levels: list[tuple[float, float]], lines: int) -> BodyEnd:
-        """Return the end for ways from the pole to the collar, and cells there, of some levels."""
-        way, last = levels[0]
-        theta = np.linspace(0.0, np.pi, lines + 1)
+    def of(cls, points: Points, sides: Sequence[Side]) -> BodyEnd:
+        """Return the end for the sides of columns on levels from the root on, s counted from the pole."""
+        nodes, cells = sides[0]
+        way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))
+        theta = np.linspace(0.0, np.pi, len(sides[0][1]))
         pole = _POLE_CELL * last
         count = smooth_cells(way, (pole, last), WIDEST, 2 * FEWEST)
         s = smooth_arcs(np.array([way]), (pole, last), count)[0]
@@ -46,20 +49,27 @@ class BodyEnd:
             [s * cos(theta)[:, None], s * sin(theta)[:, None], np.zeros((len(theta), len(s)))], axis=-1
         )
         core = core_of(polar, 2, max(count // 2, 3), even=True)
-        at, step = float(s[core.at]), float(s[core.at + 1] - s[core.at])
-        cells = max(smooth_cells(far - at, (step, size), WIDEST, FEWEST) for far, size in levels)
-        return cls(theta, core, at, step, cells)
+        end = cls(theta, core, float(s[core.at]), float(s[core.at + 1] - s[core.at]), 0)
+        lines = [end._lines(*side) for side in sides]
+        begin, side, first, cells = (np.concatenate(each) for each in zip(*lines, strict=True))
+        return replace(
+            end, cells=smooth_cells(*ways_between(points, begin, side, (first, cells)), WIDEST, FEWEST)
+        )
 
-    def patches(self, side: Floats, last: Floats) -> tuple[Floats, Floats]:
+    def _lines(self, side: Floats, last: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Return places (n, 3) where lines to a `side` (n, 3) begin and end, and cells (n,) there in s."""
+        zeta = 0.5 * float(side[0, 2] + side[-1, 2])
+        begin = np.stack([np.full(len(side), self.at), self.theta, np.full(len(side), zeta)], axis=1)
+        return begin, side, np.full(len(side), self.step), last
+
+    def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
         """Return rows and core (., ., 3) from the pole to the `side` (n, 3) of a column, with `last` cells.
 
-        Both are places whose s is counted from the pole.
+        Both are places whose s is counted from the pole, as it is in those of `points`.
         """
-        far, zeta = side[:, 0], 0.5 * float(side[0, 2] + side[-1, 2])
-        arcs = self.at + smooth_arcs(far - self.at, (self.step, last), self.cells)
-        begin = np.stack([np.full(len(side), self.at), self.theta, np.full(len(side), zeta)], axis=1)
-        lines = lines_between(arcs, begin, side)
-        lines[:, -1, 0] = far
+        begin, end, *sizes = self._lines(side, last)
+        lines = lines_between(points, begin, end, (sizes[0], sizes[1]), self.cells)
+        zeta = float(begin[0, 2])
         rows = _polar(self.core.rows[:-1, :, :2], zeta).swapaxes(0, 1)
         rows[0, :, 1], rows[-1, :, 1] = 0.0, np.pi
         return np.concatenate([rows, lines], axis=1), _polar(self.core.nodes[..., :2], zeta)

@@ -16,27 +16,23 @@ All in (s, theta); collars are made in lengths in space, as units of s and theta
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TypeAlias
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.solvers.aircraft.body_end import BodyEnd
-from meshonet.solvers.aircraft.collar_level import FEWEST, WIDEST, CollarPlan, Hole, lines_between
-from meshonet.solvers.aircraft.column import ColumnLevel, ColumnPlan, Side, planned_column
-from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
+from meshonet.solvers.aircraft.body_map import BodyMap
+from meshonet.solvers.aircraft.collar_level import FEWEST, WIDEST, CollarPlan, Hole
+from meshonet.solvers.aircraft.column import ColumnLevel, ColumnPlan, planned_column
+from meshonet.solvers.aircraft.level_lines import Points, Side, lines_between, ways_between
+from meshonet.solvers.rows.span_spacing import smooth_cells
 
 _EVEN = 1.6
 """Largest cell beside a collar of those to keel and crown, over their mean, where there is a fin: as many
 lines pass beside it as beside wings, and many of them are far from it."""
-
-
-_STEEP = 1.12
-"""Growth in s of cells between columns where there is a fin: levels lead from a wing to it, steeply in the
-middle of the way, where cells are longer in space."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,13 +41,11 @@ class LevelPlan:
 
     Parameters
     ----------
-    length : arc length of the meridian.
     columns : of wings and fins, from nose to tail.
     between : cells between neighbouring columns.
     ends : nose and tail.
     """
 
-    length: float
     columns: tuple[ColumnPlan, ...]
     between: tuple[int, ...]
     ends: tuple[BodyEnd, BodyEnd]
@@ -77,42 +71,43 @@ class LevelPlan:
 
 
 def planned(
-    holes: Sequence[Sequence[Sequence[Hole]]], length: float, first: float, growth: float
+    space: BodyMap, holes: Sequence[Sequence[Sequence[Hole]]], first: float, growth: float
 ) -> LevelPlan:
     """Return the counts for the holes in each column, from nose to tail, on some levels from the root on."""
     plans, levels = zip(*(planned_column(each, first, growth) for each in holes), strict=True)
     columns = _with_equal_lines(plans)
-    most, between = WIDEST, list[int]()
     if any(column.fin for column in columns):
         columns = tuple(column.evened(_EVEN) for column in _level_with_fin(columns, plans))
-        most = _STEEP
-    for before, after in pairwise(levels):
-        ways = [way for pair in zip(before, after, strict=True) for way in _ways(*pair)]
-        between.append(max(smooth_cells(way, sizes, most, FEWEST) for way, sizes in ways))
-    nose = [way for level in levels[0] for way in _to_pole(level.sides[0], 0.0)]
-    tail = [way for level in levels[-1] for way in _to_pole(level.sides[1], length)]
-    lines = columns[0].beside[0] + columns[0].bands, columns[-1].beside[1] + columns[-1].bands
-    ends = BodyEnd.of(nose, lines[0]), BodyEnd.of(tail, lines[1])
-    return LevelPlan(length, columns, tuple(between), ends)
-
-
-Way: TypeAlias = tuple[float, tuple[float, float]]
-"""A way in s, and the lengths of cells at its ends."""
-
-
-def _ways(before: ColumnLevel, after: ColumnLevel) -> Iterator[Way]:
-    """Yield the ways from one column to the next, along the keel and along the crown where they differ."""
-    (start, first), (stop, last) = before.sides[1], after.sides[0]
-    yield from dict.fromkeys(
-        (float(stop[k, 0] - start[k, 0]), (float(first[k]), float(last[k]))) for k in (0, -1)
+    known = [
+        _beside_fins([level.with_counts(plan) for plan, level in zip(columns, each, strict=True)])
+        for each in zip(*levels, strict=True)
+    ]
+    between = tuple(
+        _cells_between(
+            space, [level[k].sides[1] for level in known], [level[k + 1].sides[0] for level in known]
+        )
+        for k in range(len(columns) - 1)
     )
+    length = space.body.length
+    tail = [(_from_tail(nodes, length), cells) for nodes, cells in (level[-1].sides[1] for level in known)]
+    ends = (
+        BodyEnd.of(space.points, [level[0].sides[0] for level in known]),
+        BodyEnd.of(_points_from_tail(space), tail),
+    )
+    return LevelPlan(columns, between, ends)
 
 
-def _to_pole(side: Side, pole: float) -> list[tuple[float, float]]:
-    """Return the ways in s from a pole to a side, and cells there, the shortest first."""
-    nodes, cells = side
-    ways = np.abs(nodes[:, 0] - pole)
-    return sorted({(float(ways[k]), float(cells[k])) for k in (0, -1)})
+def _cells_between(space: BodyMap, sides: Sequence[Side], others: Sequence[Side]) -> int:
+    """Return the cells from one column to the next, by all lines on some levels."""
+    (begin, first), (end, last) = (
+        tuple(np.concatenate(each) for each in zip(*some, strict=True)) for some in (sides, others)
+    )
+    return smooth_cells(*ways_between(space.points, begin, end, (first, last)), WIDEST, FEWEST)
+
+
+def _points_from_tail(space: BodyMap) -> Points:
+    """Return the map to space of places whose s is counted from the tail."""
+    return lambda places: space.points(_from_tail(places, space.body.length))
 
 
 def _with_equal_lines(plans: Sequence[ColumnPlan]) -> tuple[ColumnPlan, ...]:
@@ -138,7 +133,7 @@ def _level_with_fin(columns: Sequence[ColumnPlan], plans: Sequence[ColumnPlan]) 
     return out
 
 
-def level_patches(plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floats]:
+def level_patches(space: BodyMap, plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floats]:
     """Return patches (ni, nj, 3) of s, theta and zeta on a level around the holes of columns.
 
     Those of columns, from nose to tail, then the patches between them, then rows and core of the nose, rows
@@ -148,13 +143,12 @@ def level_patches(plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floa
     patches = [patch for level in levels for patch in level.patches()]
     for cells, before, after in zip(plan.between, levels[:-1], levels[1:], strict=True):
         (start, first), (stop, last) = before.sides[1], after.sides[0]
-        s = start[:, :1] + smooth_arcs(stop[:, 0] - start[:, 0], (first, last), cells)
-        patches.append(lines_between(s, start, stop))
+        patches.append(lines_between(space.points, start, stop, (first, last), cells))
     nose, tail = plan.ends
-    patches += nose.patches(*levels[0].sides[0])
-    back, last = levels[-1].sides[1]
-    patches += [_from_tail(patch, plan) for patch in tail.patches(_from_tail(back, plan), last)]
-    return patches
+    patches += nose.patches(space.points, *levels[0].sides[0])
+    (back, last), length = levels[-1].sides[1], space.body.length
+    made = tail.patches(_points_from_tail(space), _from_tail(back, length), last)
+    return [*patches, *(_from_tail(patch, length) for patch in made)]
 
 
 def _beside_fins(levels: Sequence[ColumnLevel]) -> list[ColumnLevel]:
@@ -171,6 +165,6 @@ def _beside_fins(levels: Sequence[ColumnLevel]) -> list[ColumnLevel]:
     return out
 
 
-def _from_tail(nodes: Floats, plan: LevelPlan) -> Floats:
+def _from_tail(nodes: Floats, length: float) -> Floats:
     """Return places (..., 3) with s counted from the tail, or back."""
-    return nodes * [-1.0, 1.0, 1.0] + [plan.length, 0.0, 0.0]
+    return nodes * [-1.0, 1.0, 1.0] + [length, 0.0, 0.0]

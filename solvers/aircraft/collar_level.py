@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms, smooth_step
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.ties import first_least
 from meshonet.solvers.aircraft.collar import (
     Rectangle,
@@ -137,7 +137,7 @@ def planned_collar(
             break
     plan, levels = first_least(tried, lambda each: -each[0].sine)
     low, top = (
-        max(smooth_cells(level.hole.bands[k], (level.last[1 + k], None), WIDEST, FEWEST) for level in levels)
+        max(smooth_cells(level.hole.bands[k], (level.beside[k], None), WIDEST, FEWEST) for level in levels)
         for k in (0, 1)
     )
     return replace(plan, low=low, top=low if holes[0].fin else top), levels
@@ -176,8 +176,7 @@ class CollarLevel:
             (plan.low, plan.top),
             strict=True,
         ):  # the band there may be short
-            shrinking = way * (1.0 - 1.0 / WIDEST) / (1.0 - math.pow(WIDEST, -cells))
-            last[side] = np.minimum(last[side], min(shrinking, way * plan.widest / cells))
+            last[side] = np.minimum(last[side], _longest(way, cells, plan.widest))
         grown = smooth_arcs(lengths(plane, outer), (plan.first, None), plan.rows)
         last = _graded(np.minimum(last, _AHEAD * (grown[:, -1] - grown[:, -2])))
         ring, between = collar(plane, outer, plan.rows, plan.first, last, plan.straight)
@@ -212,12 +211,31 @@ class CollarLevel:
         return ahead / unit, aft / unit
 
     @cached_property
+    def beside(self) -> tuple[float, float]:
+        """Lengths in space of the first cells of the bands below and above the rectangle.
+
+        They lie between the outermost cells of the collar there and those beside its corners.
+        """
+        outer, half = self.ring[:, -1, 1], (len(self.ring) - 1) // 2
+        edge, nose = self.plan.edge, self.plan.nose
+        corners = (half + nose, len(outer) - 1 - edge), (half - nose, edge)
+        inwards = (-1, 1), (1, -1)
+        low, top = (
+            math.sqrt(
+                math.prod(abs(float(outer[k + way] - outer[k])) for k, way in zip(at, ways, strict=True))
+            )
+            for at, ways in zip(corners, inwards, strict=True)
+        )
+        return math.sqrt(low * self.last[1]), math.sqrt(top * self.last[2])
+
+    @cached_property
     def low_and_top(self) -> tuple[Floats, Floats]:
         """Theta of the lines from the keel to the rectangle, and from there to the crown."""
         out = []
         for cells, way, step in zip(
-            (self.plan.low, self.plan.top), self.hole.bands, self.last[1:3], strict=True
+            (self.plan.low, self.plan.top), self.hole.bands, self.beside, strict=True
         ):
+            step = min(step, _longest(way, cells))
             out.append(smooth_arcs(np.array([way]), (step, None), cells)[0])
         rho = float(self.hole.scale[1])
         low, top = (self.hole.box.low - out[0][::-1]) / rho, (self.hole.box.high + out[1]) / rho
@@ -254,21 +272,15 @@ class CollarLevel:
         return ring
 
 
+def _longest(way: float, cells: int, widest: float = math.inf) -> float:
+    """Return the longest first cell of a band, whose cells may shrink: at most `widest` times their mean."""
+    shrinking = way * (1.0 - 1.0 / WIDEST) / (1.0 - math.pow(WIDEST, -cells))
+    return min(shrinking, way * widest / cells)
+
+
 def _graded(sizes: Floats) -> Floats:
     """Return sizes (n,) around a closed loop, made smaller until neighbours differ little."""
     for _ in range(len(sizes)):
         least = _EVEN * np.minimum(np.roll(sizes[:-1], 1), np.roll(sizes[:-1], -1))
         sizes = np.minimum(sizes, np.append(least, least[:1]))
     return sizes
-
-
-def lines_between(along: Floats, before: Floats, after: Floats) -> Floats:
-    """Return nodes (n, m, k) at s `along` lines (n or 1, m) from places (n, k) to others, s being the first.
-
-    What follows it changes smoothly from one to the other, on the part of the way that all lines share.
-    """
-    begin, end = float(along[:, 0].max()), float(along[:, -1].min())
-    t = np.clip((along - begin) / (end - begin), 0.0, 1.0)[..., None]
-    across = before[:, None, 1:] + (after - before)[:, None, 1:] * smooth_step(t)
-    s = np.broadcast_to(along[..., None], (*across.shape[:2], 1))
-    return np.concatenate([s, across], axis=-1)

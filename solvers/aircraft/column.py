@@ -19,11 +19,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypeAlias
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, smooth_step
+from meshonet.geometry.elementary import exp, log
 from meshonet.solvers.aircraft.collar_level import (
     FEWEST,
     WIDEST,
@@ -33,14 +33,13 @@ from meshonet.solvers.aircraft.collar_level import (
     planned_collar,
     planned_corners,
 )
+from meshonet.solvers.aircraft.level_lines import Side
 from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
-
-Side: TypeAlias = tuple[Floats, Floats]
-"""Nodes (n, 3) s, theta, zeta on the front or back of a column, from the keel, and cells (n,) there in s."""
-
 
 _FOLLOWING = 0.7
 """Share of the angles of lines beside a fin in those below it; the rest is of cells that change evenly."""
+_HALVINGS = 40
+"""Of the interval in which a factor of cells is sought."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,6 +131,11 @@ class ColumnLevel:
         levels = (CollarLevel.of(*each) for each in zip(plan.collars, holes, strict=True))
         return cls(plan, tuple(levels))
 
+    def with_counts(self, plan: ColumnPlan) -> ColumnLevel:
+        """Return the column with the counts of another plan, but those of collars."""
+        levels = (replace(each, plan=counts) for each, counts in zip(self.levels, plan.collars, strict=True))
+        return replace(self, plan=plan, levels=tuple(levels))
+
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
         """Return the column of a wing next to one with a fin: at the crown zeta is the mean of both."""
         zeta = self.zeta
@@ -139,10 +143,9 @@ class ColumnLevel:
 
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
         """Return the column of a fin alone next to one of a wing, of whose `side` it nearly has the lines."""
-        own, others = self.low, side[0][:, 1]
-        others = others[: len(own)] * (own[-1] / others[len(own) - 1])
+        own, others = self.low, side[0][: len(self.low), 1]
         keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
-        return replace(self, below=own + _FOLLOWING * (others - own), keel=keel)
+        return replace(self, below=_followed(own, others), keel=keel)
 
     @property
     def zeta(self) -> float:
@@ -159,7 +162,7 @@ class ColumnLevel:
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])
-        return (high - low) * rho, (wing.last[2], fin.last[1])
+        return (high - low) * rho, (wing.beside[1], fin.beside[0])
 
     @property
     def _gap(self) -> tuple[float, float]:
@@ -237,6 +240,25 @@ class ColumnLevel:
 def _fade(theta: Floats) -> Floats:
     """Return what goes smoothly from 0 at the first of angles (n,) to 1 at the last."""
     return smooth_step((theta - theta[0]) / (theta[-1] - theta[0]))
+
+
+def _followed(own: Floats, others: Floats) -> Floats:
+    """Return angles (n,) of which the cells are most of the way between their `own` and those of `others`.
+
+    Last cells are their own, and from there on cells change by `WIDEST` at most.
+    """
+    mine, wanted = (log(np.diff(each)[::-1]) for each in (own, others))
+    cone = log(np.float64(WIDEST)) * np.arange(len(mine))
+    wanted = mine + _FOLLOWING * (wanted - mine)
+    low, high = -10.0, 10.0
+    for _ in range(_HALVINGS):
+        more = 0.5 * (low + high)
+        steps = exp(np.clip(wanted + more, mine[0] - cone, mine[0] + cone))
+        low, high = (more, high) if float(steps.sum()) < own[-1] else (low, more)
+    steps *= own[-1] / float(steps.sum())
+    out = np.concatenate([[0.0], np.cumsum(steps[::-1])])
+    out[-1] = own[-1]
+    return out
 
 
 def _lattice(s: Floats, theta: Floats, zeta: Floats | float) -> Floats:

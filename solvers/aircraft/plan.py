@@ -91,7 +91,7 @@ class AircraftPlan:
         wings, sections = ordered(columns, wings), ordered(columns, sections)
         holes = holes_of(space, grouped(columns, wings), grouped(columns, sections))
         known = [[[each[k] for k in _PLANNED] for each in column] for column in holes]
-        levels = planned(known, aircraft.body.length, first, growth)
+        levels = planned(space, known, first, growth)
         for wing, each, made in zip(wings, sections, levels.collars, strict=True):
             if made.sine <= 0.0 and not request.allow_invalid:
                 _refuse_acute(space, wing.name, each[0])

@@ -1,6 +1,7 @@
 """Heights of cells on both sides of the level of the tip: of its layers beside the wing, thicker far away.
 
-Without this the layers of the tip would go around the aircraft as a shell of thin cells.
+Without this the layers of the tip would go around the aircraft as a shell of thin cells. Beyond the tip cells
+far away keep their height until those of its layers have it too: from there on levels are parallel.
 """
 
 from __future__ import annotations
@@ -9,12 +10,41 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.elementary import exp, log
+from meshonet.solvers.rows.columns import arcs_of
 
 _SHARE = 0.5
 """Share of the logarithm of even cells over first ones by which cells far away are thicker: with all of it,
 levels beyond the tip would lean far."""
 _WAY = 5.0
 """Way from the tip to these cells, over the thickness that the layers of the tip would have of even cells."""
+
+_ROUNDS = 40
+"""Most steps of Newton's method for the growth of cells."""
+_STILL = 1e-13
+"""Change of its logarithm below which these end."""
+
+
+def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
+    """Return arcs (n, cells + 1) on lines of `lengths` (n,) beyond the tip, with cells from `first` (n,) on.
+
+    The fourth power of a size is that of cells that grow by a constant ratio from the least of all first
+    ones on, and what the fourth power of the line's own first one is more than that.
+    """
+    least = float(first.min())
+    more = (np.square(np.square(first / least)) - 1.0)[:, None]
+    place, wanted = np.arange(cells, dtype=np.float64), lengths / least
+    rate = log(wanted) / (cells - 1)  # the last cell alone is as long: above the root
+    for _ in range(_ROUNDS):  # Newton's method on the logarithm of the sum, which is convex
+        grown = exp(4.0 * rate[:, None] * place)
+        sizes = np.sqrt(np.sqrt(more + grown))
+        total = sizes.sum(axis=1)
+        slope = (sizes * (grown / (more + grown)) * place).sum(axis=1) / total
+        before, rate = rate, rate - log(total / wanted) / slope
+        if (np.abs(rate - before) < _STILL).all():
+            break
+    arcs = arcs_of(sizes * (lengths / sizes.sum(axis=1))[:, None])
+    arcs[:, -1] = lengths
+    return arcs
 
 
 def last_cells(points: Floats, section: Indices, even: Floats, first: float, growth: float) -> Floats:

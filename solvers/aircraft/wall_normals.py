@@ -24,6 +24,10 @@ _TURN = 0.5
 """Distance from another wall that stands for the chord of a tip, beside which there is none."""
 
 
+_OBLIQUE = 0.4
+"""Largest cosine of the angle of a level at the edge of a tip and the middle of directions of lines there."""
+
+
 def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: float) -> Floats:
     """Return points (k, p, 3) of lines from a body, row k = 0, whose first cells, `first` high, are normal.
 
@@ -68,6 +72,48 @@ def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Fl
     return out
 
 
+def across_tip(
+    low: Floats, high: Floats, ring: Indices, wing: WingLines, first: float
+) -> tuple[Floats, Floats]:
+    """Return points (k, p, 3) below and beyond a tip, where its level is less oblique to lines at its edge.
+
+    Lines come to the tip along the span and leave it at right angles to it. The collar `ring` (n, m) is
+    turned near the edge, towards right angles to the middle of both directions, where it is much nearer to
+    these; this fades along the lines, and where they begin and end. First cells stay `first` high.
+    """
+    level = high[0, ring]
+    along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]
+    middle = along + lines / norms(lines)[:, None]
+    middle /= norms(middle)[:, None]
+    away = level[:, 1] - level[:, 0]
+    away /= norms(away)[:, None]
+    part = (away * middle).sum(axis=1)
+    less = np.clip(part, -_OBLIQUE, _OBLIQUE)
+    square = away - part[:, None] * middle
+    square *= (np.sqrt(1.0 - less * less) / norms(square))[:, None]
+    turned = square + less[:, None] * middle - away
+    reach = _TURN * _chord(level[:, 0], wing)
+    moved = turned[:, None] * _moved(level.swapaxes(0, 1), np.full(len(level), reach)).T[..., None]
+    out = []
+    for points in (low[::-1], high):
+        arcs = arc_lengths(points[:, ring].transpose(1, 2, 0, 3))
+        way = arcs / (_WAY * reach)
+        fade = exp(-way) * (1.0 + way) * (1.0 - arcs / arcs[..., -1:]) ** 2
+        near = points.copy()
+        near[:, ring] += (fade[..., None] * moved[:, :, None]).transpose(2, 0, 1, 3)
+        out.append(near)
+    below, beyond = out[0][::-1], out[1]
+    wall, beside = ring[:, 0], ring[:, 1]
+    below[1:, beside] = _at(below[1:, wall], below[1:, beside], first)
+    beyond[0, beside] = below[-1, beside]
+    return below, beyond
+
+
+def _chord(edge: Floats, wing: WingLines) -> float:
+    """Return the chord of a tip with nodes (n, 3) around it."""
+    return (1.0 if wing.fin else 0.5) * float(norms(np.diff(edge, axis=0)).sum())
+
+
 def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
     """Return points (k, p, 3) of lines beyond a tip, row k = 0, whose first cells on it are normal.
 
@@ -80,7 +126,7 @@ def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Flo
     away = points[1, columns] - points[0, columns]
     first = norms(away)
     turned = wing.axis - away / first[:, None]
-    chord = (1.0 if wing.fin else 0.5) * float(norms(np.diff(points[0, ring[:, 0]], axis=0)).sum())
+    chord = _chord(points[0, ring[:, 0]], wing)
     share = np.concatenate([np.ones(len(cap)), (fade * fade).ravel()])
     out = points.copy()
     out[:, columns] += (
@@ -99,6 +145,6 @@ def _moved(lines: Floats, beside: Floats) -> Floats:
 
 
 def _at(wall: Floats, beside: Floats, first: Floats | float) -> Floats:
-    """Return points (n, 3) towards `beside` at the distance `first`, one or (n,), from a wall."""
+    """Return points (..., 3) towards `beside` at the distance `first`, one or (...), from a wall."""
     away = beside - wall
-    return wall + away * (first / norms(away))[:, None]
+    return wall + away * (first / norms(away))[..., None]

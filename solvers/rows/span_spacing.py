@@ -78,14 +78,19 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
     return arcs
 
 
-def smooth_cells(length: float, ends: tuple[float, float | None], growth: float, least: int) -> int:
+def smooth_cells(
+    length: Floats | float, ends: tuple[Floats | float, Floats | float | None], growth: float, least: int
+) -> int:
     """Return the least number of cells from `least` on that grow from both ends by `growth` at most.
 
-    Cells are those of `smooth_arcs`.
+    Cells are those of `smooth_arcs` on lines of one `length`, or of (n,) with `ends` (n,).
     """
+    lengths = np.atleast_1d(length)
     for cells in range(max(least, 4), MOST_CELLS):
-        steps = np.diff(smooth_arcs(np.array([length]), ends, cells)[0])
-        if steps[1] <= growth * steps[0] and (ends[1] is None or steps[-2] <= growth * steps[-1]):
+        steps = np.diff(smooth_arcs(lengths, ends, cells)).T
+        if (steps[1] <= growth * steps[0]).all() and (
+            ends[1] is None or (steps[-2] <= growth * steps[-1]).all()
+        ):
             return cells
     return MOST_CELLS
 

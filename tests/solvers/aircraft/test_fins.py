@@ -7,6 +7,7 @@ import pytest
 from aircraft_shapes import aircraft, fin, tail, unclaimed_faces, wall
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.wall_surface import wall_surface
 from meshonet.geometry.errors import InputError
@@ -77,6 +78,32 @@ def test_fins_without_a_tail_plane_are_made(changes: dict[str, float]) -> None:
     made, _ = aircraft_grid(replace(aircraft(), others=(fin(**changes),)), SMALL)
     assert folded(made) == 0
     assert measure_volumes(made)["scaled_jacobian"].min > 0.05
+
+
+@pytest.mark.parametrize("sweep", [50.0, 55.0])
+def test_no_cell_is_folded_at_the_tip_of_a_fin_swept_beyond_the_tail_of_the_body(sweep: float) -> None:
+    made, _ = aircraft_grid(with_fin(sweep=sweep), SMALL)
+    assert folded(made) == 0
+
+
+def test_cells_between_a_long_wing_and_a_short_fin_and_behind_it_grow_evenly() -> None:
+    request = AircraftRequest(around=49, span=13, first_cell=2e-3, growth=1.2, far_field=20.0)
+    made, _ = aircraft_grid(replace(aircraft(), others=(fin(),)), request)
+    for name in ("wing-to-fin", "fuselage-tail"):
+        block = made.blocks[made.provenance["zones"].index(name)]
+        ratios = np.concatenate([each.ravel() for each in growth(np.asarray(block.nodes))])
+        assert (ratios <= 1.3).mean() >= 0.995
+        assert ratios.max() < 1.6
+
+
+def growth(nodes: Floats) -> list[Floats]:
+    """The ratios, at least 1, of consecutive edges along all lines of a block."""
+    out = []
+    for axis in range(3):
+        steps = np.moveaxis(np.linalg.norm(np.diff(nodes, axis=axis), axis=-1), axis, 0)
+        ratios = steps[1:] / steps[:-1]
+        out.append(np.maximum(ratios, 1.0 / ratios))
+    return out
 
 
 def test_a_fin_close_behind_the_wing_is_in_its_column() -> None:

@@ -1,0 +1,64 @@
+"""Lines of a level between the sides of columns, or from there to nose and tail, with even cells in space."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, arc_lengths, smooth_step
+from meshonet.solvers.blocking.layers.attach import sampled
+from meshonet.solvers.rows.span_spacing import smooth_arcs
+
+_FINE = 65
+"""Places on a line by which it is measured."""
+
+Points: TypeAlias = Callable[[Floats], Floats]
+"""Points (..., 3) in space at places (..., 3)."""
+
+Side: TypeAlias = tuple[Floats, Floats]
+"""Nodes (n, 3) s, theta, zeta on the front or back of a column, from the keel, and cells (n,) there in s."""
+
+
+def lines_between(
+    points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats], cells: int
+) -> Floats:
+    """Return nodes (n, cells + 1, 3) on lines from places (n, 3) to others, s being the first.
+
+    Their cells change evenly in space, between those that are `sizes` (n,) long in s at both ends.
+    """
+    lines, arcs, ends = _measured(points, begin, end, sizes)
+    nodes = sampled(lines, arcs, np.minimum(smooth_arcs(arcs[:, -1], ends, cells), arcs[:, -1:]))
+    nodes[:, 0], nodes[:, -1] = begin, end
+    return nodes
+
+
+def ways_between(
+    points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats]
+) -> tuple[Floats, tuple[Floats, Floats]]:
+    """Return the lengths (n,) of these lines and of their first and last cells, in space."""
+    _, arcs, ends = _measured(points, begin, end, sizes)
+    return arcs[:, -1], ends
+
+
+def _measured(
+    points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats]
+) -> tuple[Floats, Floats, tuple[Floats, Floats]]:
+    """Return places (n, m, 3) on lines, arc lengths (n, m) there, first and last cells (n,) in space."""
+    lines = _lines(begin, end)
+    s, arcs = lines[..., 0], arc_lengths(points(lines))
+    first, last = ((arcs[:, k + 1] - arcs[:, k]) / (s[:, k + 1] - s[:, k]) for k in (0, -2))
+    return lines, arcs, (first * sizes[0], last * sizes[1])
+
+
+def _lines(begin: Floats, end: Floats) -> Floats:
+    """Return places (n, m, 3) on lines from places (n, 3) to others, at even s.
+
+    What follows s changes smoothly from one to the other, on the part of the way that all lines share.
+    """
+    along = begin[:, :1] + (end - begin)[:, :1] * np.linspace(0.0, 1.0, _FINE)
+    first, last = float(along[:, 0].max()), float(along[:, -1].min())
+    t = np.clip((along - first) / (last - first), 0.0, 1.0)[..., None]
+    across = begin[:, None, 1:] + (end - begin)[:, None, 1:] * smooth_step(t)
+    return np.concatenate([along[..., None], across], axis=-1)
