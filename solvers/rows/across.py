@@ -53,16 +53,18 @@ class ChannelLines:
         slope = np.interp(one, self.upper, np.gradient(self.lower, self.upper))
         scale = weight * np.interp(one, self.upper, self.slant)
         factors = -scale[:, None] * np.stack([slope, np.ones(len(one))], axis=1)
-        aside = self._aside(u[pairs]) - self._aside(start[pairs])
+        aside = self.aside(u[pairs]) - self.aside(start[pairs])
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
         """Return the mean square of tangents by which lines between `pairs` (p, 2) of places u (k,) lean."""
-        upper = wrapped(u[pairs[:, 0]], _FROM)
-        slant = np.interp(upper, self.upper, self.slant)
-        return float(((slant * self._aside(u[pairs])) ** 2).mean())
+        return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
-    def _aside(self, pairs: Floats) -> Floats:
+    def weights(self, pairs: Floats) -> Floats:
+        """Return the square of the slant (p,) of lines between pairs (p, 2) of places."""
+        return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
+
+    def aside(self, pairs: Floats) -> Floats:
         """Return by how much u on the lower side (p,) is aside of what is opposite that on the upper one."""
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

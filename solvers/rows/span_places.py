@@ -7,6 +7,7 @@ between places change linearly with the height.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -17,7 +18,12 @@ from meshonet.geometry.threads import in_threads
 from meshonet.solvers.rows.across import ChannelLines
 from meshonet.solvers.rows.opposite import opposite_places
 from meshonet.solvers.rows.section_plane import SectionPlane
+from meshonet.solvers.rows.upright import upright
 from meshonet.solvers.rows.wall_places import even_wall_places
+
+BASE = 7
+"""Fewest cells between the corners of an edge that is cut off, around both of which cells grow."""
+_NEAR_EDGE = 0.1  # places from an edge up to which corners are its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,15 +48,20 @@ class SpanPlaces:
         `pairs` (p, 2) are nodes on the upper and the lower side that lines across the channel join.
         """
         corners, half = planes[0].corners, len(planes) // 2
-        if not any(gaps):
-            free = at_corners(places, corners)
-            return cls((free, free), gaps)
-        near = planes if all(gaps) else planes[: half + 1] if gaps[0] else planes[half:]
-        mirrored = opposite_places(places, pairs, ChannelLines.of(near))
-        nodes = _opposite_nodes(mirrored, corners)
-        mirrored[nodes] = corners
-        free = _drawn(places, nodes, corners)
-        return cls((mirrored if gaps[0] else free, mirrored if gaps[1] else free), gaps)
+        if any(gaps):
+            near = planes if all(gaps) else planes[: half + 1] if gaps[0] else planes[half:]
+            mirrored = opposite_places(places, pairs, ChannelLines.of(near))
+            nodes, mirrored = _with_corners(mirrored, _opposite_nodes(mirrored, corners), corners)
+            free = _drawn(places, nodes, corners)
+        else:
+            nodes, free = _with_corners(places, corner_nodes(places, corners), corners)
+            mirrored = free
+        ends = mirrored if gaps[0] else free, mirrored if gaps[1] else free
+        if not all(gaps):
+            fixed = np.zeros(len(places), dtype=bool)
+            fixed[nodes] = True
+            ends = upright(ends, (not gaps[0], not gaps[1]), planes, pairs, fixed)
+        return cls(ends, gaps)
 
     def at(self, height: float) -> Floats:
         """Return the places (k,) at a height, 0 to 1."""
@@ -79,6 +90,32 @@ def at_corners(places: Floats, corners: Floats) -> Floats:
 def corner_nodes(places: Floats, corners: Floats) -> Indices:
     """Return which of places (k,) are nearest to `corners` (c,)."""
     return np.abs(wrapped(places - corners[:, None])).argmin(axis=1)
+
+
+def _with_corners(places: Floats, nodes: Indices, corners: Floats) -> tuple[Indices, Floats]:
+    """Return the nodes at `corners` (c,), `nodes` (c,) or some farther apart, and places (k,) with these."""
+    wide = _widened(nodes, corners, len(places))
+    out = places.copy() if (wide == nodes).all() else _drawn(places, wide, corners)
+    out[wide] = corners
+    return wide, out
+
+
+def _widened(nodes: Indices, corners: Floats, count: int) -> Indices:
+    """Return the nodes (c,) at `corners` (c,), of `count` around the blade, farther apart at narrow edges.
+
+    An edge that is cut off gets `BASE` cells or more between its corners, as many more from each side.
+    """
+    out = nodes.copy()
+    for edge in (0.0, 0.5):
+        off = wrapped(corners - edge)
+        near = np.flatnonzero((np.abs(off) < _NEAR_EDGE) & (off != 0.0))
+        if len(near) == 2:
+            first, last = near[np.argsort(off[near], kind="stable")]
+            cells = (nodes[last] - nodes[first]) % count
+            more = max(0, math.ceil(0.5 * (BASE - cells)))
+            out[first] = (nodes[first] - more) % count
+            out[last] = (nodes[last] + more) % count
+    return out
 
 
 def _opposite_nodes(mirrored: Floats, corners: Floats) -> Indices:

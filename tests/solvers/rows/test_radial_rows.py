@@ -12,6 +12,7 @@ from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.checkmesh import faces
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.pipeline.rows import make_row
 from meshonet.solvers.rows.request import RowRequest
@@ -130,6 +131,23 @@ def test_cells_behind_narrow_edges_in_a_gap_grow_little_across_the_outline_of_th
         growth.append(np.maximum(inside / outside, outside / inside).ravel())
     assert grid.quality().folded == 0
     assert np.concatenate(growth).max() < 2.5
+
+
+@pytest.mark.parametrize(
+    ("row", "least"),
+    [(radial_rows.eckardt(), 0.3), (radial_rows.impeller(76), 0.5)],
+    ids=["gap", "no gap"],
+)
+def test_lines_across_a_channel_that_is_longer_at_the_hub_lean_little_there(row: Row, least: float) -> None:
+    grid = make_row(row, RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
+    assert grid.quality().metrics["scaled_jacobian"].min > least
+
+
+def test_checkmesh_takes_the_faces_at_a_narrow_edge_cut_at_a_slant() -> None:
+    grid = make_row(radial_rows.pump(82), RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
+    skewness = faces(grid).face_skewness
+    assert skewness
+    assert skewness.max < 4.0
 
 
 def test_corners_of_a_flat_edge_are_nodes_at_all_heights() -> None:
