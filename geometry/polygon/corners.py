@@ -125,7 +125,7 @@ def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:
         return np.inf
     a2, a1, b1, b2 = points[np.mod([k - 2, k - 1, k + 1, k + 2], n)]
     near, far = math.hypot(*(a1 - b1)), math.hypot(*(a2 - b2))
-    d1, d2 = (math.hypot(*(0.5 * (a + b) - points[k])) for a, b in ((a1, b1), (a2, b2)))
+    d1, d2 = math.hypot(*(0.5 * (a1 + b1) - points[k])), math.hypot(*(0.5 * (a2 + b2) - points[k]))
     if not (near > 0 and far > 0 and 0 < d1 < d2):
         return np.inf
     return math.log(far / near) / math.log(d2 / d1)

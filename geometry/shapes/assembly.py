@@ -44,6 +44,7 @@ def assembled(
 
     Raises InputError: shapes that are not closed curves; a far field that does not apply.
     """
+    _check_airfoils(shapes, sampling)
     as_asked = [_as_asked(shape, sampling) for shape in shapes]
     bodies = list(chain(*(_bodies(shape, label) for (shape, _), label in zip(as_asked, names, strict=True))))
     groups = nested([body.curve.points for body in bodies])
@@ -62,7 +63,7 @@ def assembled(
             raise InputError(f"{bodies[outer].names[0]} encloses the others", "leave {far_field} out")
         others = (_facing(body, hole=True) for k, body in enumerate(bodies) if k != outer)
         loops = (_facing(bodies[outer], hole=False), *others)
-        return DomainShape(Domain(loops, name, notes), unit=loops_extent(loops[1:]))
+        return DomainShape(Domain(loops, name, notes), unit=loops_extent(loops[1:]), assembled=True)
     if any(holes for _, holes in groups):
         raise InputError("some bodies lie within others", "give one loop that encloses the others, or none")
     loops = tuple(_facing(body, hole=True) for body in bodies)
@@ -70,7 +71,17 @@ def assembled(
     points = np.concatenate([loop.curve.points for loop in loops])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     circle = far_loop(middle, sampling.radius * loops_extent(loops))
-    return DomainShape(Domain((circle, *loops), name, notes), unit=unit, far_field=True)
+    return DomainShape(Domain((circle, *loops), name, notes), unit=unit, far_field=True, assembled=True)
+
+
+def _check_airfoils(shapes: Sequence[Shape], sampling: Sampling) -> None:
+    """Raise InputError for what only airfoils have, if none of the shapes is one."""
+    of_airfoils = {"base": sampling.base, "smooth": sampling.smooth, "te": sampling.te != "auto"}
+    bodies = [shape.body if isinstance(shape, Annulus) else shape for shape in shapes]
+    bodies = [body.shape if isinstance(body, Labelled) else body for body in bodies]
+    name = next((name for name, given in of_airfoils.items() if given), "")
+    if name and not any(isinstance(body, Airfoil) for body in bodies):
+        raise InputError("none of the shapes is an airfoil", f"leave {{{name}}} out")
 
 
 def domain_of(shape: Shape, sampling: Sampling) -> DomainShape:
@@ -78,6 +89,9 @@ def domain_of(shape: Shape, sampling: Sampling) -> DomainShape:
 
     Raises InputError: a shape that is not a closed curve, such as a boundary with a wake.
     """
+    if isinstance(shape, DomainShape) and shape.assembled:
+        return shape
+    _check_airfoils([shape], sampling)
     if isinstance(shape, DomainShape):
         return shape
     if isinstance(shape, Boundary) and shape.topology == "quad":
@@ -106,8 +120,7 @@ def _as_asked(shape: Shape, sampling: Sampling) -> tuple[Shape, tuple[str, ...]]
         return _as_asked(shape.shape, sampling)
     if not isinstance(shape, Airfoil):
         return shape, tuple(getattr(shape, "notes", ()))
-    airfoil = shape.normalised() if sampling.normalise else shape
-    airfoil = airfoil.opened(sampling.base) if sampling.base else airfoil
+    airfoil = shape.prepared(sampling)
     te, off = sampling.te, airfoil.curve.departure() / airfoil.chord
     body = airfoil.rounded() if te == "round" else airfoil.wedged() if te == "wedge" else airfoil
     departure = (departure_note(off),) if off > DEPARTURE else ()

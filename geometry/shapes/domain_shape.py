@@ -43,6 +43,7 @@ class DomainShape:
     unit : reference length of Reynolds numbers: the extent of its bodies, or the chord of an airfoil.
     far_field : whether a far field was added around bodies.
     layout : its blocks, if the input has them.
+    assembled : whether it was assembled of several shapes.
     given : the multi-block grid that the domain was taken from, if the input is a grid.
     """
 
@@ -52,6 +53,7 @@ class DomainShape:
     unit: float = 0.0
     far_field: bool = False
     layout: Layout | None = None
+    assembled: bool = False
     given: Grid | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:

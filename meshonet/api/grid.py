@@ -87,11 +87,10 @@ def grid(
     >>> made.ni, made.nj, made.topology, made.quality().folded
     (81, 31, 'o', 0)
     """
-    far_field = parameters.get("far_field")
     request = grid_request(method, res=res, **domain_parameters(parameters))
     if request.of_surface and isinstance(shape, str | Path):
         shape = next(read_shapes(str(shape), surfaces=True))
-    return noted(make_grid(shape_of(shape, assemble=assemble, far_field=far_field), request))
+    return noted(make_grid(shape_of(shape, assembled_by=request.sampling if assemble else None), request))
 
 
 def domain_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
@@ -273,19 +272,17 @@ def sample_family(
     return [member.boundary(sampling) for member in draws(family, count, spread, seed, split)]
 
 
-def shape_of(
-    shape: AnyShape | Sequence[AnyShape], *, assemble: bool = False, far_field: float | None = None
-) -> Shape:
-    """Return a shape that can be sampled; with `assemble`, the domain formed by several shapes.
+def shape_of(shape: AnyShape | Sequence[AnyShape], *, assembled_by: Sampling | None = None) -> Shape:
+    """Return a shape that can be sampled; with `assembled_by`, the domain formed by several shapes.
 
     Raises InputError: a file that cannot be read; an array with a shape other than (n, 2).
     """
-    if assemble:
+    if assembled_by is not None:
         members = [shape] if isinstance(shape, str | Path) else list(cast(Sequence[AnyShape], shape))
         names = [Path(each).stem if isinstance(each, str | Path) else "" for each in members]
         shapes = [shape_of(each) for each in members]
         names = [name or each.name or "body" for name, each in zip(names, shapes, strict=True)]
-        return assembled(shapes, names, Sampling(far_field=far_field), "+".join(names))
+        return assembled(shapes, names, assembled_by, "+".join(names))
     if isinstance(shape, Domain):
         return DomainShape(shape)
     if isinstance(shape, str | Path):

@@ -43,6 +43,5 @@ def layout(shape: AnyShape | Sequence[AnyShape], *, assemble: bool = False, **pa
     >>> len(layout(step).blocks)
     3
     """
-    far_field = parameters.get("far_field")
     request = grid_request("best", **domain_parameters(parameters))
-    return make_layout(shape_of(shape, assemble=assemble, far_field=far_field), request)[0]
+    return make_layout(shape_of(shape, assembled_by=request.sampling if assemble else None), request)[0]

@@ -24,7 +24,7 @@ from meshonet.solvers.blocking.block_grid import cut_off, fine_layout
 from meshonet.solvers.blocking.decomposition.decompose import decompose
 from meshonet.solvers.blocking.decomposition.reuse import carried_over
 from meshonet.solvers.blocking.request import BlockRequest
-from meshonet.solvers.blocking.wall_note import wall_note
+from meshonet.solvers.blocking.wall_note import sharp_edge_notes, wall_note
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import Timings
 
@@ -62,6 +62,7 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
         request.height_note(f"on a length of {shape.unit:.6g}", shape.unit),
         _fewer_cells(request),
         *_at_walls(grid, domain, request.walls, height),
+        *(sharp_edge_notes(fine) if height is not None else ()),
         _cut_off(fine),
         *_folded_coarser(grid, request.refine),
     )

@@ -1,17 +1,24 @@
-"""Note for the report about first cells and growth at walls with layers, measured on the grid."""
+"""Notes for the report about walls with layers, measured on the grid: first cells, growth, sharp edges."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import replace
 
+import numpy as np
+
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import may_be_wall
 from meshonet.geometry.blocks.vertices import vertices
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.quality.lines import lines
 from meshonet.geometry.quality.walls import wall_rows
 from meshonet.geometry.spacing.y_plus import first_cell_note
+from meshonet.solvers.blocking.layers.sheet import has_sharp_edge
+
+WIDEST = 150.0
+"""Angle in degrees of a cell at a sharp edge above which a note says how to avoid it."""
 
 
 def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) -> str:
@@ -34,3 +41,18 @@ def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) 
     growth = max((row.growth.mean for row in rows if row.growth), default=None)
     where = f"node of {', '.join(names)}" if names else "wall node"
     return first_cell_note(low, high, first, growth, where)
+
+
+def sharp_edge_notes(layout: Layout) -> list[str]:
+    """Return a note for each sharp edge that no line with layers leaves, so that lines turn around it."""
+    notes, mesh = [], layout.mesh
+    for loop in mesh.domain.loops[1:]:
+        if has_sharp_edge(loop):
+            x, y = edge = loop.at(loop.corner_arcs[:1])[0]
+            node = int(np.argmin(np.hypot(*(mesh.nodes - edge).T)))
+            angle = loop.corner_angles[0] / (mesh.quads == node).sum()
+            if angle > WIDEST:
+                at = f"the sharp edge of {loop.names[0]}, ({x:.6g}, {y:.6g}),"
+                has = f"have angles of {angle:.0f} degrees"
+                notes.append(f"cells at {at} {has}: {{base}} 0.002 makes it blunt")
+    return notes

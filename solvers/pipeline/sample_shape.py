@@ -121,8 +121,7 @@ def _behind_base(shape: Airfoil, sampling: Sampling, request: GridRequest) -> Ba
     from meshonet.geometry.shapes.airfoil.base_wake import behind_base
 
     refuse(request.chosen, AROUND_BASE)
-    body = shape.smoothed(sampling.smooth) if sampling.smooth else shape
-    body = body.normalised() if sampling.normalise else body
+    body = shape.prepared(sampling)
     height, notes = request.height(), _far_field_advice(request, shape.far_field_unit)
     if height is None:
         from meshonet.solvers.hyperbolic.default_spacing import CHOSEN, first_cell_around_base

@@ -46,7 +46,7 @@ GIVEN_SECTION = "a section that is a grid"
 
 _OF_MARCHED = _row("res", _SHAPE, _FIRST, "constant_layers repair_margin blocks refine", _SIDES)
 _OF_ONE = _OF_MARCHED | _row("slide wall_angle coarse initial walls")
-_OF_MANY = _row("res far_field te base normalise", _FIRST, "constant_layers refine") | _row(
+_OF_MANY = _row("res far_field te base smooth normalise", _FIRST, "constant_layers refine") | _row(
     "cells cell_size walls pitch inlet outlet layout periodic count"
 )
 USES: dict[str, frozenset[str]] = {

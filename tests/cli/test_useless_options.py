@@ -8,13 +8,17 @@ from command_line import BOUNDARY_COMMANDS, Meshonet, dataset, duct
 
 USELESS = {
     "a four-sided outline": ("duct.csv", "--res 31x15", ["--far-field 9"]),
-    "a body": ("disc.csv", "--res 41x15", ["--topology o --corners 0,10,20,30", "--te round", "--wake 5"]),
+    "a body": (
+        "disc.csv", "--res 41x15",
+        ["--topology o --corners 0,10,20,30", "--te round", "--base .01", "--wake 5"],
+    ),
+    "a domain": ("square.csv", "", ["--te round", "--base .01", "--smooth 1e-4"]),
     "given edges": (
         "edges.h5",
         "",
         [
             "--topology o", "--spacing tanh", "--le-spacing .01", "--te-spacing .01", "--far-field 9",
-            "--corners 0,1,2,3", "--te round", "--wake 5", "--wake-nodes 9", "--base-nodes 9",
+            "--corners 0,1,2,3", "--te round", "--wake 5", "--wake-nodes 9", "--base .01", "--base-nodes 9",
             "--smooth 1e-4", "--normalise",
         ],
     ),
@@ -33,6 +37,7 @@ def test_an_option_that_the_shape_has_no_use_for_is_refused(
     Path("duct.csv").write_text("\n".join(f"{x},{y}" for side in ring for x, y in side))
     t = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     Path("disc.csv").write_text("\n".join(f"{x},{y}" for x, y in zip(np.cos(t), np.sin(t), strict=True)))
+    Path("square.csv").write_text("0 0\n9 0\n9 9\n0 9\n\n4 4\n4 5\n5 5\n5 4\n")
     source, base, _ = USELESS[kind]
     done = meshonet(command, source, *base.split(), *words.split(), "-o", "none.h5")
     assert (done.code, len(done.err.splitlines())) == (2, 1)

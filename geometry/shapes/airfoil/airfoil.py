@@ -158,6 +158,12 @@ class Airfoil:
         body.notes += smoothing_notes(self, body, most)
         return body
 
+    def prepared(self, sampling: Sampling) -> Airfoil:
+        """Return the airfoil smoothed, normalised and opened as `sampling` has it."""
+        body = self.smoothed(sampling.smooth) if sampling.smooth else self
+        body = body.normalised() if sampling.normalise else body
+        return body.opened(sampling.base) if sampling.base else body
+
     def rounded(self) -> Airfoil:
         """Return the airfoil with the corners of its blunt base rounded."""
         if not self.blunt:
@@ -217,9 +223,7 @@ class Airfoil:
             raise InputError("topology quad is not made from an airfoil", "use o or c")
         if sampling.corners is not None:
             raise InputError("an airfoil has no corners to choose", "leave {corners} out")
-        body = self.smoothed(sampling.smooth) if sampling.smooth else self
-        body = body.normalised() if sampling.normalise else body
-        body = body.opened(sampling.base) if sampling.base else body
+        body = self.prepared(sampling)
         try:
             return body._around(sampling)
         except CrossingError:

@@ -162,7 +162,7 @@ def base_note(wall: Floats, corner: Floats, base: float, chord: float) -> tuple[
     k = int(np.argmin(np.hypot(*(wall[: len(wall) // 2] - corner).T)))
     if k == 0:
         return ()
-    on, beside = (float(np.hypot(*(wall[i + 1] - wall[i]))) for i in (k - 1, k))
+    on, beside = norms(np.diff(wall[k - 1 : k + 2], axis=0)).tolist()
     ratio = beside / on
     if 1.0 / UNLIKE <= ratio <= UNLIKE:
         return ()

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from block_grids import o_ring
 
+import meshonet
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.solvers.blocking.make import make_blocks
 from meshonet.solvers.blocking.request import BlockRequest
@@ -52,3 +55,21 @@ def test_a_body_in_a_square_is_told_with_its_first_cell(walls: tuple[str, ...], 
 def test_nothing_is_said_of_walls_without_layers() -> None:
     notes = make_blocks(DomainShape(SQUARE), BlockRequest(cells=50)).notes
     assert not [note for note in notes if note.startswith("first cell")]
+
+
+def test_a_sharp_edge_around_which_lines_turn_is_named_with_what_avoids_it(tmp_path: Path) -> None:
+    front, rear = str(tmp_path / "front.dat"), str(tmp_path / "rear.dat")
+    shapes = [front, rear]  # the line behind the first edge meets the second nose
+    for file, x in ((front, 0.0), (rear, 1.1)):
+        points = naca("0012-sharp").curve.points + np.array([x, 0.0])
+        np.savetxt(file, np.concatenate([points, points[:1]]), header=file, comments="")
+    made = {"assemble": True, "first_cell": 1e-4, "far_field": 5.0, "cells": 4000}
+    (note,) = (note for note in meshonet.infer(shapes, **made).notes if "sharp edge" in note)
+    edge = re.match(r"cells at the sharp edge of front, \((\S+), (\S+)\), have angles of (\d+) degrees", note)
+    assert edge is not None, note
+    x, y, angle = map(float, edge.groups())
+    assert (x, y) == pytest.approx((1.0, 0.0), abs=1e-9)
+    assert angle > 160
+    opened = meshonet.infer(shapes, **made, base=0.002)
+    assert not [note for note in opened.notes if "sharp edge" in note]
+    assert opened.quality().metrics["max_angle"].max < 155.0
