@@ -24,7 +24,7 @@ FirstCell = Annotated[str | None, _option(
     "--first-cell", "--wall-spacing", metavar="H|WALL=H,...",
     help="Height of the first cell at every wall node. Around a body the unit is the chord, otherwise that "
     "of the input. The walls of a four-sided domain are south and north. The walls of a multi-block grid are "
-    "its holes or, if a side is called inlet, outlet, axis or symmetry and there is no hole, the other sides. "
+    "its holes; without holes, if a side is called inlet, outlet, axis or symmetry, the other sides. "
     "--walls selects other walls. WALL=H,WALL=H selects walls and gives each its own height. Around a body, "
     "solve-pde and infer then march the grid from the wall.",
 )]
