@@ -167,12 +167,14 @@ def left_out(lines: list[Line]) -> tuple[str, ...]:
     HTML between rows also gets a note, because rows may be missing in a saved web page.
     """
     kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
-    notes = []
+    notes, first, last = [], 0, 0
+    if "row" in kinds:
+        first, last = kinds.index("row"), len(kinds) - 1 - kinds[::-1].index("row")
     for k, line in enumerate(lines):
         what = ""
         if line.kind in ("gap", "broken") and "row" in (kinds[k], kinds[k + 2]):
             what = "no pair of numbers"
-        elif line.kind == "text" and "row" in kinds[:k] and "row" in kinds[k:] and _HTML.search(line.text):
+        elif line.kind == "text" and first < k + 1 < last and _HTML.search(line.text):
             what = "HTML"
         if what:
             notes.append(Change(f"line {line.number}, {line.text.strip()[:40]!r}, is {what} and is left out"))

@@ -131,7 +131,6 @@ def test_a_size_of_cells_is_that_of_the_longest_edges_outside_layers(
             "layers at ramp would end where the boundary goes straight on, at (2, 0); name floor as well",
         ),
         (("--walls", "step"), "would end where the boundary turns away, at (4, 2.5); name roof as well"),
-        ((), "a first cell in a domain without holes; name the walls with --walls: without names"),
     ],
 )
 def test_walls_that_no_layers_go_along_are_refused(

@@ -36,7 +36,7 @@ def test_the_nearest_is_named(meshonet: Meshonet, words: tuple[str, ...], near: 
     "words",
     [
         ("quality", "zebra.vts"),
-        ("infer", "naca:0012", "--zebra"),
+        ("infer", "naca:0012", "--xyzzy"),
         ("infer", "naca:0012", "-o", "g.h5", "--model", "z"),
     ],
 )
