@@ -42,6 +42,8 @@ RAIL = 1e9
 WORTH, FEW = 0.7, 5e-4
 """Part of what exceeds the limit that a round may leave for another one, and share of ratios that are few."""
 _ANGLES = np.radians(60.0), np.radians(120.0)  # limits of θ0, so that bad corners improve
+_WORST = np.radians(15.0), np.radians(165.0)  # angles that no step passes, unless they were beyond before
+_SLACK = 0.02  # radians by which such corners may become worse
 
 
 def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines) -> QuadMesh:
@@ -113,6 +115,8 @@ class _Patch:
     growth: GrowthLimit
     angles: Floats
     """(c,) θ0."""
+    worst: tuple[Floats, Floats]
+    """(c,) least and largest angle permitted."""
     start: Complexes
     """(m,) z0."""
     stiffness: Floats
@@ -134,6 +138,7 @@ class _Patch:
             [np.stack([quads[:, k], quads[:, (k + 1) % 4], quads[:, k - 1]], axis=1) for k in range(4)]
         )
         corners = corners[free[corners].any(axis=1)]
+        initial = _angles(z, corners)
         shortest = np.full(len(z), np.inf)
         length = modulus(z[mesh.edges[:, 1]] - z[mesh.edges[:, 0]])
         for end in mesh.edges.T:
@@ -144,7 +149,11 @@ class _Patch:
         return cls(
             nodes, lines, corners,
             GrowthLimit.at(lines.growth(z), lines.limit - MARGIN),
-            np.clip(_angles(z, corners), *_ANGLES),
+            np.clip(initial, *_ANGLES),
+            (
+                np.maximum(np.minimum(initial - _SLACK, _WORST[0]), 0.0),
+                np.maximum(initial + _SLACK, _WORST[1]),
+            ),
             z[nodes], MOVE / shortest[nodes] ** 2,
             np.where(tangents == 0, 1.0, tangents), np.where(tangents[nodes] == 0, 1.0, RAIL),
             NormalEquations(2 * len(nodes), kinds), _parts(free, (lines.nodes, quads)),
@@ -163,11 +172,12 @@ class _Patch:
         return z, weight
 
     def _values(self, z: Complexes, weight: float, at: Complexes) -> Floats:
-        """Return E of each part (p,) with the nodes that move at `at` (m,); infinite where folded."""
+        """Return E of each part (p,) with moving nodes at `at` (m,); infinite beyond the `worst` angles."""
         z = z.copy()
         z[self.nodes] = at
         angles = _angles(z, self.corners)
-        turned = np.where(angles > 0.0, ANGLE * (angles - self.angles) ** 2, np.inf)
+        least, most = self.worst
+        turned = np.where((angles > least) & (angles < most), ANGLE * (angles - self.angles) ** 2, np.inf)
         grown = self.growth.values(self.lines.growth(z), weight)
         moved = self.stiffness * modulus(at - self.start) ** 2
         count = int(self.part.max()) + 1

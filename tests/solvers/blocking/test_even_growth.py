@@ -126,6 +126,15 @@ def test_a_mesh_that_cannot_be_even_stays_valid(mesh):
     assert (before[..., 0] * edge[..., 1] - before[..., 1] * edge[..., 0]).min() > 0.0
 
 
+def test_no_corner_becomes_nearly_straight_or_closed(mesh):
+    held = (mesh.places.loop == 0) | (np.random.default_rng(0).random(625) < 0.1)
+    new = evened_mesh(mesh, held, GrowthLines.of(mesh, np.log(1.25)))
+    z = (new.nodes[:, 0] + 1j * new.nodes[:, 1])[new.quads]
+    angles = np.degrees(np.angle((np.roll(z, 1, axis=1) - z) / (np.roll(z, -1, axis=1) - z)))
+    assert angles.min() > 15.0
+    assert angles.max() < 165.0
+
+
 def test_edges_at_irregular_vertices_are_compared_across_the_sides_of_blocks():
     turn = np.exp(2j * np.pi * np.arange(10) / 10)
     ring = np.where(np.arange(10) % 2 == 0, 1.0, 1.3) * turn
