@@ -42,7 +42,7 @@ RAIL = 1e9
 WORTH, FEW = 0.7, 5e-4
 """Part of what exceeds the limit that a round may leave for another one, and share of ratios that are few."""
 _ANGLES = np.radians(60.0), np.radians(120.0)  # limits of θ0, so that bad corners improve
-_WORST = np.radians(15.0), np.radians(165.0)  # angles that no step passes, unless they were beyond before
+_WORST = np.radians(5.0), np.radians(175.0)  # angles that no step passes, unless they were beyond before
 _SLACK = 0.02  # radians by which such corners may become worse
 
 
