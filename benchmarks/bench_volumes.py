@@ -142,13 +142,13 @@ def measured(method: Callable[[SixFaces], Solution], faces: SixFaces) -> tuple[f
     return (time.process_time() - begun, *quality(nodes))
 
 
-def table(found: dict[str, list[tuple[float, ...]]]) -> list[str]:
+def table(judged: dict[str, list[tuple[float, ...]]]) -> list[str]:
     """Return a table of what `measured` gave for each method."""
     lines = [
         "| method | valid | minimum SJ, median | deviation: mean / 99 %, medians | CPU s: median / 90 % |"
     ]
     lines += ["| --- | --- | --- | --- | --- |"]
-    for name, rows in found.items():
+    for name, rows in judged.items():
         spent, folded, sj, mean, high = np.array(rows).T
         middle = f"{np.median(sj):.3f} | {np.median(mean):.1f} / {np.median(high):.1f}"
         seconds = f"{np.median(spent):.3f} / {np.quantile(spent, 0.9):.3f}"
@@ -158,7 +158,7 @@ def table(found: dict[str, list[tuple[float, ...]]]) -> list[str]:
 
 def domains(number: int, n: int) -> tuple[str, list[SixFaces]]:
     """Return the table of random domains whose faces do not fold cells by themselves, and these."""
-    found: dict[str, list[tuple[float, ...]]] = {name: [] for name in METHODS}
+    judged: dict[str, list[tuple[float, ...]]] = {name: [] for name in METHODS}
     chosen: list[SixFaces] = []
     refused = 0
     for seed in count(1000):
@@ -170,12 +170,12 @@ def domains(number: int, n: int) -> tuple[str, list[SixFaces]]:
             continue
         chosen.append(faces)
         for name, values in row.items():
-            found[name].append(values)
+            judged[name].append(values)
         if len(chosen) == number:
             break
     lines = [f"{number} random domains of {n}³ nodes ({refused} more are refused: their faces fold cells).\n"]
-    lines += table(found)
-    own, other = (np.array(found[name]) for name in ("variational", "Winslow"))
+    lines += table(judged)
+    own, other = (np.array(judged[name]) for name in ("variational", "Winslow"))
     worse = int(((own[:, 2] < other[:, 2] - 1e-9) | (own[:, 3] > other[:, 3])).sum())
     lines.append(
         f"\nMean deviation or minimum SJ are worse than those of Winslow's grid in {worse} of {number}."
@@ -197,14 +197,14 @@ def networks(chosen: Sequence[SixFaces], epochs: int) -> str:
             "3DMeshNet, given faces": partial(infer_volume, model=model, answer="pasted"),
             "3DMeshNet, repaired": partial(infer_volume, model=model),
         }
-        found = {
+        judged = {
             name: [measured(act, faces) for faces in chosen] for name, act in (METHODS | answers).items()
         }
         off = [_off(infer_volume(faces, model=model, answer="raw").grid.nodes, faces) for faces in chosen]
     for name in answers:
-        found[name] = [(spent + training, *rest) for spent, *rest in found[name]]
+        judged[name] = [(spent + training, *rest) for spent, *rest in judged[name]]
     head = NETWORKS.format(count=len(chosen), epochs=epochs, off=f"{100 * np.median(off):.1f}")
-    return "\n".join([head, *table(found)])
+    return "\n".join([head, *table(judged)])
 
 
 def _off(nodes: Floats, faces: SixFaces) -> float:
@@ -225,9 +225,9 @@ def main() -> None:
     chosen = parser.parse_args()
     with limited_to(1):
         spent = times([n for n in (129, 257) if n <= chosen.largest])
-        found, faces = domains(chosen.domains, 33)
+        quality, faces = domains(chosen.domains, 33)
         learnt = networks(faces[: chosen.networks], chosen.epochs)
-    publish(f"{HEAD}\n## Time\n\n{spent}\n\n## Quality\n\n{found}\n\n{learnt}\n", chosen.page)
+    publish(f"{HEAD}\n## Time\n\n{spent}\n\n## Quality\n\n{quality}\n\n{learnt}\n", chosen.page)
 
 
 if __name__ == "__main__":

@@ -100,13 +100,13 @@ def test_tables_say_what_the_results_hold(tmp_path: Path) -> None:
     assert "| hole | random | 2.0e-02 ± 1e-02 | **3.0e-03 ± 1e-03** |" in page
     assert "- `kno`: in 0 of 1; its error is 0.15 to 0.15 times MeshONet's." in page
     assert "| arch.interpolation | deeponet | 60 | 1 | 1.0e+00 ± 0e+00 | 1.2e-02 ± 0e+00 | 7 |" in page
-    told = (
+    loss = (
         "**Loss: not confirmed on this budget** (arch.interpolation). MeshONet's loss is the lowest of 2. "
         "The losses of the "
         "baselines are 1.7 times (`deeponet`) MeshONet's. The losses of newer operators, which the paper "
         "only cites, are 1.7 times (`wno`) MeshONet's. Mean square error: meshonet 6.0e-01 ± 0e+00, deeponet "
     )
-    assert told in page, "below, but not by orders of magnitude"
+    assert loss in page, "below, but not by orders of magnitude"
     assert "| TFI (`tfi`) | 0.0004 |" in page
     assert "| TFI, the paper's | 0.087 |" in page
     assert "### hexagon" not in page, "what is missing is left out"
@@ -126,8 +126,8 @@ def test_claims_about_quality_are_confirmed_or_not(tmp_path: Path) -> None:
             columns = {
                 name: statistics(angle) for name in ("relative_l2", "boundary", "mean_angle", "folded")
             }
-            told = {"members": 6, "max_angle": statistics(angle), **columns}
-            (results / f"{case}.{way}.json").write_text(json.dumps({"summary": told}))
+            totals = {"members": 6, "max_angle": statistics(angle), **columns}
+            (results / f"{case}.{way}.json").write_text(json.dumps({"summary": totals}))
     for way, seconds in (("meshonet", 0.02), ("pde", 0.01)):
         (results / f"time.{way}.100.json").write_text(json.dumps({"seconds": {"grid": seconds}}))
     subprocess.run([sys.executable, str(PAPER / "tables.py"), str(tmp_path)], check=True)

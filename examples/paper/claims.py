@@ -87,17 +87,17 @@ def quality_claims(results: Path) -> str:
             "meshonet.valid",
             "meshonet-hard.valid",
         )
-        found = {name: summary(results / f"{'.'.join(case)}.{name}.json") for name in names}
-        if not all(found[name] for name in names[:3]):
+        summaries = {name: summary(results / f"{'.'.join(case)}.{name}.json") for name in names}
+        if not all(summaries[name] for name in names[:3]):
             continue
-        angles = {name: told["max_angle"]["mean"] for name, told in found.items() if told}
-        told = tuple(_compared(angles["meshonet.pasted"], angles[name]) for name in names[:2])
+        angles = {name: each["max_angle"]["mean"] for name, each in summaries.items() if each}
+        compared = tuple(_compared(angles["meshonet.pasted"], angles[name]) for name in names[:2])
         own = summary(results / f"{'.'.join(case)}.meshonet.raw.json")
         raw += bool(own) and own["max_angle"]["mean"] < min(angles["tfi"], angles["pde"]) - SAME
         claim = CLAIMED.get(case)
-        cells = ["-", "-"] if claim is None else [" / ".join(claim), "yes" if claim == told else "no"]
-        folded = [f"{found[name]['folded']['sum']:.0f}" if found[name] else "-" for name in names[2:]]
-        rows.append([*case, " / ".join(told), *cells, *folded])
+        cells = ["-", "-"] if claim is None else [" / ".join(claim), "yes" if claim == compared else "no"]
+        folded = [f"{summaries[name]['folded']['sum']:.0f}" if summaries[name] else "-" for name in names[2:]]
+        rows.append([*case, " / ".join(compared), *cells, *folded])
     if not rows:
         return ""
     head = ["case", "split", "max angle against TFI / PDE", "claimed", "confirmed", "folded, boundary pasted"]

@@ -49,8 +49,8 @@ def one(path: Path) -> dict[str, Any]:
     """Return the JSON object of a file, nothing when there is none."""
     if not path.exists() or not path.read_text(encoding="utf-8").strip():
         return {}
-    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8").splitlines()[-1])
-    return found
+    report: dict[str, Any] = json.loads(path.read_text(encoding="utf-8").splitlines()[-1])
+    return report
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

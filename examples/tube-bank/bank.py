@@ -60,9 +60,13 @@ def main() -> None:
     parser.add_argument("--across", type=float, default=1.8, help="pitch across the flow in diameters")
     parser.add_argument("--along", type=float, default=1.5, help="pitch from row to row in diameters")
     parser.add_argument("--diameter", type=float, default=1.0, help="diameter of the tubes")
-    given = parser.parse_args()
-    sizes = (2.0 * given.along * given.diameter, given.across * given.diameter, 0.5 * given.diameter)
-    given.file.write_text(feature(*sizes))
+    options = parser.parse_args()
+    sizes = (
+        2.0 * options.along * options.diameter,
+        options.across * options.diameter,
+        0.5 * options.diameter,
+    )
+    options.file.write_text(feature(*sizes))
 
 
 if __name__ == "__main__":

@@ -89,11 +89,11 @@ def domain_of(shape: Shape, sampling: Sampling) -> DomainShape:
 
     Raises InputError: a shape that is not a closed curve, such as a boundary with a wake.
     """
-    if isinstance(shape, DomainShape) and shape.assembled:
+    if isinstance(shape, DomainShape):
+        if not shape.assembled:
+            _check_airfoils([shape], sampling)
         return shape
     _check_airfoils([shape], sampling)
-    if isinstance(shape, DomainShape):
-        return shape
     if isinstance(shape, Boundary) and shape.topology == "quad":
         loop = _edges_loop(shape)
     elif isinstance(shape, Outline) and sampling.topology.replace("auto", shape.topology) == "quad":

@@ -370,6 +370,6 @@ def test_many_blocks_have_one_line_with_the_largest_growth(meshonet: Meshonet) -
     done = meshonet("quality", "g.vtm")
     growth = meshonet("quality", "g.vtm", "--fail-on", "growth>1", "--json").only
     (line,) = [line for line in done.out.splitlines() if line.startswith("largest growth: ")]
-    told = growth["gates_not_met"][0]
-    assert told.split(" is ")[1].split(",")[0][:4] == line.split(": ")[1][:4]
+    gate = growth["gates_not_met"][0]
+    assert gate.split(" is ")[1].split(",")[0][:4] == line.split(": ")[1][:4]
     assert " at block=" in line

@@ -155,16 +155,16 @@ class _Linearised:
         by_alpha, by_beta, by_gamma = 2.0 * _dot(rows, bend), -2.0 * _dot(rows, twist), 2.0 * _dot(rows, rise)
         by_xi, by_eta = 0.5 * (by_gamma * xi + by_beta * eta), 0.5 * (by_alpha * eta + by_beta * xi)
         by_bend, by_rise, by_twist = self._alpha * rows, self._gamma * rows, -0.5 * _dot(xi, eta) * rows
-        found = bordered(-2.0 * (by_bend + by_rise))
-        found[:, :, 2:, 1:-1] += by_bend + by_xi
-        found[:, :, :-2, 1:-1] += by_bend - by_xi
-        found[:, :, 1:-1, 2:] += by_rise + by_eta
-        found[:, :, 1:-1, :-2] += by_rise - by_eta
-        for into in (found[:, :, 2:, 2:], found[:, :, :-2, :-2]):
+        product = bordered(-2.0 * (by_bend + by_rise))
+        product[:, :, 2:, 1:-1] += by_bend + by_xi
+        product[:, :, :-2, 1:-1] += by_bend - by_xi
+        product[:, :, 1:-1, 2:] += by_rise + by_eta
+        product[:, :, 1:-1, :-2] += by_rise - by_eta
+        for into in (product[:, :, 2:, 2:], product[:, :, :-2, :-2]):
             into += by_twist
-        for into in (found[:, :, 2:, :-2], found[:, :, :-2, 2:]):
+        for into in (product[:, :, 2:, :-2], product[:, :, :-2, 2:]):
             into -= by_twist
-        return found
+        return product
 
 
 def _fixed_point(nodes: Tensor) -> Tensor:
