@@ -28,10 +28,10 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.decomposition.decompose import decompose
-from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.refine import refine
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.neural.registry import load
+from meshonet.solvers.refinement.chords import Chords
+from meshonet.solvers.refinement.refine import refine
 
 AFTER = (0, 10, 40, 150)
 

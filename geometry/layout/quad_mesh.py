@@ -39,6 +39,11 @@ class Places:
         every = (self, *others)
         return Places(*(np.concatenate([getattr(each, name) for each in every]) for name in vars(self)))
 
+    def along(self, loop: int) -> Indices:
+        """Return the nodes (k,) on a loop, by arc length."""
+        on = np.flatnonzero(self.loop == loop)
+        return np.asarray(on[np.argsort(self.arc[on], kind="stable")])
+
     def take(self, nodes: Indices) -> Places:
         """Return the places of the given nodes, without their partners."""
         cleared = np.full(len(nodes), -1, dtype=np.intp)

@@ -29,7 +29,7 @@ from meshonet.solvers.aircraft.plan import AircraftPlan, plan_of
 from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.aircraft.tip_cells import arcs_beyond, last_cells
 from meshonet.solvers.aircraft.wall_normals import across_tip, off_body, off_tip, off_wing
-from meshonet.solvers.blocking.layers.attach import sampled
+from meshonet.solvers.algebraic.resample.lines import sampled
 from meshonet.solvers.rows.columns import resampled, with_first
 from meshonet.solvers.rows.span_lines import SpanLines
 from meshonet.solvers.rows.span_spacing import (
@@ -191,8 +191,7 @@ def _arcs(space: BodyMap, lines: Floats) -> Floats:
 
 def _resampled(lines: Floats, arcs: Floats, ends: Ends, growth: float, cells: int) -> Floats:
     """Return places (p, cells + 1, 3) on lines (p, k, 3) with `arcs` (p, k), at those of `two_sided`."""
-    wanted = two_sided(arcs[:, -1], ends, growth, cells)
-    return sampled(lines, arcs, np.minimum(wanted, arcs[:, -1:]))
+    return sampled(lines, arcs, two_sided(arcs[:, -1], ends, growth, cells))
 
 
 def _beyond_tip(space: BodyMap, tip: Floats, on_tip: Indices, first: Floats, growth: float) -> Floats:
@@ -204,8 +203,7 @@ def _beyond_tip(space: BodyMap, tip: Floats, on_tip: Indices, first: Floats, gro
     table[..., 2] += np.linspace(0.0, 1.0, _FINE) * (1.0 - tip[:, 2:])
     arcs = _arcs(space, table)
     cells = spaced_cells(float(arcs[:, -1].max()), (float(first.min()), _UNBOUNDED), growth, _UNBOUNDED, 8)
-    wanted = arcs_beyond(arcs[:, -1], first, cells)
-    places = np.moveaxis(sampled(table, arcs, np.minimum(wanted, arcs[:, -1:])), 1, 0)
+    places = np.moveaxis(sampled(table, arcs, arcs_beyond(arcs[:, -1], first, cells)), 1, 0)
     places[1, on_tip] = at_height(space, places[0, on_tip], places[1, on_tip], float(first.min()))
     return places
 

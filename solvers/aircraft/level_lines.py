@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, arc_lengths, smooth_step
-from meshonet.solvers.blocking.layers.attach import sampled
+from meshonet.solvers.algebraic.resample.lines import sampled
 from meshonet.solvers.rows.span_spacing import smooth_arcs
 
 _FINE = 65
@@ -29,7 +29,7 @@ def lines_between(
     Their cells change evenly in space, between those that are `sizes` (n,) long in s at both ends.
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
-    nodes = sampled(lines, arcs, np.minimum(smooth_arcs(arcs[:, -1], ends, cells), arcs[:, -1:]))
+    nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))
     nodes[:, 0], nodes[:, -1] = begin, end
     return nodes
 

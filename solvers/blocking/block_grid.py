@@ -11,14 +11,14 @@ from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.solvers.blocking.decomposition.errors import most_folded
+from meshonet.solvers.blocking.decomposition.decompose import most_folded
 from meshonet.solvers.blocking.decomposition.side_counts import suited, sums_of
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric, node_images
 from meshonet.solvers.blocking.request import CELLS
-from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quad_problem import ALLOWED, smallest_jacobian
 from meshonet.solvers.energy.quads import QuadOptimum, optimise
+from meshonet.solvers.refinement.chords import Chords
+from meshonet.solvers.refinement.refine import multiplied, refine
 from meshonet.solvers.stages import Timings, stage
 
 OPTIMISED = 6000

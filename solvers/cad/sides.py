@@ -19,11 +19,10 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.cad.model import CadFace, CadModel
-from meshonet.geometry.errors import InputError
-from meshonet.geometry.ties import nearest_whole as rounded
-from meshonet.solvers.blocking.decomposition.errors import BlockingError
-from meshonet.solvers.blocking.decomposition.quads.arc_counts import Row, nearest_whole
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.ties import nearest_whole
 from meshonet.solvers.cad.edges import CORNER_DEG, corner_turns, length_of, place_on
+from meshonet.solvers.whole_numbers import Row, difference, whole_numbers
 
 _REFUSED = 5  # faces named in an error
 _ACROSS = 8
@@ -108,24 +107,15 @@ def cell_counts(model: CadModel, plans: tuple[FacePlan, ...], wanted: Floats) ->
     for face, plan in zip(model.faces, plans, strict=True):
         runs = [[face.uses[k].edge for k in side] for side in plan.sides]
         if plan.kind == "quad":
-            rows += [_difference(runs[0], runs[2], 0.0, 0.0), _difference(runs[1], runs[3], 0.0, 0.0)]
+            rows += [difference(runs[0], runs[2]), difference(runs[1], runs[3])]
         elif plan.kind == "nose":
-            rows.append(_difference(runs[0], [], 0.5 * _ACROSS, np.inf))
-            rows.append(_difference(runs[1], runs[0], 1.0, np.inf))
+            rows.append(difference(runs[0], [], 0.5 * _ACROSS, np.inf))
+            rows.append(difference(runs[1], runs[0], 1.0, np.inf))
         else:
-            rows.append(_difference(runs[0], [], 2.0, np.inf))
-    halves = np.maximum(rounded(0.5 * wanted), 1.0)
+            rows.append(difference(runs[0], [], 2.0, np.inf))
+    halves = np.maximum(nearest_whole(0.5 * wanted), 1.0)
     try:
-        return 2 * nearest_whole(halves, np.ones(len(halves)), [row for row in rows if row[0]])
-    except BlockingError as error:
+        return 2 * whole_numbers(halves, np.ones(len(halves)), [row for row in rows if row[0]])
+    except SolverError as error:
         problem = "no numbers of cells agree on opposite sides of all faces"
         raise InputError(problem, "split faces with several edges on a side") from error
-
-
-def _difference(first: list[int], second: list[int], low: float, high: float) -> Row:
-    """Return the row that bounds the sum along one run less that along another."""
-    row: dict[int, float] = {}
-    for run, sign in ((first, 1.0), (second, -1.0)):
-        for edge in run:
-            row[edge] = row.get(edge, 0.0) + sign
-    return {edge: value for edge, value in row.items() if value}, low, high

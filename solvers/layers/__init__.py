@@ -1,1 +1,1 @@
-"""Prescribed first-cell heights at walls, and sliding wall nodes."""
+"""Prescribed first-cell heights at walls, limited growth along lines, and sliding wall nodes."""

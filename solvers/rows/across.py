@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, wrapped
-from meshonet.solvers.blocking.layers.even_line import PlaceLinks
+from meshonet.solvers.layers.even_line import PlaceLinks
 from meshonet.solvers.rows.section_plane import ON_SIDE, SectionPlane
 
 _FROM = -0.25  # least place: u = 0, the leading edge, is between others

@@ -7,7 +7,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Indices, arc_parts, norms, smooth_step
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.layout import Layout
-from meshonet.solvers.blocking.layers.attach import sampled
+from meshonet.solvers.algebraic.resample.lines import sampled
 
 _NEWTON = 12
 _STRAIGHT, _MARCHED = 0.5, 1.5
@@ -49,7 +49,7 @@ def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
 def resampled(values: Floats, steps: Floats, new: Floats) -> Floats:
     """Return values (k, m, 2) along lines of `steps` (k, m - 1) at other steps of the same sums."""
     arcs = arcs_of(steps)
-    return sampled(values, arcs, np.minimum(arcs_of(new), arcs[:, -1:]))
+    return sampled(values, arcs, arcs_of(new))
 
 
 def arcs_of(steps: Floats) -> Floats:

@@ -14,12 +14,12 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.cascade.cascade import scaled
 from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, attached_cells, counts_of
 from meshonet.solvers.blocking.cascade.passage_template import template
-from meshonet.solvers.blocking.layers.layer_law import layer_arcs
 from meshonet.solvers.blocking.layers.layer_rows import JOIN
-from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.refine import multiplied, refine
-from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.layers.layer_law import layer_arcs
+from meshonet.solvers.refinement.chords import Chords
+from meshonet.solvers.refinement.refine import multiplied, refine
+from meshonet.solvers.refinement.size_metric import SizeMetric
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.whole_section import whole_section
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, Indices, wrapped
-from meshonet.solvers.blocking.layers.even_line import NO_LINKS, Measures, PlaceLinks, evened_places
+from meshonet.solvers.layers.even_line import NO_LINKS, Measures, PlaceLinks, evened_places
 from meshonet.solvers.rows.across import ChannelLines
 from meshonet.solvers.rows.section_plane import SectionPlane
 

@@ -13,7 +13,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.cascade.cascade_layout import row_steps, straight_rows
 from meshonet.solvers.blocking.cascade.passage import BLADE, extended
 from meshonet.solvers.blocking.cascade.passage_template import cut_of
-from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
+from meshonet.solvers.blocking.layers.attach import Rows
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
 from meshonet.solvers.rows.section_plane import SectionPlane
 
@@ -39,7 +39,7 @@ def whole_section(
     inner = heights_inside(beyond, BLADE)
     rows = [ring_rows(mesh, BLADE, cascade.ring, layers, cascade.layers, inner, cascade.factors_at)]
     for number, length, way in straight_rows(cascade):
-        start = mesh.nodes[loop_nodes(mesh, number)]
+        start = mesh.nodes[mesh.places.along(number)]
         first = math.exp(log(heights_inside(beyond, number)).mean())
         count = len(row_steps(first, max(length, longest[number]), largest)) - 1
         steps = _grown(first, length, count)

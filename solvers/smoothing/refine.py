@@ -9,7 +9,7 @@ from meshonet.geometry.blocks.families import joins_whole_sides
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.from_grid import layout_of
-from meshonet.solvers.blocking.sizes.refine import multiplied
+from meshonet.solvers.refinement.refine import multiplied
 
 
 def refined(grid: Grid, times: int) -> Grid:

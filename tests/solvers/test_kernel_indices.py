@@ -25,7 +25,7 @@ USED = {
     "meshonet.geometry.curves.curve": ("curve_points", "curve_slopes"),
     "meshonet.geometry.layout.quad_mesh": ("connect_quads",),
     "meshonet.solvers.blocking.decomposition.collapse.base_complex": ("split_quads",),
-    "meshonet.solvers.blocking.sizes.chords": ("joined_classes",),
+    "meshonet.solvers.refinement.chords": ("joined_classes",),
     "meshonet.solvers.blocking.decomposition.field.frames": ("surface_comb", "surface_prune"),
     "meshonet.solvers.blocking.decomposition.quads.motorcycle": ("probe_rays", "trace_rays"),
     "meshonet.solvers.blocking.decomposition.surface.surface": ("surface_fans",),

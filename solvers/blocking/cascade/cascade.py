@@ -20,7 +20,7 @@ from meshonet.solvers.blocking.cascade.passage import NEAR, Passage
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.layers.rings import COLUMNS, THICKNESS, Ring, march_ring
 from meshonet.solvers.blocking.request import CELLS
-from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
+from meshonet.solvers.refinement.size_metric import SizeMetric
 
 PLAIN_ROWS, PLAIN_GROWTH = 6.0, 1.1
 """Number of rows within this thickness and their growth ratio, if no first-cell height is given."""

@@ -29,15 +29,15 @@ from meshonet.solvers.blocking.cascade.passage import (
     turned_round,
 )
 from meshonet.solvers.blocking.cascade.passage_template import cut_of, template
-from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
+from meshonet.solvers.blocking.layers.attach import Rows
 from meshonet.solvers.blocking.layers.finished import evened
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
-from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.refine import multiplied, refine
-from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.refinement.chords import Chords
+from meshonet.solvers.refinement.refine import multiplied, refine
+from meshonet.solvers.refinement.size_metric import SizeMetric
 from meshonet.solvers.stages import Timings, stage
 
 MOST_OPTIMISED = 4000
@@ -130,7 +130,7 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
     rows = [ring_rows(mesh, BLADE, cascade.ring, cascade.rows_of_layers, cascade.layers, inner)]
     for number, length, way in straight_rows(cascade):
         if length > 0.0:
-            start = mesh.nodes[loop_nodes(mesh, number)]
+            start = mesh.nodes[mesh.places.along(number)]
             steps = row_steps(math.exp(log(heights_inside(layout, number)).mean()), length, metric.largest)
             nodes = start[:, None] + steps[:, None] * (way * passage.axis)
             rows.append(Rows(number, nodes, np.zeros(len(start)), False))

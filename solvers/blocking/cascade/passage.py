@@ -23,7 +23,7 @@ from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.elementary import product, times
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.solvers.blocking.layers.attach import Rows, attach, loop_nodes
+from meshonet.solvers.blocking.layers.attach import Rows, attach
 
 BLADE, INLET, OUTLET = 0, 1, 2
 """Numbers of the loops of a passage whose blocks end at the layers."""
@@ -164,7 +164,7 @@ def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: S
     above[mesh.places.partner[images]] = images
     low, high = [cut], [above[cut]]
     for each in rows:
-        order, away = loop_nodes(mesh, each.loop), each.nodes.shape[1] - 1
+        order, away = mesh.places.along(each.loop), each.nodes.shape[1] - 1
         if each.loop != BLADE:
             ends = [count + np.arange(away) + away * k for k in (0, len(order) - 1)]
             if order[0] in images:

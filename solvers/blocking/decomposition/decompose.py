@@ -18,12 +18,12 @@ import numpy as np
 from meshonet.geometry.domain.check import describe
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import SolverError
+from meshonet.geometry.layout.lattice import corner_jacobians
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseComplex, base_complex
 from meshonet.solvers.blocking.decomposition.collapse.collapse import simplify
 from meshonet.solvers.blocking.decomposition.collapse.score import PRICE, score
-from meshonet.solvers.blocking.decomposition.errors import BlockingError, most_folded
 from meshonet.solvers.blocking.decomposition.field.seamless_map import seamless_map
 from meshonet.solvers.blocking.decomposition.quads.inner_rows import corner_row
 from meshonet.solvers.blocking.decomposition.quads.padding import (
@@ -36,8 +36,8 @@ from meshonet.solvers.blocking.decomposition.quads.padding import (
 from meshonet.solvers.blocking.decomposition.quads.quad_mesh import quad_mesh
 from meshonet.solvers.blocking.decomposition.side_counts import check_sides, lacking_side
 from meshonet.solvers.blocking.decomposition.symmetry.symmetric import symmetric_blocks
-from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.refinement.size_metric import SizeMetric
 from meshonet.solvers.stages import Timings, stage
 
 ATTEMPTS = 5
@@ -85,7 +85,7 @@ def decompose(
     sizes : of the edges of the quad mesh, in place of `cells`; by default they are all alike.
     symmetric : whether those of a symmetric domain are to be symmetric (`symmetry.symmetric`).
 
-    Raises BlockingError: no attempt gave a valid layout, or the domain has too many corners.
+    Raises SolverError: no attempt gave a valid layout, or the domain has too many corners.
     """
     timings = {} if timings is None else timings
     blocks = _found(domain, cells, count, price, timings, sizes, ())
@@ -130,8 +130,8 @@ def _found(
         except SolverError as error:
             problem = error
     else:
-        raise BlockingError(f"no blocks found in {ATTEMPTS} attempts: {problem}") from problem
-    raise BlockingError(_too_many(domain))
+        raise SolverError(f"no blocks found in {ATTEMPTS} attempts: {problem}") from problem
+    raise SolverError(_too_many(domain))
 
 
 def _too_many(domain: Domain) -> str:
@@ -186,5 +186,15 @@ def _optimised(mesh: QuadMesh, iterations: int, sizes: SizeMetric | None) -> Qua
     held = optimise(mesh, iterations=HELD_ITERATIONS, held=wall, targets=targets)
     optimum = optimise(held.mesh if held.valid else mesh, iterations=iterations, targets=targets)
     if not optimum.valid or not np.isfinite(optimum.value):
-        raise BlockingError(f"the quad mesh stays folded {most_folded(optimum.mesh)}")
+        raise SolverError(f"the quad mesh stays folded {most_folded(optimum.mesh)}")
     return optimum.mesh
+
+
+def most_folded(mesh: QuadMesh) -> str:
+    """Return the place of the most folded corner for a message.
+
+    A corner whose Jacobian is not a number counts as the most folded one.
+    """
+    jacobian = np.nan_to_num(corner_jacobians(mesh.nodes[mesh.quads]), nan=-np.inf)
+    x, y = mesh.nodes[mesh.quads.ravel()[int(np.argmin(jacobian))]]
+    return f"at ({x:.6g}, {y:.6g})"

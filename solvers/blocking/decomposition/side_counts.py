@@ -13,14 +13,13 @@ import numpy as np
 
 from meshonet.geometry.arrays import Indices
 from meshonet.geometry.domain.periodic import Periodic
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.domain.wall_turning import corners_between
+from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import following, sides_of
 from meshonet.geometry.reach import check_reach
-from meshonet.solvers.blocking.decomposition.errors import BlockingError
-from meshonet.solvers.blocking.decomposition.quads.arc_counts import Row, nearest_whole
-from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.wall_turning import corners_between
+from meshonet.solvers.refinement.chords import Chords
+from meshonet.solvers.whole_numbers import Row, whole_numbers
 
 Sums = Mapping[str, Mapping[int, float]]
 """How many edges of each chord are along the sides of a name."""
@@ -76,7 +75,7 @@ def suited(
     these numbers by less than one. All are a multiple of `multiple`, as the given ones are then. Chords
     `fixed` stay.
 
-    Raises InputError: given counts that exclude each other, or that are too few; BlockingError: no counts are
+    Raises InputError: given counts that exclude each other, or that are too few; SolverError: no counts are
     alike along periodic sides.
     """
     sums, alike = sums_of(chords) if named else {}, _alike(chords)
@@ -94,15 +93,15 @@ def suited(
             total = numbers[name] * multiple / finer
             rows.append((sums[name], float(np.floor(total)), float(np.ceil(total))))
         rows = [({k: v * around[k] for k, v in row.items()}, low, high) for row, low, high in rows]
-        return np.asarray(around * nearest_whole(counts / around, np.ceil(least / around), rows))
+        return np.asarray(around * whole_numbers(counts / around, np.ceil(least / around), rows))
 
     try:
         nearest = solved(sums)
-    except BlockingError:
+    except SolverError:
         try:
             counts = solved(()) if alike else counts
-        except BlockingError:
-            raise BlockingError(_unmatched(chords.layout.mesh.domain.periodic[0])) from None
+        except SolverError:
+            raise SolverError(_unmatched(chords.layout.mesh.domain.periodic[0])) from None
         if finer > 1:
             return counts
     else:
@@ -114,7 +113,7 @@ def suited(
         for names in combinations(sums, size):
             try:
                 solved(names)
-            except BlockingError:
+            except SolverError:
                 raise _conflict(names, numbers, sums, np.maximum(least, around)) from None
     raise _conflict(tuple(sums), numbers, sums, least)
 
@@ -141,14 +140,14 @@ def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
 
 
 def check_sides(layout: Layout) -> None:
-    """Raise BlockingError if no counts are equal on periodic sides, or blocks extend past their ends."""
+    """Raise SolverError if no counts are equal on periodic sides, or blocks extend past their ends."""
     mesh = layout.mesh
     if not mesh.domain.periodic:
         return
     for each, first, second in sides_of(mesh):
         ends = np.array([first[0], first[-1], second[0], second[-1]])
         if (mesh.valence[ends] != mesh.places.cells[ends]).any():
-            raise BlockingError(_unmatched(each))
+            raise SolverError(_unmatched(each))
     chords = Chords.of(layout)
     suited(chords, chords.counts, chords.least, named=False)
 

@@ -12,7 +12,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.kernels._native import sampled_lines
+from meshonet.solvers.algebraic.resample.lines import sampled
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +22,7 @@ class Rows:
     Parameters
     ----------
     loop : number of the loop, the same in the layout's domain and in the extended one.
-    nodes : (k, m, 2) lines, in the order of `loop_nodes`; the first node of each is the layout's.
+    nodes : (k, m, 2) lines, in the order of `Places.along`; the first node of each is the layout's.
     arcs : (k,) arc lengths of their ends on the loop of the extended domain.
     layers : whether they end at a wall with layers, which no optimisation moves.
     """
@@ -31,12 +31,6 @@ class Rows:
     nodes: Floats
     arcs: Floats
     layers: bool
-
-
-def loop_nodes(mesh: QuadMesh, loop: int) -> Indices:
-    """Return the nodes (k,) of a mesh on a loop, by arc length."""
-    on = np.flatnonzero(mesh.places.loop == loop)
-    return np.asarray(on[np.argsort(mesh.places.arc[on], kind="stable")])
 
 
 def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
@@ -49,7 +43,7 @@ def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
     blocks, layers = list(layout.blocks), dict(layout.layers)
     count = len(mesh.nodes)
     for each in rows:
-        order = loop_nodes(mesh, each.loop)
+        order = mesh.places.along(each.loop)
         places[0].loop[order] = -1
         away = each.nodes.shape[1] - 1
         table = np.empty((len(order), away + 1), dtype=np.intp)
@@ -97,16 +91,4 @@ def beside(blocks: Sequence[Indices], position: Indices, count: int) -> list[Ind
 def spaced(lines: Floats, law: Callable[[Floats], Floats]) -> Floats:
     """Return lines (k, m, 2) with new nodes (k, n, 2) at arc lengths that `law` gives for their lengths."""
     arc = arc_lengths(lines)
-    wanted = law(arc[:, -1])
-    return sampled(lines, arc, np.minimum(wanted, arc[:, -1:]))
-
-
-def sampled(lines: Floats, arc: Floats, at: Floats) -> Floats:
-    """Return points (k, n, ...) at arcs (k, n) of lines (k, m, ...), on cubic pieces.
-
-    Their tangents are those of parabolas through three nodes.
-    """
-    points = np.empty((*at.shape, lines.shape[2]))
-    lines, arc, at = (np.ascontiguousarray(each) for each in (lines, arc, at))
-    sampled_lines(lines, arc, at, points)
-    return points
+    return sampled(lines, arc, law(arc[:, -1]))

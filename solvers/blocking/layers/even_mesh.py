@@ -24,9 +24,9 @@ from meshonet.geometry.arrays import Bools, Complexes, Floats, Indices
 from meshonet.geometry.blocks.shared_nodes import joined_labels
 from meshonet.geometry.elementary import angle, modulus, times
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.solvers.blocking.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
 from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.blocking.sizes.on_loops import on_loops
+from meshonet.solvers.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
 from meshonet.solvers.least_squares import NormalEquations, Residuals
 
 ANGLE, MOVE = 6.0, 1e-3

@@ -15,10 +15,10 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.spacing.growth import cells_for_growth
-from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes, spaced
-from meshonet.solvers.blocking.layers.layer_law import STEEPER, layer_arcs
+from meshonet.solvers.blocking.layers.attach import Rows, spaced
 from meshonet.solvers.blocking.layers.rings import Ring
-from meshonet.solvers.blocking.sizes.size_metric import GRADING, SizeMetric
+from meshonet.solvers.layers.layer_law import STEEPER, layer_arcs
+from meshonet.solvers.refinement.size_metric import GRADING, SizeMetric
 
 JOIN = 1.1
 """Ratio of the first cell outside a ring to the last one inside."""
@@ -149,7 +149,7 @@ def ring_rows(
 
     First cells are higher than those of the settings by `factors` of arc lengths (k,) of the wall, if given.
     """
-    order = loop_nodes(mesh, loop)
+    order = mesh.places.along(loop)
     columns, starts = ring.columns(mesh.places.arc[order])
     first = settings.first * (factors(starts) if factors else np.ones(len(starts)))
     lines = layer_lines(columns, mesh.nodes[order], inner, rows, settings, first)
@@ -183,7 +183,7 @@ def heights_inside(layout: Layout, loop: int) -> Floats:
                 height[side] = np.maximum(
                     height[side], np.hypot(*(mesh.nodes[next_row] - mesh.nodes[side]).T)
                 )
-    return height[loop_nodes(mesh, loop)]
+    return height[mesh.places.along(loop)]
 
 
 def _smooth(values: Floats, window: int = _WINDOW) -> Floats:

@@ -27,7 +27,6 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.decomposition.side_counts import alike_along_sides, suited
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric, node_images
 from meshonet.solvers.blocking.layers.attach import attach
-from meshonet.solvers.blocking.layers.even_line import evened_loops
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
 from meshonet.solvers.blocking.layers.finished import finished, unfolded
 from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
@@ -38,11 +37,12 @@ from meshonet.solvers.blocking.layers.sheet import has_sharp_edge, wake_of
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.layers.wall_layers import ROWS, Counts, WallLayers, wanted_counts
 from meshonet.solvers.blocking.layers.wall_rows import WallRows, with_wall_rows
-from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.even_metric import metric_places
-from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.layers.even_line import evened_loops
+from meshonet.solvers.refinement.chords import Chords
+from meshonet.solvers.refinement.refine import multiplied, refine
 from meshonet.solvers.stages import Timings, stage
 
 ITERATIONS, STRIDING = 120, 60  # of each optimum, and of one before it on fewer cells
@@ -70,7 +70,7 @@ def layered(
 
     Without `cells`, edges away from walls are at most `cell_size` long. `layout`, if given, is used instead
     of a decomposition; it belongs to a similar domain, outside of rings like these or as a whole. Raises
-    InputError; BlockingError; NoValidGridError: folded cells.
+    InputError; SolverError; NoValidGridError: folded cells.
     """
     timings = {} if timings is None else timings
     sheets = () if layout else tuple(k for k in loops if k and has_sharp_edge(domain.loops[k]))

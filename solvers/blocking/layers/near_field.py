@@ -15,9 +15,9 @@ from meshonet.geometry.elementary import arctan2, cos, exp, log, sin
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.spacing.growth import growing_steps
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
-from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
-from meshonet.solvers.blocking.layers.even_line import evened_steps
+from meshonet.solvers.blocking.layers.attach import Rows
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
+from meshonet.solvers.layers.even_line import evened_steps
 
 FAR = 4.0
 """Distance of an outer loop, relative to the circle around all bodies, above which it counts as distant."""
@@ -88,7 +88,7 @@ class NearField:
         `heights` (k,) are those of the cells inside the circle. The rows start with these heights and grow by
         at most `GROWTH`, or less than the limit of the layers.
         """
-        order = loop_nodes(mesh, 0)
+        order = mesh.places.along(0)
         start = mesh.nodes[order]
         away = start - self.centre
         angle = arctan2(away[:, 1], away[:, 0])

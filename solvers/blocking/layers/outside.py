@@ -30,7 +30,7 @@ def found_outside(
 
     If they are to be `symmetric`, those of a symmetric domain are.
 
-    Raises BlockingError: no blocks are found; InputError: walls or fronts that nearly touch.
+    Raises SolverError: no blocks are found; InputError: walls or fronts that nearly touch.
     """
     plain = rest if symmetric and mirrors_of(rest) else replace(rest, loops=tuple(map(_smooth, rest.loops)))
     sizes = feature_sizes(plain)

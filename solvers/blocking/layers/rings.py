@@ -24,10 +24,10 @@ from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
 from meshonet.kernels._native import nearest_points
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
-from meshonet.solvers.blocking.layers.even_line import FINER, SLACK, Measures
 from meshonet.solvers.blocking.layers.marched import GAP_PART, fitted
 from meshonet.solvers.blocking.layers.wall_columns import nearest_arc, wall_columns
 from meshonet.solvers.hyperbolic.settings import ATTEMPTS
+from meshonet.solvers.layers.even_line import FINER, SLACK, Measures
 
 FILLED = 0.85
 """Largest part of a gap that the rings of both walls fill; without sharp edges they fill twice `GAP_PART`."""

@@ -26,7 +26,7 @@ from meshonet.solvers.blocking.decomposition.symmetry.symmetric import cut_on_mi
 from meshonet.solvers.blocking.layers.growth_lines import consecutive_edges, growth_along
 from meshonet.solvers.blocking.layers.sheet import with_sheet
 from meshonet.solvers.blocking.layers.stretches import Stretch
-from meshonet.solvers.blocking.sizes.chords import Chords
+from meshonet.solvers.refinement.chords import Chords
 
 Edge = tuple[int, int]
 
@@ -90,7 +90,7 @@ def with_wall_rows(
     """Return a layout with rows of quads along stretches and around loops with a sharp edge, and the rows.
 
     With it comes which blocks these are; they are symmetric to `mirrors` if its quads are. Raises
-    BlockingError: the lines of the mesh do not bound blocks.
+    SolverError: the lines of the mesh do not bound blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front

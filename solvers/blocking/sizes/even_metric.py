@@ -11,8 +11,8 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.elementary import product
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
-from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
+from meshonet.solvers.refinement.chords import Chords
+from meshonet.solvers.refinement.size_metric import SizeMetric
 
 SAMPLES = 64
 """Number of intervals of an edge in which sizes are sampled."""

@@ -8,8 +8,8 @@ from meshonet.geometry.arrays import turned_left
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.grading import graded
-from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
-from meshonet.solvers.blocking.sizes.wall_turning import sizes_by_bend
+from meshonet.geometry.domain.wall_turning import sizes_by_bend
+from meshonet.solvers.refinement.size_metric import SizeMetric
 
 TURN = np.radians(20.0)
 """Largest angle by which a wall turns along one cell."""

@@ -6,8 +6,8 @@ import numpy as np
 
 from meshonet.geometry.arrays import Indices
 from meshonet.geometry.elementary import exp, log
-from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
+from meshonet.solvers.refinement.chords import Chords
+from meshonet.solvers.refinement.size_metric import SizeMetric
 
 _PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
 

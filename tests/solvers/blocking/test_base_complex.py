@@ -6,7 +6,7 @@ from known_meshes import annulus, corner, disc, rectangle
 
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.solvers.blocking.decomposition.collapse.base_complex import base_complex
-from meshonet.solvers.blocking.sizes.chords import Chords
+from meshonet.solvers.refinement.chords import Chords
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,6 @@ from meshonet.solvers.blocking.decomposition import decompose as decomposition
 from meshonet.solvers.blocking.decomposition.collapse.collapse import irregular_inside
 from meshonet.solvers.blocking.decomposition.collapse.score import largest_turning
 from meshonet.solvers.blocking.decomposition.decompose import decompose
-from meshonet.solvers.blocking.decomposition.errors import BlockingError
 
 STEP = np.array([[0.0, 1], [3, 1], [3, 0], [12, 0], [12, 2], [0, 2]])
 
@@ -115,7 +114,7 @@ def test_another_attempt_where_one_fails(monkeypatch: pytest.MonkeyPatch) -> Non
     assert len(decompose(Domain.of_polygons([STEP])).blocks) == 3
     assert seeds == [0, 1, 2]
     monkeypatch.setattr(decomposition, "ATTEMPTS", 2)
-    with pytest.raises(BlockingError, match="no blocks found in 2 attempts: no map"):
+    with pytest.raises(SolverError, match="no blocks found in 2 attempts: no map"):
         decompose(Domain.of_polygons([STEP]))
 
 

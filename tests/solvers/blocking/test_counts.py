@@ -5,8 +5,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from meshonet.solvers.blocking.decomposition.errors import BlockingError
-from meshonet.solvers.blocking.decomposition.quads.arc_counts import nearest_whole
+from meshonet.geometry.errors import SolverError
+from meshonet.solvers.whole_numbers import whole_numbers
 
 
 def cost(numbers: np.ndarray, wanted: np.ndarray) -> float:
@@ -22,7 +22,7 @@ def test_no_other_whole_numbers_are_nearer(seed: int) -> None:
     rows = [({0: 1.0, 1: 1.0, 2: -1.0}, 0.0, 0.0), ({1: 1.0, 3: -1.0}, -1.0, 1.0)]
     if signs.sum() > 0:
         rows.append(({0: 1.0, 3: 1.0}, 4.0, np.inf))
-    found = nearest_whole(wanted, np.ones(4), rows)
+    found = whole_numbers(wanted, np.ones(4), rows)
     best = np.inf
     for tried in product(range(1, 13), repeat=4):
         if all(low <= sum(v * tried[k] for k, v in row.items()) <= high for row, low, high in rows):
@@ -31,11 +31,11 @@ def test_no_other_whole_numbers_are_nearer(seed: int) -> None:
 
 
 def test_sums_that_cannot_be_equal_are_an_error() -> None:
-    with pytest.raises(BlockingError, match="no whole numbers"):
-        nearest_whole(np.array([2.0]), np.ones(1), [({0: 2.0}, 3.0, 3.0)])
+    with pytest.raises(SolverError, match="no whole numbers"):
+        whole_numbers(np.array([2.0]), np.ones(1), [({0: 2.0}, 3.0, 3.0)])
 
 
 def test_far_numbers_are_reached() -> None:
-    found = nearest_whole(np.array([400.0, 3.0]), np.ones(2), [({0: 1.0, 1: -1.0}, 0.0, 0.0)])
+    found = whole_numbers(np.array([400.0, 3.0]), np.ones(2), [({0: 1.0, 1: -1.0}, 0.0, 0.0)])
     assert found[0] == found[1]
     assert 20 <= found[0] <= 60, "near the geometric mean, 35"

@@ -7,9 +7,9 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.solvers.blocking.layers.even_line import Measures, evened_places, evened_steps
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
 from meshonet.solvers.blocking.layers.growth_lines import GrowthLines, consecutive_edges, growth_along
+from meshonet.solvers.layers.even_line import Measures, evened_places, evened_steps
 
 LIMIT = np.log(1.2)
 

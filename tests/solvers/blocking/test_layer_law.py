@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial import polynomial
 from scipy.optimize import brentq
 
-from meshonet.solvers.blocking.layers.layer_law import STEEPER, layer_arcs
+from meshonet.solvers.layers.layer_law import STEEPER, layer_arcs
 
 ROWS = 24
 FIRST = 1e-3

@@ -7,8 +7,8 @@ from known_meshes import annulus, box, corner, disc, mesh_of, rectangle
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.solvers.blocking.decomposition.collapse.base_complex import base_complex
-from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.refine import multiplied, refine
+from meshonet.solvers.refinement.chords import Chords
+from meshonet.solvers.refinement.refine import multiplied, refine
 
 MESHES = {"rectangle": rectangle, "corner": corner, "annulus": annulus, "disc": disc}
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from meshonet.solvers.blocking.layers.attach import sampled
+from meshonet.solvers.algebraic.resample.lines import sampled
 
 
 @pytest.mark.parametrize("dimensions", [2, 3])

@@ -15,10 +15,10 @@ from functools import cached_property
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, Indices
+from meshonet.geometry.errors import SolverError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.kernels._native import split_quads
-from meshonet.solvers.blocking.decomposition.errors import BlockingError
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,7 @@ class BaseComplex:
 def base_complex(mesh: QuadMesh, lines: Bools | None = None) -> BaseComplex:
     """Return the blocks of a quad mesh, which also end at additional `lines` (e,) of edges.
 
-    Raises BlockingError: the mesh is not manifold, or a region between lines is not a lattice.
+    Raises SolverError: the mesh is not manifold, or a region between lines is not a lattice.
     """
     quads = np.ascontiguousarray(mesh.quads, dtype=np.intp)
     bounds = mesh.on_wall.copy() if lines is None else mesh.on_wall | lines
@@ -83,6 +83,6 @@ def base_complex(mesh: QuadMesh, lines: Bools | None = None) -> BaseComplex:
     if mesh.manifold:
         parts = split_quads(quads, mesh.edge_of, mesh.twin, mesh.irregular, bounds)
     if parts is None:
-        raise BlockingError("the lines of the quad mesh do not bound lattices")
+        raise SolverError("the lines of the quad mesh do not bound lattices")
     blocks, chord, chords = parts
     return BaseComplex(mesh, tuple(blocks), bounds, chord, chords)

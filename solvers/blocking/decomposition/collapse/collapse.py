@@ -15,15 +15,15 @@ from collections.abc import Collection
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import SolverError
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.ties import ascending, less
 from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseComplex, base_complex
 from meshonet.solvers.blocking.decomposition.collapse.contract import contract
 from meshonet.solvers.blocking.decomposition.collapse.score import score
-from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.side_counts import check_sides
-from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.refinement.size_metric import SizeMetric
 
 FAILURES = 8
 """Number of consecutive attempts without improvement after which the collapse ends."""
@@ -103,7 +103,7 @@ def _collapsed(current: BaseComplex, chord: int) -> BaseComplex | None:
     try:
         blocks = base_complex(trial)
         check_sides(blocks.layout)
-    except BlockingError:
+    except SolverError:
         return None
     fewer = irregular_inside(trial) < irregular_inside(mesh)
     return blocks if fewer or len(blocks.blocks) < len(current.blocks) else None

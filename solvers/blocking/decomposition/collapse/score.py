@@ -15,12 +15,12 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, percentiles_of
+from meshonet.geometry.domain.wall_turning import turning_between
 from meshonet.geometry.elementary import arctan2, exp, log
 from meshonet.geometry.layout.periodic_sides import following
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseComplex
 from meshonet.solvers.blocking.decomposition.quads.padding import wrong_count
-from meshonet.solvers.blocking.sizes.wall_turning import turning_between
 
 PRICE = 0.12
 """Price of a block in degrees of mean deviation."""

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.errors import SolverError
 from meshonet.kernels._native import joined_classes, probe_rays, trace_rays
-from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
 from meshonet.solvers.blocking.decomposition.quads.ports import Ports, ports_of
 from meshonet.solvers.blocking.decomposition.quads.trails import Trails, map_tables, ray_trails, wall_trails
@@ -64,7 +64,7 @@ class _Traced:
 def motorcycle_graph(seamless: SeamlessMap) -> MotorcycleGraph:
     """Return the motorcycle graph, in which all walls are connected.
 
-    Raises BlockingError: a ray that does not end; a wall that cannot be connected to the others.
+    Raises SolverError: a ray that does not end; a wall that cannot be connected to the others.
     """
     walls = wall_trails(seamless)
     joined: list[int] = []
@@ -75,7 +75,7 @@ def motorcycle_graph(seamless: SeamlessMap) -> MotorcycleGraph:
         if lone < 0:
             return graph
         joined.append(_free_vertex(walls, lone, graph.vertex, 7 * attempt))
-    raise BlockingError(f"{len(walls.first) - 1} walls of the domain could not be joined by lines of the map")
+    raise SolverError(f"{len(walls.first) - 1} walls of the domain could not be joined by lines of the map")
 
 
 def _trace(seamless: SeamlessMap, joined: Indices) -> _Traced:
@@ -98,7 +98,7 @@ def _trace(seamless: SeamlessMap, joined: Indices) -> _Traced:
         rays_traced = trace_rays(*common, starts, 4 * len(seamless.surface.triangles), room)
         room *= 4
     if np.any(rays_traced[0][:, 0] == TOO_LONG):
-        raise BlockingError("a line of the map does not end")
+        raise SolverError("a line of the map does not end")
     return _Traced(ports, *rays_traced)
 
 
@@ -169,5 +169,5 @@ def _free_vertex(walls: Trails, wall: int, taken: Indices, attempt: int) -> int:
     vertices = walls.vertex[pieces]
     free = vertices[~np.isin(vertices, taken)]
     if not len(free):
-        raise BlockingError(f"wall {wall} has no free vertex to join it to the others from")
+        raise SolverError(f"wall {wall} has no free vertex to join it to the others from")
     return int(free[attempt % len(free)])

@@ -8,18 +8,20 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, Indices, complex_of, pairs_of
 from meshonet.geometry.elementary import modulus
+from meshonet.geometry.errors import SolverError
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.solvers.algebraic.tfi import interpolate, parameters
-from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
-from meshonet.solvers.blocking.decomposition.quads.arc_counts import arc_counts
 from meshonet.solvers.blocking.decomposition.quads.motorcycle import motorcycle_graph
 from meshonet.solvers.blocking.decomposition.quads.t_mesh import Face, Side, TMesh, t_mesh
-from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
+from meshonet.solvers.refinement.size_metric import SizeMetric
+from meshonet.solvers.whole_numbers import difference, whole_numbers
 
 SHORTEST = 0.05
 """Smallest target number of cells of an arc."""
+LOOP = 4
+"""Smallest number of cells along a closed wall."""
 
 
 def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None = None) -> QuadMesh:
@@ -28,16 +30,16 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None 
     With `sizes`, these are the target edge lengths, and `cells` is ignored. Nodes on the arcs of the T-mesh
     are at their positions in the map, other nodes are interpolated; cells may be folded.
 
-    Raises BlockingError: the lines of the map form no T-mesh of rectangles, or so few cells cannot conform.
+    Raises SolverError: the lines of the map form no T-mesh of rectangles, or so few cells cannot conform.
     """
     mesh = t_mesh(motorcycle_graph(seamless))
     wanted = _plane_lengths(mesh, sizes)
     if sizes is None:
         wanted = wanted / np.sqrt(seamless.surface.domain.area / cells)
-    counts = arc_counts(mesh, np.maximum(wanted, SHORTEST))
+    counts = _arc_counts(mesh, np.maximum(wanted, SHORTEST))
     quads = _fine(mesh, counts)
     if not conforms(quads):
-        raise BlockingError("the quads do not conform: too few cells for the narrow parts of the domain")
+        raise SolverError("the quads do not conform: too few cells for the narrow parts of the domain")
     return quads
 
 
@@ -57,6 +59,19 @@ def _plane_lengths(mesh: TMesh, sizes: SizeMetric | None = None) -> Floats:
         return np.asarray(before[piece] + part * steps[piece] + rounds * whole)
 
     return upto(mesh.span[:, 1]) - upto(mesh.span[:, 0])
+
+
+def _arc_counts(mesh: TMesh, wanted: Floats) -> Indices:
+    """Return numbers of cells (a,) along arcs, at least 1 and near `wanted` (a,), equal on opposite sides.
+
+    They belong to the arcs of a T-mesh rather than to coordinates of the map (Campen, Bommes, Kobbelt, ACM
+    Trans. Graph. 34 (2015) 192; Lyon, Campen, Bommes, Kobbelt, Comput. Graph. Forum 38 (2019) 21-32).
+    """
+    sides = [[[half // 2 for half in side] for side in face] for face in mesh.faces]
+    rows = [difference(face[k], face[k + 2]) for face in sides for k in (0, 1)]
+    for trail in sorted(set(mesh.trail[mesh.on_wall >= 0].tolist())):
+        rows.append((dict.fromkeys(np.flatnonzero(mesh.trail == trail).tolist(), 1.0), LOOP, np.inf))
+    return whole_numbers(wanted, np.ones(len(wanted)), [row for row in rows if row[0]])
 
 
 def _within(mesh: TMesh, trail: Indices, length: Floats) -> tuple[Floats, Floats]:

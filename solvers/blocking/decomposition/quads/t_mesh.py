@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices
-from meshonet.solvers.blocking.decomposition.errors import BlockingError
+from meshonet.geometry.errors import SolverError
 from meshonet.solvers.blocking.decomposition.quads.motorcycle import MotorcycleGraph
 
 Side = tuple[int, ...]
@@ -48,7 +48,7 @@ class TMesh:
 def t_mesh(graph: MotorcycleGraph) -> TMesh:
     """Return the faces of a motorcycle graph.
 
-    Raises BlockingError: a face that is not a rectangle of the map.
+    Raises SolverError: a face that is not a rectangle of the map.
     """
     nodes, trail, span, ways = _arcs(graph)
     follow = _successors(graph, ways)
@@ -115,14 +115,14 @@ def _face(follow: dict[int, tuple[int, int]], start: int, seen: list[bool]) -> F
         seen[at] = True
         sides[-1].append(at)
         if at not in follow:
-            raise BlockingError("a face of the lines of the map is not closed")
+            raise SolverError("a face of the lines of the map is not closed")
         at, angle = follow[at]
         if angle == 1:
             sides.append([])
         elif angle != 2:
-            raise BlockingError(f"lines of the map meet at {90 * angle} degrees in a face")
+            raise SolverError(f"lines of the map meet at {90 * angle} degrees in a face")
     if at != start or len(sides) != 5:
-        raise BlockingError(f"lines of the map enclose a face of {len(sides) - 1} corners")
+        raise SolverError(f"lines of the map enclose a face of {len(sides) - 1} corners")
     sides[0] = sides.pop() + sides[0]
     south, east, north, west = (tuple(side) for side in sides)
     return south, east, north, west

@@ -10,7 +10,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, Indices, complex_of
 from meshonet.geometry.elementary import modulus, times
-from meshonet.solvers.blocking.decomposition.errors import BlockingError
+from meshonet.geometry.errors import SolverError
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
 
 Tables = tuple[Floats, Indices, Indices, Indices]
@@ -139,7 +139,7 @@ def wall_trails(seamless: SeamlessMap) -> Trails:
             at = int(triangulation.triangles[f, (e + 1) % 3])
         if len(order) > first[-1]:
             if at != vertex:
-                raise BlockingError("a wall of the triangulation is not closed")
+                raise SolverError("a wall of the triangulation is not closed")
             first.append(len(order))
     face, edge = (np.array(column, dtype=np.intp) for column in zip(*order, strict=True))
     here = triangulation.triangles[face, edge]

@@ -18,9 +18,9 @@ from meshonet.geometry.arrays import Bools, Floats, Indices, along_and_across, d
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.errors import SolverError
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.kernels._native import nearest_points
-from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.quads.padding import Span
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
 
@@ -89,7 +89,7 @@ def spans_between(loop: Loop) -> list[Span]:
 def part_of(domain: Domain, mirrors: Sequence[Mirror]) -> DomainPart:
     """Return the half on the left of a mirror, or the quarter on the left of two at right angles.
 
-    Raises BlockingError: a ray cuts a sharp corner.
+    Raises SolverError: a ray cuts a sharp corner.
     """
     first, *others = mirrors
     if others:
@@ -104,7 +104,7 @@ def part_of(domain: Domain, mirrors: Sequence[Mirror]) -> DomainPart:
 def sector_of(domain: Domain, mirrors: Sequence[Mirror], start: int) -> DomainPart:
     """Return the sector that begins at mirror number `start` of all mirrors, by their angles.
 
-    Raises BlockingError: a ray cuts a sharp corner, or the centre is outside.
+    Raises SolverError: a ray cuts a sharp corner, or the centre is outside.
     """
     count = len(mirrors)
     first, middle, last = (mirrors[k % count] for k in range(start, start + 3))
@@ -135,7 +135,7 @@ def _between(
         ):
             holes.append(number)
     if not through or through[0].loop != 0:
-        raise BlockingError("an outer loop that is not around the centre of mirrors")
+        raise SolverError("an outer loop that is not around the centre of mirrors")
     outer, *inner = through
     before, behind = (sorted(own, key=lambda part: float(norms(part.points[0] - centre))) for own in on_rays)
     if not inner and first[0] is not last[0]:
@@ -165,7 +165,7 @@ def _on_mirror(loop: Loop, number: int, mirror: Mirror) -> tuple[Floats, Floats]
 def _joined(row: Sequence[LoopPart]) -> Loop:
     """Return the loop along stretches and straight lines between them.
 
-    Raises BlockingError: a sharp corner at an end of one.
+    Raises SolverError: a sharp corner at an end of one.
     """
     counts = [len(stretch.points) for stretch in row]
     first = np.cumsum([0, *counts[:-1]])
@@ -178,7 +178,7 @@ def _joined(row: Sequence[LoopPart]) -> Loop:
     on_wall = np.array([stretch.loop >= 0 for stretch in row])
     ends = np.isin(corners, [first[on_wall], (first + counts - 1)[on_wall]])
     if (loop.corner_angles[ends] < _SHARPEST).any():
-        raise BlockingError("a mirror through a sharp corner")
+        raise SolverError("a mirror through a sharp corner")
     return loop
 
 

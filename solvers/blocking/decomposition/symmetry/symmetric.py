@@ -22,7 +22,6 @@ from meshonet.geometry.ties import less
 from meshonet.kernels._native import joined_classes
 from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseComplex, base_complex
 from meshonet.solvers.blocking.decomposition.collapse.contract import is_conforming
-from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.quads.padding import Span, wrong_count
 from meshonet.solvers.blocking.decomposition.symmetry.images import Images, agree, images_of, made_symmetric
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
@@ -32,9 +31,9 @@ from meshonet.solvers.blocking.decomposition.symmetry.parts import (
     spans_between,
     with_copies,
 )
-from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.refine import refine
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
+from meshonet.solvers.refinement.chords import Chords
+from meshonet.solvers.refinement.refine import refine
 
 WORTH = 2.0
 """What symmetry may cost, in degrees of mean deviation: blocks stay as found where it costs more.
@@ -133,13 +132,13 @@ def _trial(way: Way, mirrors: Sequence[Mirror], optimised: Optimised) -> BaseCom
 
 
 def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Images]:
-    """Return the mesh with its nodes symmetric, and their images; raises BlockingError: its quads are not.
+    """Return the mesh with its nodes symmetric, and their images; raises SolverError: its quads are not.
 
     With two mirrors they are symmetric to all others of the domain too, if the quads are.
     """
     images = images_of(mesh, mirrors)
     if len(images) < len(mirrors) or not agree(images):
-        raise BlockingError("quads that are not symmetric")
+        raise SolverError("quads that are not symmetric")
     if len(mirrors) == 2:
         every = images_of(mesh)
         images = every if agree(every) else images
@@ -150,7 +149,7 @@ def cut_on_mirrors(mesh: QuadMesh, images: Images, more: Bools | None = None) ->
     """Return the blocks of a mesh, cut along mirrors that go through corners of the domain with two cells.
 
     They end at edges on `more` (e,) lines too. A mirror cuts a ring too, which is else cut open anywhere. So
-    images of sides of blocks are sides of blocks. Raises BlockingError: a ring has no line on a mirror.
+    images of sides of blocks are sides of blocks. Raises SolverError: a ring has no line on a mirror.
     """
     blocks = base_complex(mesh, more)
     ring = bool(images) and any(len(distinct(block[[0, 0, -1], [0, -1, 0]])) < 3 for block in blocks.blocks)
@@ -165,7 +164,7 @@ def cut_on_mirrors(mesh: QuadMesh, images: Images, more: Bools | None = None) ->
             cut[label[mesh.edges[line][0, 0]]] = True
         lines |= line & cut[label[mesh.edges[:, 0]]]
     if ring and not lines.any():
-        raise BlockingError("a ring without a line on a mirror")
+        raise SolverError("a ring without a line on a mirror")
     return base_complex(mesh, lines if more is None else lines | more) if lines.any() else blocks
 
 

@@ -20,8 +20,7 @@ from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
-from meshonet.solvers.blocking.layers.attach import loop_nodes
-from meshonet.solvers.blocking.layers.growth_limit import (
+from meshonet.solvers.layers.growth_limit import (
     CHANGE,
     EXCESS,
     MOST_WEIGHT,
@@ -142,7 +141,7 @@ def evened_loops(
     mesh = layout.mesh
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()
     for number, measure in measures.items():
-        order = loop_nodes(mesh, number)
+        order = mesh.places.along(number)
         fixed = mesh.places.cells[order] > 0
         if not fixed.any():
             fixed[0] = True  # else all may go round

@@ -14,11 +14,11 @@ import numpy as np
 from meshonet.geometry.arrays import Bools, Floats, Indices, distinct
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.wall_turning import corners_between, turning_between
 from meshonet.geometry.elementary import exp, log, times
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.ties import nearest_whole
 from meshonet.kernels._native import joined_classes
-from meshonet.solvers.blocking.sizes.wall_turning import corners_between, turning_between
 
 LEAST = 2
 """Smallest number of cells along an edge of a block."""

@@ -15,14 +15,14 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.wall_turning import corners_between
 from meshonet.geometry.elementary import product
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.solvers.algebraic.resample import quad
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
-from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.wall_turning import corners_between
+from meshonet.solvers.refinement.chords import Chords
 
 _FINER = 8  # points a cell, between which nodes at given places lie on straight lines
 

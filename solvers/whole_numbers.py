@@ -1,22 +1,19 @@
-"""Integers closest to given numbers under linear constraints: numbers of cells of arcs and of chords.
+"""Integers closest to given numbers under linear constraints: cells of arcs, chords and edges of faces.
 
-The integers belong to the arcs of a T-mesh rather than to coordinates of the map (Campen, Bommes, Kobbelt,
-ACM Trans. Graph. 34 (2015) 192; Lyon, Campen, Bommes, Kobbelt, Comput. Graph. Forum 38 (2019) 21-32). The
-integer programme is solved by HiGHS (Huangfu, Hall, Math. Program. Comput. 10 (2018) 119-142).
+The integer programme is solved by HiGHS (Huangfu, Hall, Math. Program. Comput. 10 (2018) 119-142).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from meshonet.geometry import ties
 from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.elementary import product
-from meshonet.solvers.blocking.decomposition.errors import BlockingError
-from meshonet.solvers.blocking.decomposition.quads.t_mesh import TMesh
+from meshonet.geometry.errors import SolverError
+from meshonet.geometry.ties import made_unlike, nearest_whole
 
 OPTIONS: dict[str, bool | int | float | str] = {
     "output_flag": False,
@@ -29,49 +26,26 @@ OPTIONS: dict[str, bool | int | float | str] = {
 """Options of HiGHS: one thread, a fixed seed and no time limit, so that results are reproducible."""
 STEPS = (1.0, 1.05, 1.1, 1.2, 1.4, 1.6, 2.0, 2.0, np.inf)
 """Factors by which a number increases or decreases in each step, by at least 1."""
-LOOP = 4
-"""Smallest number of cells along a closed wall."""
-
 Row = tuple[Mapping[int, float], float, float]
 """Coefficients of a sum of numbers, and its lower and upper bound."""
 
 
-def arc_counts(mesh: TMesh, wanted: Floats) -> Indices:
-    """Return numbers of cells (a,) along arcs, at least 1 and near `wanted` (a,), equal on opposite sides.
-
-    Parameters
-    ----------
-    mesh : T-mesh whose faces are rectangles of the map, so that scaled lengths of arcs satisfy all
-        constraints.
-    wanted : positive target numbers.
-
-    Raises BlockingError: no solution was found.
-    """
-    pairs = [pair for face in mesh.faces for pair in ((face[0], face[2]), (face[1], face[3]))]
-    arcs = [tuple([half // 2 for half in side] for side in pair) for pair in pairs]
-    rows = [_balance(*pair) for pair in arcs]
-    loops = mesh.on_wall
-    for trail in sorted(set(mesh.trail[loops >= 0].tolist())):
-        rows.append((dict.fromkeys(np.flatnonzero(mesh.trail == trail).tolist(), 1.0), LOOP, np.inf))
-    return nearest_whole(wanted, np.ones(len(wanted)), [row for row in rows if row[0]])
-
-
-def _balance(first: Sequence[int], second: Sequence[int]) -> Row:
-    """Return the row that says that the sums of two runs are equal; what is in both cancels."""
+def difference(first: Iterable[int], second: Iterable[int], low: float = 0.0, high: float = 0.0) -> Row:
+    """Return the row that bounds the sum over one run less that over another; what is in both cancels."""
     row: dict[int, float] = {}
     for run, sign in ((first, 1.0), (second, -1.0)):
-        for arc in run:
-            row[arc] = row.get(arc, 0.0) + sign
-    return {arc: value for arc, value in row.items() if value}, 0.0, 0.0
+        for number in run:
+            row[number] = row.get(number, 0.0) + sign
+    return {number: value for number, value in row.items() if value}, low, high
 
 
-def nearest_whole(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices:
+def whole_numbers(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices:
     """Return integers n (k,) of at least `least` (k,) that satisfy the constraints.
 
     They minimise the sum of n / wanted + wanted / n, which for small differences is that of squared
     logarithms.
 
-    Raises BlockingError: there is no solution, or none was found.
+    Raises SolverError: there is no solution, or none was found.
     """
     if not len(wanted):
         return np.zeros(0, dtype=np.intp)
@@ -82,7 +56,7 @@ def nearest_whole(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices
     for row, low, high in rows:
         total = sum(value * whole[k] for k, value in row.items())
         if not low - 1e-6 <= total <= high + 1e-6:
-            raise BlockingError("numbers of cells found are not alike on opposite sides")
+            raise SolverError("numbers of cells found are not alike on opposite sides")
     return whole
 
 
@@ -102,7 +76,7 @@ def _solved(programme: Any, lengths: Floats) -> Floats:
             break
         if np.abs(solution - np.round(solution)).max() < 1e-6:
             return np.round(solution).reshape(lengths.shape)
-    raise BlockingError("no whole numbers of cells keep opposite sides alike")
+    raise SolverError("no whole numbers of cells keep opposite sides alike")
 
 
 def _steps(wanted: Floats, least: Floats) -> tuple[Floats, Floats, Floats, Floats]:
@@ -112,14 +86,14 @@ def _steps(wanted: Floats, least: Floats) -> tuple[Floats, Floats, Floats, Float
     def cost(n: Floats) -> Floats:
         return np.asarray(n / size + size / np.maximum(n, 0.5))
 
-    base = np.maximum(least, ties.nearest_whole(wanted))
+    base = np.maximum(least, nearest_whole(wanted))
     signs, lengths, costs = [], [], []
     for sign in (1.0, -1.0):
         at = base
         for factor in STEPS:
             ends = np.isinf(factor)
             times = 2.0 if ends else factor
-            to = ties.nearest_whole(at * times if sign > 0 else at / times)
+            to = nearest_whole(at * times if sign > 0 else at / times)
             to = np.maximum(least, np.maximum(to, at + 1.0) if sign > 0 else np.minimum(to, at - 1.0))
             if ends and sign < 0:
                 to = least
@@ -129,7 +103,7 @@ def _steps(wanted: Floats, least: Floats) -> tuple[Floats, Floats, Floats, Float
             lengths.append(np.full(len(base), np.inf) if ends and sign > 0 else far)
             costs.append(rise)
             at = to
-    return base, np.array(signs), np.array(lengths), ties.made_unlike(np.array(costs))
+    return base, np.array(signs), np.array(lengths), made_unlike(np.array(costs))
 
 
 def _model(steps: tuple[Floats, Floats, Floats, Floats], rows: Sequence[Row]) -> Any:
