@@ -15,6 +15,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.quality.lines import lines
 from meshonet.geometry.quality.walls import wall_rows
 from meshonet.geometry.spacing.y_plus import first_cell_note
+from meshonet.solvers.blocking.layers.marched import BLUNT
 from meshonet.solvers.blocking.layers.sheet import has_sharp_edge
 
 WIDEST = 150.0
@@ -54,5 +55,5 @@ def sharp_edge_notes(layout: Layout) -> list[str]:
             if angle > WIDEST:
                 at = f"the sharp edge of {loop.names[0]}, ({x:.6g}, {y:.6g}),"
                 has = f"have angles of {angle:.0f} degrees"
-                notes.append(f"cells at {at} {has}: {{base}} 0.002 makes it blunt")
+                notes.append(f"cells at {at} {has}: {BLUNT} makes it blunt")
     return notes

@@ -47,8 +47,6 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
     if request.sampling.nk is not None:
         problem = f"{request.sampling.nk} nodes along a third direction of a grid in the plane"
         raise InputError(problem, "give NI x NJ", parameter="res")
-    if request.sampling.base and hasattr(shape, "opened"):
-        shape = shape.opened(request.sampling.base)
     if request.asks_for_blocks or request.names_walls or getattr(shape, "many", False):
         from meshonet.solvers.pipeline.blocks import as_blocks
 
@@ -109,11 +107,12 @@ def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
         return False
     from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
-    if not (isinstance(shape, Airfoil) and shape.blunt):
+    if not isinstance(shape, Airfoil):
         return False
-    if request.at_walls or sampling.te == "exact":
-        return True
-    return shape.gap > THIN_BASE * shape.chord and USES[AROUND_BASE].issuperset(request.chosen)
+    body = shape.prepared(sampling)
+    if not body.blunt or request.at_walls or sampling.te == "exact":
+        return body.blunt
+    return body.gap > THIN_BASE * body.chord and USES[AROUND_BASE].issuperset(request.chosen)
 
 
 def _behind_base(shape: Airfoil, sampling: Sampling, request: GridRequest) -> BaseWake:

@@ -1,8 +1,11 @@
 """Sections whose coordinates ripple are named, and smoothed within a tolerance, their corners kept."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
+import meshonet
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import changes_in
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -101,6 +104,33 @@ def test_a_base_that_noise_could_have_made_is_closed() -> None:
     assert not after.blunt
     assert any("its base, 0.0005 chords wide" in change for change in changes_in(after.notes))
     assert body.smoothed(3e-4).blunt
+
+
+def test_coordinates_of_few_digits_are_smoothed_with_as_many_knots_as_they_need() -> None:
+    curve = naca("2412").curve
+    points = curve.at(np.linspace(0.0, curve.length, 100, endpoint=False)).round(3)
+    body = Airfoil(points)
+    assert np.hypot(*(body.smoothed(1e-4).curve.points - body.curve.points).T).max() <= 1e-4 * body.chord
+
+
+@pytest.mark.parametrize("topology", ["o", "c", "blocks"])
+def test_a_section_is_smoothed_before_its_edge_is_opened(topology: str) -> None:
+    body, _ = noisy("0006-sharp", 2e-4, 0)
+    assert body.crossing  # until it is smoothed
+    asked: dict[str, Any] = {"blocks": "auto"} if topology == "blocks" else {"topology": topology}
+    notes = meshonet.infer(body, base=0.003, smooth=6e-4, **asked).notes
+    changes = [note for note in notes if note.startswith("the outline is changed")]
+    assert ["smoothed by" in change for change in changes[:2]] == [True, False]
+    assert changes[1].endswith("is opened to 0.003")
+
+
+@pytest.mark.parametrize("smooth", [None, 1e-4])
+def test_edges_of_sections_that_do_not_repeat_their_first_point_are_opened(smooth: float | None) -> None:
+    points = naca("0012-sharp").curve.points[::12]
+    body = Airfoil(points)
+    assert (body.blunt, body.gap) == (False, 0.0)
+    opened = body.prepared(Sampling(base=0.003, smooth=smooth))
+    assert opened.gap == pytest.approx(0.003 * body.chord, rel=1e-5)
 
 
 @pytest.mark.parametrize("tolerance", [0.0, 1e-9, 0.1, float("nan")])

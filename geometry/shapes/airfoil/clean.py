@@ -234,7 +234,7 @@ def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> CleanS
             ring[0] = 0.5 * (ring[0] + ring[-1])
             return _section(ring[:-1], index[:-1], False, gap)
     if edges:
-        return _section(np.roll(ring, -edges[0], axis=0), np.roll(index, -edges[0]), False, gap)
+        return _section(np.roll(ring, -edges[0], axis=0), np.roll(index, -edges[0]), False, 0.0)
     return _section(ring, index, open_gap, gap)
 
 

@@ -127,7 +127,7 @@ def _within(points: Floats, u: Floats, knots: Floats, limit: float) -> Floats | 
     for _ in range(_ROUNDS):
         try:
             spline: Any = splprep(points.T, w=weight, u=u, k=_DEGREE, t=knots, task=-1)[0]
-        except ValueError:  # an interval between knots has too few points
+        except (TypeError, ValueError):  # an interval between knots has too few points
             return None
         fit = np.stack(splev(u, spline), axis=1)
         fit[0], fit[-1] = points[0], points[-1]

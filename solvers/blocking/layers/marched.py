@@ -27,7 +27,9 @@ MARCH_GROWTH = 1.2
 THINNER = 0.6
 """Factor of the thickness after the march has folded with all settings."""
 TRIES = 4  # thicknesses, the last a fifth of the first
-AT_SHARP_EDGE = "at the sharp edge of an airfoil give {base} 0.005, or {te} round in place of a wedge"
+BLUNT = "{base} 0.005"
+"""Option that opens the sharp edge of an airfoil."""
+AT_SHARP_EDGE = f"at the sharp edge of an airfoil give {BLUNT}, or {{te}} round in place of a wedge"
 """Remedy where layers fold because a wall turns by nearly 180 degrees."""
 FEWEST_CELLS = 4.0
 """Smallest thickness of layers in first cells."""

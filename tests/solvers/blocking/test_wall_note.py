@@ -15,6 +15,7 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.domain_shape import DomainShape
+from meshonet.solvers.blocking.layers.marched import AT_SHARP_EDGE, BLUNT
 from meshonet.solvers.blocking.make import make_blocks
 from meshonet.solvers.blocking.request import BlockRequest
 from meshonet.solvers.blocking.wall_note import wall_note
@@ -70,6 +71,8 @@ def test_a_sharp_edge_around_which_lines_turn_is_named_with_what_avoids_it(tmp_p
     x, y, angle = map(float, edge.groups())
     assert (x, y) == pytest.approx((1.0, 0.0), abs=1e-9)
     assert angle > 160
-    opened = meshonet.infer(shapes, **made, base=0.002)
+    assert note.endswith(f": {BLUNT} makes it blunt".format(base="base"))
+    assert BLUNT in AT_SHARP_EDGE  # the remedy of messages too
+    opened = meshonet.infer(shapes, **made, base=float(BLUNT.split()[-1]))
     assert not [note for note in opened.notes if "sharp edge" in note]
     assert opened.quality().metrics["max_angle"].max < 160.0
