@@ -51,7 +51,15 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
         stream = destination == "-" or _is_stream(Path(destination))
         if stream and beside:
             raise InputError("is a stream, and a folder is to be written", "name a file", source=name)
-        part = _part_in_tmp() if stream else _part_beside(Path(destination), name, make_folder)
+        if stream:
+            part = _part_in_tmp()
+        else:
+            target = Path(os.path.realpath(destination))
+            if make_folder and not target.is_dir():
+                target.parent.mkdir(parents=True, exist_ok=True)
+            check_place(Path(destination), name)
+            _sweep(target.parent)
+            part = _part_name(target)
     try:
         with _naming(name):
             # not by tempfile, so that the permissions are those of the umask as for any new file; within the
@@ -63,7 +71,7 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
             if stream:
                 _copy_out(part, destination)
             else:
-                part.replace(os.path.realpath(destination))
+                part.replace(target)
     finally:
         part.unlink(missing_ok=True)
 
@@ -137,15 +145,6 @@ def check_place(destination: Path, name: str) -> None:
     if not target.parent.is_dir():
         remedy = f"make it: mkdir -p {printable(str(destination.parent))}"
         raise InputError("its folder does not exist", remedy, source=name)
-
-
-def _part_beside(destination: Path, name: str, make_folder: bool) -> Path:
-    target = Path(os.path.realpath(destination))
-    if make_folder and not target.is_dir():
-        target.parent.mkdir(parents=True, exist_ok=True)
-    check_place(destination, name)
-    _sweep(target.parent)
-    return _part_name(target)
 
 
 def _part_name(target: Path) -> Path:

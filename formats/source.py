@@ -66,18 +66,20 @@ class Source:
     @property
     def size(self) -> int:
         """Length in bytes; counts in a header are compared with it before memory is allocated."""
-        return len(self.data) if self.data is not None else self._file().stat().st_size
+        with self.open() as stream:
+            return stream.seek(0, io.SEEK_END)
 
     def read_bytes(self) -> bytes:
         """Return all bytes."""
-        return self.data if self.data is not None else self._file().read_bytes()
+        return self.data if self.data is not None else self.head(-1)
 
     def text_bytes(self) -> bytes:
-        """Return all bytes of a text file. Raises InputError before reading: more than `_MOST_TEXT` bytes."""
-        if self.size > _MOST_TEXT:
+        """Return all bytes of a text file. Raises InputError, having read no more: more than `_MOST_TEXT`."""
+        data = self.head(_MOST_TEXT + 1)
+        if len(data) > _MOST_TEXT:
             problem = f"{self.size >> 20} MB are too much for a text of points"
             raise InputError(problem, f"give a file below {_MOST_TEXT >> 20} MB", source=self.name)
-        return self.read_bytes()
+        return data
 
     def buffer(self) -> bytes | mmap.mmap:
         """Return all bytes; a large file is mapped into memory."""
@@ -88,17 +90,16 @@ class Source:
 
     def open(self) -> BinaryIO:
         """Return a seekable binary stream, which the caller must close."""
-        return io.BytesIO(self.data) if self.data is not None else self._file().open("rb")
-
-    def head(self, count: int = HEAD_BYTES) -> bytes:
-        """Return the first `count` bytes, or all if there are fewer."""
-        with self.open() as stream:
-            return stream.read(count)
-
-    def _file(self) -> Path:
+        if self.data is not None:
+            return io.BytesIO(self.data)
         if self.path is None:
             raise InputError("has neither a path nor data", "give one of them", source=self.name)
-        return self.path
+        return self.path.open("rb")
+
+    def head(self, count: int = HEAD_BYTES) -> bytes:
+        """Return the first `count` bytes, or all if there are fewer or if it is negative."""
+        with self.open() as stream:
+            return stream.read(count)
 
 
 def open_source(text: str) -> Source:
@@ -123,7 +124,7 @@ def open_source(text: str) -> Source:
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise InputError(f"cannot be opened ({reason})", "check the path", source=printable(text)) from None
-    if source.size == 0:
+    if source.data == b"" or (source.path and not source.path.stat().st_size):
         raise InputError("is empty", "give a file with a boundary or a grid in it", source=source.name)
     return source
 

@@ -34,15 +34,12 @@ def _function(name: bytes, x: Any) -> Any:
     return _shaped(out, values.shape, values.dtype)
 
 
-def _kernel(name: str) -> Callable[[Any], Any]:
-    return partial(_function, name.encode())
-
-
-exp, log, sin, cos = map(_kernel, ("exp", "log", "sin", "cos"))
+_kernel: Callable[[bytes], Callable[[Any], Any]] = partial(partial, _function)
+exp, log, sin, cos = map(_kernel, (b"exp", b"log", b"sin", b"cos"))
 """To 2 units in the last place; angles are in radians here and below."""
-expm1, log1p, log2, log10, cbrt = map(_kernel, ("expm1", "log1p", "log2", "log10", "cbrt"))
-tan, arcsin, arccos, arctan = map(_kernel, ("tan", "arcsin", "arccos", "arctan"))
-sinh, cosh, tanh, arcsinh, arccosh = map(_kernel, ("sinh", "cosh", "tanh", "arcsinh", "arccosh"))
+expm1, log1p, log2, log10, cbrt = map(_kernel, (b"expm1", b"log1p", b"log2", b"log10", b"cbrt"))
+tan, arcsin, arccos, arctan = map(_kernel, (b"tan", b"arcsin", b"arccos", b"arctan"))
+sinh, cosh, tanh, arcsinh, arccosh = map(_kernel, (b"sinh", b"cosh", b"tanh", b"arcsinh", b"arccosh"))
 
 
 def arctan2(y: Any, x: Any) -> Any:

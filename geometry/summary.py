@@ -51,3 +51,13 @@ class Quality:
         head = f"{self.cells} cells, {self.folded} folded\n{'metric':16}{'min':>12}{'mean':>12}{'max':>12}"
         rows = [f"{name:16}{s.min:12.4g}{s.mean:12.4g}{s.max:12.4g}" for name, s in self.metrics.items()]
         return "\n".join([head, *rows])
+
+
+def named(at: tuple[int, ...]) -> str:
+    """Return the place (i, j), (block, i, j) or (block, i, j, k) of a node or cell as text.
+
+    >>> named((3, 0, 7)), named((0, 1, 2, 3))
+    ('block=3, i=0, j=7', 'block=0, i=1, j=2, k=3')
+    """
+    names = ("i", "j") if len(at) == 2 else ("block", "i", "j", "k")
+    return ", ".join(map("{}={}".format, names, at))

@@ -17,6 +17,7 @@ from meshonet.geometry.errors import spelled
 if TYPE_CHECKING:
     from meshonet.geometry.aircraft.dimensions import AircraftDimensions
     from meshonet.geometry.rows.dimensions import RowDimensions
+    from meshonet.solvers.neural.confidence import Confidence
 
 P = ParamSpec("P")
 
@@ -32,23 +33,6 @@ class Outcome(Enum):
     def message(self) -> str:
         """Advice on what to try next, with parameters by their names in Python."""
         return spelled(self.value)
-
-
-@dataclass(frozen=True)
-class Confidence:
-    """Confidence in the answer of a neural operator.
-
-    Parameters
-    ----------
-    expected_error : expected relative L2 distance from the solution that the operator imitates; infinite if
-        nothing is known.
-    threshold : expected error up to which answers without folded cells are accepted.
-    accepted : whether the answer is accepted.
-    """
-
-    expected_error: float
-    threshold: float
-    accepted: bool
 
 
 @dataclass(frozen=True, eq=False)

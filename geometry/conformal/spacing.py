@@ -24,7 +24,7 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import inner_slopes
 from meshonet.geometry.elementary import cos, exp, power, times
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.along_curve import first_within
+from meshonet.geometry.spacing.sampling import first_within
 
 ANGLES = 1024  # points on the circle at which the angle is computed
 ITERATIONS = 28.0  # at most, over the factor of under-relaxation

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from meshonet.geometry.quality.verdicts import named
+from meshonet.geometry.summary import named
 
 COUNTS = ("folded", "bezier_folded")
 """Counts of cells: by corners, and by the Bezier test of volumes."""

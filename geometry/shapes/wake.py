@@ -24,8 +24,8 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import cos, exp, expm1, product, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.far_field import straight
-from meshonet.geometry.spacing.along_curve import first_within
 from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth, growth_rate, growth_ratio
+from meshonet.geometry.spacing.sampling import first_within
 from meshonet.geometry.spacing.tanh_law import TanhLaw
 
 C_EDGE = 1.6

@@ -52,15 +52,6 @@ def stretch_arcs(
     return begin + sign * distance
 
 
-def first_within(steps: tuple[int, ...], most: float) -> int:
-    """Return the first of the descending `steps` that is at most `most`, or the last of them.
-
-    >>> first_within((8, 4, 2, 1), 5.0), first_within((8,), 5.0)
-    (4, 8)
-    """
-    return next((step for step in steps if step <= most), steps[-1])
-
-
 def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = (), step: int = 1) -> Floats:
     """Return increasing distances (n,), shifted so that every corner (m,) is one of them.
 

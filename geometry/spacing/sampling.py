@@ -150,3 +150,15 @@ class Sampling:
         if not 1.0 < radius <= 1e6:
             raise InputError(f"the far field is at {radius:g} chords", "use more than 1 and at most 1e6")
         return radius
+
+
+def first_within(steps: tuple[int, ...], most: float) -> int:
+    """Return the first of the descending `steps` that is at most `most`, or the last of them.
+
+    >>> first_within((8, 4, 2, 1), 5.0), first_within((8,), 5.0)
+    (4, 8)
+    """
+    for step in steps:
+        if step <= most:
+            return step
+    return steps[-1]

@@ -30,8 +30,6 @@ def abridged(words: Sequence[str]) -> list[str]:
     >>> abridged(["tfi", *(f"{k}.csv" for k in range(40)), "--res", "80"])
     ['tfi', '0.csv', '[38 more]', '39.csv', '--res', '80']
     """
-    if len(words) <= _MOST_NAMED:
-        return list(words)
     kept: list[str] = []
     for option, run in groupby(words, lambda word: word.startswith("-")):
         names = list(run)
@@ -43,7 +41,7 @@ def abridged(words: Sequence[str]) -> list[str]:
 @lru_cache(maxsize=1)
 def _command(words: tuple[str, ...]) -> str:
     kept = ["meshonet"]
-    taken = iter(abridged(words))
+    taken = iter(abridged(words) if len(words) > _MOST_NAMED else words)
     for word in taken:
         if word in ("-o", "--output"):
             next(taken, None)

@@ -20,6 +20,9 @@ _option = o.option_of(o.METHOD)
 def infer(
     boundary: o.Boundaries,
     grids: o.GridOptions,
+    sampling: o.SamplingOptions,
+    boundary_layer: o.LayerOptions,
+    checks: o.CheckOptions,
     domain: o.DomainOptions,
     volume: o.VolumeOptions,
     blocks: o.BlocksName = "auto",
@@ -64,9 +67,13 @@ def infer(
     """
     from meshonet_cli.tasks.grids import write_grids
 
-    settings = {"model": model, "polish": o.polish_steps(polish), "answer": answer, "device": device}
+    steps = None if polish == "auto" else o.polish_steps(polish)
+    settings = {"model": model, "polish": steps, "answer": answer, "device": device}
     settings["fallback"] = fallback or None
-    request = grids.request("best", settings, volume, refine=refine, blocks=blocks, **domain.parameters())
+    request = grids.request(
+        "best", settings, sampling, boundary_layer, checks, volume, refine=refine, blocks=blocks,
+        **domain.parameters(),
+    )
     batch = grids.batch(grids.inputs(boundary), grids)
     return write_grids(batch, request, grids.criteria(grids.leave_out_failed), assemble=domain.assemble)
 # fmt: on

@@ -36,6 +36,9 @@ else:
 def solve_pde(
     boundary: o.Boundaries,
     grids: o.GridOptions,
+    sampling: o.SamplingOptions,
+    boundary_layer: o.LayerOptions,
+    checks: o.CheckOptions,
     sides: o.SideOptions,
     domain: o.DomainOptions,
     volume: o.VolumeOptions,
@@ -87,9 +90,10 @@ def solve_pde(
     from meshonet_cli.tasks.grids import initial_grid, write_grids
 
     request = grids.request(
-        method, {"tol": tol, "max_cycles": max_cycles}, sides, volume, coarse=o.coarse_nodes(coarse),
-        refine=refine, initial=initial_grid(initial), history=history is not None, slide=slide,
-        wall_angle=wall_angle, repair_margin=repair_margin, blocks=blocks, **domain.parameters(),
+        method, {"tol": tol, "max_cycles": max_cycles}, sampling, boundary_layer, checks, sides, volume,
+        coarse=o.coarse_nodes(coarse), refine=refine, initial=initial_grid(initial),
+        history=history is not None, slide=slide, wall_angle=wall_angle, repair_margin=repair_margin,
+        blocks=blocks, **domain.parameters(),
     )
     batch, criteria = grids.batch(grids.inputs(boundary), grids), grids.criteria(grids.leave_out_failed)
     return write_grids(batch, request, criteria, history=history, assemble=domain.assemble)

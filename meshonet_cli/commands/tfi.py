@@ -23,6 +23,9 @@ _option = o.option_of(o.METHOD)
 def tfi(
     boundary: o.Boundaries,
     grids: o.GridOptions,
+    sampling: o.SamplingOptions,
+    boundary_layer: o.LayerOptions,
+    checks: o.CheckOptions,
     sides: o.SideOptions,
     method: Annotated[MethodName, _option(
         "--method", metavar="|".join(ALGEBRAIC), show_default=True,
@@ -37,7 +40,7 @@ def tfi(
     """Make grids by transfinite interpolation."""
     from meshonet_cli.tasks.grids import write_grids
 
-    request = grids.request(method, {"blending": blending}, sides)
+    request = grids.request(method, {"blending": blending}, sampling, boundary_layer, checks, sides)
     batch = grids.batch(grids.inputs(boundary), grids)
     return write_grids(batch, request, grids.criteria(grids.leave_out_failed))
 # fmt: on

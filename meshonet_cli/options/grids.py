@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from meshonet_cli.options.boundary_layer import LayerOptions, at_walls
-from meshonet_cli.options.checks import CheckOptions, GateOptions, LeaveOutFailed
-from meshonet_cli.options.groups import values_of
+from meshonet_cli.options.checks import GateOptions, LeaveOutFailed
 from meshonet_cli.options.io import FileOptions, RunOptions, Threads
 from meshonet_cli.options.sampling import SamplingOptions
 
@@ -15,26 +14,26 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GridOptions(RunOptions, SamplingOptions, LayerOptions, CheckOptions, GateOptions, FileOptions):
-    """Options for making, checking and writing grids."""
+class GridOptions(RunOptions, GateOptions, FileOptions):
+    """Options for making, judging and writing grids."""
 
     leave_out_failed: LeaveOutFailed = False
     threads: Threads = None
 
     def request(
-        self, method: str, settings: Mapping[str, Any], *blocks: object, **more: Any
-    ) -> "GridRequest":
+        self, method: str, settings: Mapping[str, Any], sampling: SamplingOptions, layers: LayerOptions,
+        *blocks: object, **more: Any,
+    ) -> "GridRequest":  # fmt: skip
         """Return the request for the grids, from blocks of options and additional fields `more`.
 
         Raises InputError: as `GridRequest`.
         """
         from meshonet.solvers.pipeline.request import GridRequest
 
-        more |= values_of(LayerOptions, self) | values_of(CheckOptions, self)
+        for block in (layers, *blocks):
+            more |= vars(block)
         for name in ("first_cell", "y_plus"):
             if more[name] is not None:
                 more[name] = at_walls(more[name], name)
-        for block in blocks:
-            more |= vars(block)
         given = {name: value for name, value in settings.items() if value is not None}
-        return GridRequest(self.placed(more), method, given, threads=self.threads, **more)
+        return GridRequest(sampling.placed(more), method, given, threads=self.threads, **more)

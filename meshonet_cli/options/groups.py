@@ -55,11 +55,6 @@ def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
     return call
 
 
-def values_of(block: Any, options: object) -> dict[str, Any]:
-    """Return, by name, the values in `options` of the fields of `block`, a base class of it."""
-    return {each.name: getattr(options, each.name) for each in dataclasses.fields(block)}
-
-
 def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:
     """Return the InputError for an option with the value `text`, which is not `what` is expected."""
     from meshonet.geometry.errors import InputError

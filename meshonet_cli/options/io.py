@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -150,6 +150,7 @@ class RunOptions(InputOptions):
 
     def batch(self, inputs: Any, files: Files) -> "Batch":
         """Return the batch over `inputs`. Raises InputError: options that exclude each other."""
-        engine = Engine(self.engine, self.jobs, self.scheduler)
-        return replace(super().batch(inputs, files), engine=engine)
+        from meshonet_cli.batch.run import Batch
+
+        return Batch(inputs, files, self.session(), Engine(self.engine, self.jobs, self.scheduler))
 # fmt: on

@@ -16,14 +16,14 @@ Refine = Annotated[int, option_of(METHOD)(
 # fmt: on
 
 
-def polish_steps(text: str) -> Literal["auto", "off"] | int:
-    """Return the value of ``--polish``: ``auto``, ``off`` or a number. Raises InputError: other text.
+def polish_steps(text: str) -> Literal["off"] | int:
+    """Return the value of ``--polish`` unless it is ``auto``. Raises InputError: other text.
 
     >>> polish_steps("off"), polish_steps("3")
     ('off', 3)
     """
-    if text in ("auto", "off"):
-        return "auto" if text == "auto" else "off"
+    if text == "off":
+        return "off"
     if not re.fullmatch(r"\d{1,3}", text, re.ASCII):
         raise bad_value(text, "a number of steps", "use auto, off or e.g. 2", "polish")
     return int(text)

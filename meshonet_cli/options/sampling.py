@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from meshonet.geometry.spacing.laws import LAWS
-from meshonet_cli.options.groups import SAMPLING, bad_value, option_of, values_of
+from meshonet_cli.options.groups import SAMPLING, bad_value, option_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -111,7 +111,7 @@ class SamplingOptions:
         from meshonet.geometry.spacing.sampling import Sampling
         from meshonet.solvers.pipeline.uses import counted
 
-        given = values_of(SamplingOptions, self)
+        given = dict(vars(self))
         res = given.pop("res")
         given["corners"] = None if self.corners == "auto" else four_corners(self.corners)
         return Sampling(**given, **counted(None if res is None else resolution(res), layers or {}))

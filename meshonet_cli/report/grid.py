@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from meshonet.geometry.notes import changes_in
-from meshonet.geometry.quality.verdicts import named
+from meshonet.geometry.summary import named
 from meshonet_cli.report.timed import Timed
 from meshonet_cli.terminal.errors import with_options
 from meshonet_cli.terminal.text import span
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from meshonet.geometry.quality.gates import Judgement
     from meshonet.geometry.rows.dimensions import RowDimensions
     from meshonet.geometry.summary import Quality
+    from meshonet.solvers.neural.confidence import Confidence
     from meshonet.solvers.progress import HistoryRow
-    from meshonet.solvers.solution import Confidence
     from meshonet_cli.terminal.summary import MemberRow
 
 _METHODS = {"conformal": "conformal map"}

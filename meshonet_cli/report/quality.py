@@ -15,10 +15,10 @@ from meshonet.geometry.quality.metrics import metrics_of
 from meshonet.geometry.quality.periodic import Period, periods
 from meshonet.geometry.quality.profiles import CheckResult, Limit, ProfileReport
 from meshonet.geometry.quality.report import Comparison, QualityReport
-from meshonet.geometry.quality.verdicts import named, verdict_word
+from meshonet.geometry.quality.verdicts import verdict_word
 from meshonet.geometry.quality.wall_cells import Flow, YPlus
 from meshonet.geometry.quality.walls import Spread, WallRow
-from meshonet.geometry.summary import Quality
+from meshonet.geometry.summary import Quality, named
 from meshonet_cli.report.timed import Timed
 from meshonet_cli.terminal.summary import MemberRow, figures, gates_not_met
 from meshonet_cli.terminal.text import aligned, figure

@@ -97,12 +97,13 @@ def write_grids(
         assembled=sampling if assemble else None,
         joined="the walls of one channel belong in one file",
     )  # fmt: skip
-    if not (history or session.live):
-        return batch.run(task)
-    from meshonet_cli.report.cycles import followed
+    if history or session.live:
+        from meshonet_cli.report.cycles import followed
 
-    with followed(session, history) as written:
-        batch.deliver(task, written)
+        with followed(session, history) as written:
+            batch.deliver(task, written)
+    else:
+        batch.deliver(task, session.written)
     return session.finish()
 
 

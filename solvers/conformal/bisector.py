@@ -6,6 +6,7 @@ shift of phi near the first node of the line achieves it directly, and decays wi
 """
 
 from functools import partial
+from itertools import repeat
 
 import numpy as np
 
@@ -43,13 +44,13 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
     limit = LARGEST * np.maximum(cells, step)  # evenly spaced walls have wide cells at an edge
     offset = np.subtract.outer(np.arange(n), corners)
     reach = exp(-((sin(np.pi * offset / n) / (np.pi * width / n)) ** 2))
-    pull = reach[list(corners)]
+    at = np.array(corners)
+    pull = reach[at]
     shift = np.zeros(len(corners))
     for _ in range(SWEEPS):
         moved = first + 1j * (product(pull, shift) - shift)  # by the other corner alone
-        ends = zip(corners, moved, shift, limit, strict=True)
-        halved = (lift_bisect(lift, wall[c], wall[(c + 1) % n], wall[c - 1], *rest) for c, *rest in ends)
-        shift = np.array(list(halved))
+        nodes = wall[at], wall[(at + 1) % n], wall[at - 1]
+        shift = np.array(list(map(lift_bisect, repeat(lift), *nodes, moved, shift, limit)))
     return reach, shift
 
 

@@ -8,7 +8,7 @@ Trefethen, Approximation Theory and Approximation Practice (2013), chapter 8; Be
 Lagrange Interpolation, SIAM Review 46 (2004) 501.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -50,37 +50,41 @@ def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
     return np.asarray(matrix)
 
 
-@dataclass(frozen=True)
-class Panel:
-    """Grid levels ``start`` to ``stop``: values at `eta` (NODES,) times `matrix` (NODES, stop - start)."""
+class Panels(NamedTuple):
+    """Panels that follow each other: panel k makes the grid levels ``ends[k]`` to ``ends[k + 1]``.
 
-    start: int
-    stop: int
+    `eta` (panels NODES,) are their points, and `matrix` (NODES, levels) has a column for each level: values
+    at the points of its panel times that are the value at the level. Without panels there is one end.
+    """
+
+    ends: list[int]
     eta: Floats
     matrix: Floats
 
 
-def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> list[Panel]:
+def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> Panels:
     """Return the panels that cover the levels `first` to `last` - 1 of `eta`, if they save evaluations.
 
     `eta` (nj,) ascends from 0 at the wall to 1; `height` is the difference of psi between wall and far field,
     and `spread` the variation of psi along the wall. Panels follow each other outwards without gaps and end
-    at `last`. The list is empty if panels would save nothing.
+    at `last`. If panels would save nothing, there are none: their one end is the last level.
     """
-    chosen: list[Panel] = []
+    ends: list[int] = []
+    points, matrices = [np.empty(0)], [np.empty((NODES, 0))]
     angle = np.pi * (np.arange(NODES) + 0.5) / NODES
     signed = sin(angle) * (1.0 - 2.0 * (np.arange(NODES) % 2))
     distance = NEAREST
     while spread + distance < height:
         far = spread + 2.0 * distance
-        ends = np.searchsorted(eta, [(spread + distance) / height, far / height])
-        start = max(int(ends[0]), first)
-        stop = last if far >= height else min(int(ends[1]), last)
+        begin, end = np.searchsorted(eta, [(spread + distance) / height, far / height]).tolist()
+        start = max(begin, first)
+        stop = last if far >= height else min(end, last)
         if stop - start >= WORTH * NODES:
             a, b = eta[start], eta[stop - 1]
-            places = 0.5 * (a + b) - 0.5 * (b - a) * cos(angle)
-            chosen.append(Panel(start, stop, places, barycentric(places, signed, eta[start:stop])))
-        elif stop > start:
-            chosen.clear()  # too few levels here: they and all before them are evaluated themselves
+            points.append(0.5 * (a + b) - 0.5 * (b - a) * cos(angle))
+            matrices.append(barycentric(points[-1], signed, eta[start:stop]))
+            ends[-1:] = [start, stop]
+        elif stop > start:  # too few levels here: they and all before them are evaluated themselves
+            del ends[:], points[1:], matrices[1:]
         distance *= 2.0
-    return chosen
+    return Panels(ends or [len(eta) - 1], np.concatenate(points), np.concatenate(matrices, axis=1))

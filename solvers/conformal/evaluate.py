@@ -13,18 +13,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats, read_only
+from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.conformal.lift import Lift
 from meshonet.geometry.elementary import exp, modulus, product
 from meshonet.geometry.polygon.mirror import Axis
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import strip_rows
-from meshonet.solvers.conformal.chebyshev import NODES, panels
+from meshonet.solvers.conformal.chebyshev import panels
 from meshonet.solvers.conformal.nufft import SHARPNESS, columns
 from meshonet.solvers.conformal.strip import MODES, interpolation, wavenumbers
 
@@ -49,15 +48,13 @@ class StripGrid:
         psi = wall.real
         height, spread = float(far.real.mean() - psi.mean()), float(psi.max() - psi.min())
         self._near, self._away = _HighModes.of(wall, height), _HighModes.of(far, height)
-        outer = nj - max(self._away.reach(1.0 - eta[::-1]), 1)
-        self._panels = panels(eta, height, spread, 1, outer)
-        ends = (self._panels[0].start, self._panels[-1].stop) if self._panels else (nj - 1, nj - 1)
-        self._begin, self._end = ends
+        outer, _ = max([(1, 0), *self._away.felt(1.0 - eta[::-1])])
+        self._panels = panels(eta, height, spread, 1, nj - outer)
 
     def at(self, rows: Sequence[int], j: int) -> Complexes:
         """Return w at nodes (rows, j) near the wall, without shifts."""
         theta = self.theta[list(rows)]
-        low = product(self._c, _interpolation(self.eta[j : j + 1].tobytes())[:, 0])
+        low = product(self._c, interpolation(self.eta[j : j + 1].tobytes())[:, 0])
         k, high = self._near.at(float(self.eta[j]))
         F = product(exp(1j * np.outer(theta, wavenumbers())), low) + product(
             exp(1j * np.outer(theta, k)), high
@@ -70,12 +67,11 @@ class StripGrid:
         Return whether it is finite. The last row repeats the first bitwise. With an `axis`, rows i and n - i
         are mirror images. A `shift` is added to phi.
         """
-        n, nj, begin = len(self.theta), len(self.eta), self._begin
-        far = self.eta[self._end : nj - 1]
-        eta = np.concatenate([self.eta[1:begin], *(panel.eta for panel in self._panels), far])
+        n, (ends, points, matrix) = len(self.theta), self._panels
+        begin, far = ends[0], self.eta[ends[-1] : -1]
+        eta = np.concatenate([self.eta[1:begin], points, far])
         along, across = (shift[0][None], shift[1](eta)[None]) if shift else (np.empty((0, n)), eta[None][:0])
-        matrix = np.concatenate([np.empty((NODES, 0)), *(panel.matrix for panel in self._panels)], axis=1)
-        cuts = np.array([begin, *(panel.stop for panel in self._panels)]) - begin
+        cuts = np.array(ends) - begin
         order = np.arange(n)
         if axis is not None:
             half = np.arange(n // 2 + 1)
@@ -91,7 +87,7 @@ class StripGrid:
     def _columns(self, eta: Floats, last: int) -> Iterator[tuple[int, int, Floats]]:
         """Yield the points at `eta` in slices: first index, number, and the columns of their modes."""
         base = np.ascontiguousarray(self._c.T)
-        low = product(_interpolation(eta.tobytes()).T, base.view(np.float64)).view(np.complex128)
+        low = product(interpolation(eta.tobytes()).T, base.view(np.float64)).view(np.complex128)
         first = 0
         for where, ahead, behind in self._near.bands(eta[:last]):
             yield where.start, len(ahead), columns(_widened(low[where], ahead, behind))
@@ -102,11 +98,6 @@ class StripGrid:
             yield start, len(ahead), columns(_widened(low[start:stop], ahead[::-1], behind[::-1]))
             beyond = start
         yield first, beyond - first, columns(low[first:beyond])
-
-
-@lru_cache(maxsize=8)
-def _interpolation(eta: bytes) -> Floats:
-    return read_only(interpolation(np.frombuffer(eta)))
 
 
 def _widened(low: Complexes, ahead: Complexes, behind: Complexes) -> Complexes:
@@ -141,14 +132,10 @@ class _HighModes:
         modes = np.concatenate([self.ahead * fade, self.behind[::-1] * fade])
         return np.concatenate([k, -k]), modes
 
-    def reach(self, depth: Floats) -> int:
-        """Return the number of levels of ascending `depth` at which any of the modes is not negligible."""
-        return max((count for count, _ in self._felt(depth)), default=0)
-
     def bands(self, depth: Floats) -> Iterator[tuple[slice, Complexes, Complexes]]:
         """Yield slices of `depth`, from the wall outwards, with the modes (levels, m) that reach them."""
         start = 0
-        for count, some in self._felt(depth):
+        for count, some in self.felt(depth):
             if count > start:
                 levels = slice(start, count)
                 k = np.arange(MODES + 1, MODES + 1 + some)
@@ -156,8 +143,11 @@ class _HighModes:
                 yield levels, self.ahead[:some] * fade, self.behind[-some:] * fade[:, ::-1]
                 start = count
 
-    def _felt(self, depth: Floats) -> list[tuple[int, int]]:
-        """Return for each octave of modes, the highest first, the levels it reaches and its last mode."""
+    def felt(self, depth: Floats) -> list[tuple[int, int]]:
+        """Return for each octave of modes, the highest first, the levels it reaches and its last mode.
+
+        Beyond these levels of ascending `depth` it is negligible.
+        """
         octaves: list[tuple[int, int]] = []
         strength = modulus(self.ahead) + modulus(self.behind[::-1])
         begin = 0

@@ -7,9 +7,10 @@ are solved by the elliptic solver, which the solution states in a note.
 """
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from itertools import repeat
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -17,7 +18,6 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.conformal.bisector import halve_corners
@@ -53,14 +53,14 @@ def solve(
     """
     across()  # made once a process: no part of a grid's time
     begun = time.perf_counter()
-    lifted = list(map(_lifted, boundaries))
-    starts = iter(_starts([body for body, _ in lifted if isinstance(body, StripWalls)], correction))
+    bodies = list(map(_lifted, boundaries))
+    added = _corrections(bodies, correction) if correction else repeat(0.0)
     shared = (time.perf_counter() - begun) / max(len(boundaries), 1)
     solutions = []
-    for boundary, (body, rough) in zip(boundaries, lifted, strict=True):
+    for boundary, body in zip(boundaries, bodies, strict=True):
         begun = time.perf_counter() - shared
         if isinstance(body, StripWalls):
-            solution = _solved(boundary, body, next(starts), polish, model, rough=rough)
+            solution = _solved(boundary, body, next(added), polish, model)
         else:
             why = f"the {_called(model)} cannot take this body ({body.problem})"
             solution = (substitute and substitute(boundary, why)) or _elliptic(boundary, why)
@@ -68,22 +68,35 @@ def solve(
     return solutions
 
 
+def conformal(boundary: Boundary, *, polish: Polish = "auto") -> Solution:
+    """Return the grid inside an O boundary by Picard iteration in the conformal image of the domain, a strip.
+
+    Raises InputError: a boundary of another topology.
+    """
+    if boundary.topology != "o":
+        what = f"method conformal makes o grids, and this boundary is {boundary.topology}"
+        raise InputError(what, "use another {method}")
+    return solve([boundary], polish)[0]
+
+
 def _solved(
-    boundary: Boundary, body: StripWalls, start: Complexes, polish: Polish, model: str | None, *, rough: bool
+    boundary: Boundary, body: StripWalls, added: Complexes | float, polish: Polish, model: str | None
 ) -> Solution:
+    """Return the grid of a body: Picard iteration from its harmonic extension with a correction `added`."""
     steps = AUTO_STEPS if polish == "auto" else 0 if polish == "off" else polish
+    start = harmonic(modes(body.wall), modes(body.far), across().eta) + added
     c, changes = picard(start, steps, SETTLED if polish == "auto" else 0.0, DIVERGED)
     if changes and not changes[-1] < DIVERGED:
         return _elliptic(boundary, f"the polish of the {_called(model)} diverged")
     nodes, finite = _evaluated(boundary, body, c)
-    if rough and count_folded(nodes):
+    if body.rough and count_folded(nodes):
         nodes, finite = _evaluated(boundary, body._replace(corners=sharp_turns(body)), c)
-    if rough and count_folded(nodes):
+    if body.rough and count_folded(nodes):
         with suppress(SolverError):
             solution = _elliptic(boundary, f"the {_called(model)} folds cells of uneven spacing")
             if not count_folded(solution.grid.nodes):
                 return solution
-    method = "operator" if model else Conformal.name
+    method = "operator" if model else "conformal"
     facts = {"method": method, **({"model": model} if model else {}), "polish": len(changes)}
     grid = boundary.grid(nodes, facts, finite=finite)
     residual = changes[-1] if changes else None
@@ -94,23 +107,27 @@ def _called(model: str | None) -> str:
     return "operator" if model else "conformal map"
 
 
-def _lifted(boundary: Boundary) -> tuple[StripWalls | InputError, bool]:
-    """Return the walls in the strip, or the reason why there are none, and whether the wall is rough."""
+def _lifted(boundary: Boundary) -> StripWalls | InputError:
+    """Return the walls in the strip, or the reason why there are none."""
     try:
         body = walls(boundary)
-        return body, is_rough(body)
+        return body._replace(rough=is_rough(body))
     except InputError as error:
-        return error, False
+        return error
 
 
-def _starts(bodies: Sequence[StripWalls], correction: Correction | None) -> list[Complexes]:
-    """Return the initial modes of each body: the harmonic extension plus the correction."""
-    ends = [(modes(body.wall), modes(body.far)) for body in bodies]
-    added: Iterable[Complexes | float] = [0.0] * len(bodies)
-    if correction is not None and bodies:
-        wall, far = (np.array(side) for side in zip(*ends, strict=True))
-        added = correction(wall, far, np.array([body.hand for body in bodies]))
-    return [harmonic(a, b, across().eta) + more for (a, b), more in zip(ends, added, strict=True)]
+def _corrections(
+    lifted: Sequence[StripWalls | InputError], correction: Correction
+) -> Iterator[Complexes | float]:
+    """Return the correction of each body that has walls in the strip, all made together."""
+    bodies = [body for body in lifted if isinstance(body, StripWalls)]
+    if not bodies:
+        return iter(())
+    wall, far = (
+        np.array([modes(body.wall) for body in bodies]),
+        np.array([modes(body.far) for body in bodies]),
+    )
+    return iter(correction(wall, far, np.array([body.hand for body in bodies])))
 
 
 def _evaluated(boundary: Boundary, body: StripWalls, c: Complexes) -> tuple[Floats, bool]:
@@ -127,27 +144,3 @@ def _elliptic(boundary: Boundary, why: str) -> Solution:
 
     solution = solve(boundary)
     return replace(solution, notes=(f"{why}: elliptic solver used", *solution.notes))
-
-
-@dataclass(frozen=True)
-class Conformal:
-    """The method ``conformal``: O grids by Picard iteration in the conformal image of the domain, a strip."""
-
-    polish: Polish = "auto"
-    name = "conformal"
-    together = None
-
-    def solve(
-        self,
-        problems: Sequence[Boundary],
-        start: Sequence[Grid] | None = None,  # noqa: ARG002 - the iteration starts from the harmonic extension
-    ) -> list[Solution]:
-        """Return a solution for each of the boundaries.
-
-        Raises InputError: a boundary that is not an O boundary.
-        """
-        for problem in problems:
-            if problem.topology != "o":
-                what = f"method conformal makes o grids, and this boundary is {problem.topology}"
-                raise InputError(what, "use another {method}")
-        return solve(problems, self.polish)

@@ -83,10 +83,14 @@ def across() -> Across:
     return Across(*map(read_only, arrays))
 
 
-def interpolation(eta: Floats) -> Floats:
-    """Return the (LEVELS, len(eta)) matrix from values at the Chebyshev points to values at `eta`."""
-    s = elementary.log1p(eta * math.expm1(CLUSTERING)) / CLUSTERING
-    return barycentric(across().s, weights(LEVELS), s)
+@lru_cache(maxsize=8)
+def interpolation(eta: bytes) -> Floats:
+    """Return the (LEVELS, n) matrix from values at the Chebyshev points to values at `eta`; it is read-only.
+
+    `eta` are the bytes of an array (n,).
+    """
+    s = elementary.log1p(np.frombuffer(eta) * math.expm1(CLUSTERING)) / CLUSTERING
+    return read_only(barycentric(across().s, weights(LEVELS), s))
 
 
 def modes(F: Any, xp: Any = np) -> Any:
@@ -135,9 +139,9 @@ def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:
     count, T = MODES + 1, (far - wall)[..., :1, None].real
     k = wavenumbers(wall, xp)[:count]  # k and -k decay alike
     near, away = decay(k, T, array_like(eta, wall, xp), xp)
-    back = [xp.flip(ratio[..., 1:, :], (-2,)) for ratio in (near, away)]
     ahead = wall[..., :count, None] * near + far[..., :count, None] * away
-    return xp.concatenate([ahead, wall[..., count:, None] * back[0] + far[..., count:, None] * back[1]], -2)
+    near, away = xp.flip(near[..., 1:, :], (-2,)), xp.flip(away[..., 1:, :], (-2,))
+    return xp.concatenate([ahead, wall[..., count:, None] * near + far[..., count:, None] * away], -2)
 
 
 def to_columns(c: Any, xp: Any = np) -> Any:

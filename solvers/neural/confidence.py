@@ -7,6 +7,7 @@ L2 error of `meshonet.geometry.quality.compare`.
 """
 
 import math
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -27,6 +28,23 @@ THRESHOLD = 0.03
 MOST = 129  # nodes along a direction from which an answer is judged on fewer nodes
 CYCLES = 2  # multigrid cycles for Winslow's equations
 ITERATIONS = 16  # of the minimisation of the variational functional
+
+
+@dataclass(frozen=True)
+class Confidence:
+    """Confidence in the answer of a neural operator.
+
+    Parameters
+    ----------
+    expected_error : expected relative L2 distance from the solution that the operator imitates; infinite if
+        nothing is known.
+    threshold : expected error up to which answers without folded cells are accepted.
+    accepted : whether the answer is accepted.
+    """
+
+    expected_error: float
+    threshold: float
+    accepted: bool
 
 
 def expected_error(grid: Grid, boundary: Boundary, goal: Goal) -> float:

@@ -12,11 +12,11 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.conformal import solve as conformal
 from meshonet.solvers.conformal.solve import Polish
-from meshonet.solvers.neural.confidence import THRESHOLD, Goal
+from meshonet.solvers.neural.confidence import THRESHOLD, Confidence, Goal
 from meshonet.solvers.neural.devices import Device, solve_on
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.registry import BASE, DEFAULTS, load, makes_volumes
-from meshonet.solvers.solution import Confidence, Solution
+from meshonet.solvers.solution import Solution
 
 Answer = Literal["valid", "pasted", "raw"]
 """Treatment of a network's output: ``raw`` none; ``pasted`` its edges are replaced by the boundary's nodes,

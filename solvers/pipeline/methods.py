@@ -174,7 +174,7 @@ METHODS: Mapping[str, MethodEntry] = MappingProxyType(
             "meshonet.solvers.hyperbolic.march:hyperbolic", "marches row by row from the wall"
         ),
         "conformal": MethodEntry(
-            "meshonet.solvers.conformal.solve:Conformal",
+            "meshonet.solvers.conformal.solve:conformal",
             "Winslow's equations around a body, solved in a strip after a conformal map",
         ),
         "operator": MethodEntry(

@@ -6,8 +6,8 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.vertices import vertices
 from meshonet.geometry.quality.growth import Extreme, Growth, growth, growth_off_walls, most_of
 from meshonet.geometry.quality.lines import Lines, lines, solid_lines
-from meshonet.geometry.quality.verdicts import named
 from meshonet.geometry.quality.walls import wall_rows
+from meshonet.geometry.summary import named
 
 _SAME = 1e-6
 """Relative tolerance for equal first cells, and for growth above its limit."""

@@ -28,9 +28,8 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.wall_nodes import arcs_to_corners
 from meshonet.geometry.shapes.wake import c_far_field, growing, wake_axis
-from meshonet.geometry.spacing.along_curve import first_within
 from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth
-from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, MULTIPLES, Sampling
+from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, MULTIPLES, Sampling, first_within
 from meshonet.kernels._native import layer_steps
 
 if TYPE_CHECKING:

@@ -20,9 +20,8 @@ from meshonet.geometry.conformal.spacing import conformal_knots
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import geomspace
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.along_curve import first_within, on_corners
 from meshonet.geometry.spacing.laws import LAWS
-from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.geometry.spacing.sampling import Sampling, first_within
 
 _EDGE_STEP = 20.0
 """Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O
@@ -103,8 +102,13 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
         arcs = conformal_knots(stations.curve, corners, ni, at, steps)
     else:
         arcs = _planned_arcs(stations, ni, sampling)
+    corners = _inner_corners(stations)
+    if not corners.size:
+        return arcs
+    from meshonet.geometry.spacing.along_curve import on_corners
+
     ends = np.searchsorted(arcs, [stations.half_base, stations.upper])
-    return on_corners(arcs, _inner_corners(stations), (int(ends[0]), int(ends[1])), steps[0])
+    return on_corners(arcs, corners, (int(ends[0]), int(ends[1])), steps[0])
 
 
 def _planned_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
@@ -140,6 +144,7 @@ def arcs_to_corners(stations: Stations, cells: int, sampling: Sampling, first: f
     Cells at the corners have length `first`, unless `te_spacing` is given, and grow by at most `ratio`. Other
     corners are on nodes.
     """
+    from meshonet.geometry.spacing.along_curve import on_corners
     from meshonet.geometry.spacing.size_field import arcs_by_curvature
 
     plan = _natural(stations, WallCells(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)

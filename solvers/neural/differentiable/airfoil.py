@@ -147,7 +147,7 @@ def _evaluated(c: Tensor, wall: Tensor, far: Tensor, nj: int) -> Tensor:
     """Return F (batch, n, nj) at the nodes by all modes of the walls; those above `MODES` are harmonic."""
     n, eta = wall.shape[1], np.linspace(0.0, 1.0, nj)
     theta = _theta(n, wall)[:, None]
-    low = c @ torch.as_tensor(strip.interpolation(eta), device=c.device).to(c.dtype)
+    low = c @ torch.as_tensor(np.array(strip.interpolation(eta.tobytes())), device=c.device).to(c.dtype)
     F = torch.exp(1j * theta * wavenumbers(wall, torch)) @ low
     beyond = np.arange(MODES + 1, n // 2 + 1)
     if not len(beyond):

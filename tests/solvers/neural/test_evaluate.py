@@ -26,7 +26,7 @@ def test_every_node_equals_the_direct_sum_through_the_maps(designation: str, ni:
     assert grid.fill(lift, out)
 
     theta = 2 * np.pi * np.arange(n) / n
-    F = np.exp(1j * np.outer(theta, wavenumbers())) @ (c @ interpolation(eta))
+    F = np.exp(1j * np.outer(theta, wavenumbers())) @ (c @ interpolation(eta.tobytes()))
     rest = np.fft.fft(wall)
     k = np.minimum(np.arange(n), n - np.arange(n))
     rest[k <= min(MODES, (n - 1) // 2)] = 0
