@@ -11,6 +11,7 @@ t0 are the initial positions, s the steps there.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -20,6 +21,7 @@ from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
+from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.layers.growth_limit import (
     CHANGE,
     EXCESS,
@@ -32,6 +34,10 @@ from meshonet.solvers.least_squares import NormalEquations, Residuals
 
 MOVE = 1e-2
 """σ."""
+EVEN = math.log(1.24)
+"""Logarithm of the ratio by which neighbouring cells along fronts may differ."""
+FEW_STEPS = 2.0
+"""Steps by which nodes may move along fronts of passages, and of fine grids that no optimisation follows."""
 FRONTS = 0.2
 """μ along fronts: fewer nodes move, so that angles beside them are better."""
 MARGIN = 0.006
@@ -136,7 +142,7 @@ def evened_loops(
     """Return the layout with nodes moved along some loops, and less and less in the adjacent blocks.
 
     Neighbouring steps of the measures of each loop then differ by at most the exponential of `limit`; corners
-    are fixed. `most` is that of `evened_places`.
+    are fixed. `most` is that of `evened_places`. It is the layout itself if cells would fold.
     """
     mesh = layout.mesh
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()
@@ -153,6 +159,8 @@ def evened_loops(
         nodes[order] = mesh.nodes[order] + shift[order]
     fixed = mesh.places.cells > 0
     nodes[fixed] = mesh.nodes[fixed]
+    if smallest_jacobian(nodes, mesh.quads) <= 0.0:
+        return layout
     return replace(layout, mesh=mesh.with_nodes(nodes, arcs))
 
 

@@ -16,10 +16,11 @@ from meshonet.geometry.elementary import times
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.reach import MOST_CELLS, check_reach
 from meshonet.geometry.shapes.assembly import far_loop
-from meshonet.solvers.blocking.cascade.passage import NEAR, Passage
+from meshonet.solvers.blocking.cascade.passage import BLADE, NEAR, Passage
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.layers.rings import COLUMNS, THICKNESS, Ring, march_ring
 from meshonet.solvers.blocking.request import CELLS
+from meshonet.solvers.layers.even_line import Measures
 from meshonet.solvers.refinement.size_metric import SizeMetric
 
 PLAIN_ROWS, PLAIN_GROWTH = 6.0, 1.1
@@ -133,6 +134,11 @@ class Cascade:
             return self.marched
         largest = self.blade.length / COLUMNS
         return march_ring(self.blades, 0, self.layers.first, self.thickness, largest)
+
+    @property
+    def measures(self) -> dict[int, Measures]:
+        """Measures whose steps along the front should be even, by loop; none without a limit of growth."""
+        return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:
         """Return the factors (k,) at arc lengths (k,) of the blade."""

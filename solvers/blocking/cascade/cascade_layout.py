@@ -15,7 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.elementary import log
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
@@ -35,6 +35,7 @@ from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_row
 from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.layers.even_line import EVEN, FEW_STEPS, evened_loops
 from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.refinement.refine import multiplied, refine
 from meshonet.solvers.refinement.size_metric import SizeMetric
@@ -79,6 +80,7 @@ def cascade_layout(
                 raise
     with stage("refine", timings):
         fine = multiplied(coarse, times)
+        fine = evened_loops(fine, cascade.measures, EVEN, FEW_STEPS)
     with stage("layers", timings):
         rows = _rows(cascade, fine, metric)
         whole = extended(fine, cut_of(fine), passage, cascade.blade, rows)
@@ -105,17 +107,23 @@ def _outside(
     with stage("optimum", timings):
         for _ in range(PASSES):
             coarse = passage_optimum(coarse, ITERATIONS, metric)
+        if cascade.measures:
+            even = evened_loops(coarse, cascade.measures, times * EVEN, FEW_STEPS)
+            coarse = passage_optimum(even, ITERATIONS, metric, even.mesh.places.loop == BLADE)
     return coarse, times, metric
 
 
-def passage_optimum(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
+def passage_optimum(
+    layout: Layout, iterations: int, metric: SizeMetric | None, held: Bools | None = None
+) -> Layout:
     """Return the layout of a passage with its nodes where the functional is least, for sizes if given.
 
-    Nodes in which a cut ends are held.
+    Nodes in which a cut ends are held, and `held` (n,).
     """
     mesh = layout.mesh
+    ends = (mesh.places.loop >= 0) & mesh.tied
     optimum = optimise(
-        mesh, iterations=iterations, held=(mesh.places.loop >= 0) & mesh.tied,
+        mesh, iterations=iterations, held=ends if held is None else ends | held,
         targets=metric.gradual(mesh) if metric else None, weights=WEIGHTS,
     )  # fmt: skip
     if not optimum.valid:

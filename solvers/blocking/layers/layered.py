@@ -40,7 +40,7 @@ from meshonet.solvers.blocking.layers.wall_rows import WallRows, with_wall_rows
 from meshonet.solvers.blocking.sizes.even_metric import metric_places
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.energy.quads import optimise
-from meshonet.solvers.layers.even_line import evened_loops
+from meshonet.solvers.layers.even_line import EVEN, FEW_STEPS, evened_loops
 from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.refinement.refine import multiplied, refine
 from meshonet.solvers.stages import Timings, stage
@@ -52,12 +52,8 @@ SWEEPS = 10
 """Sweeps that make wanted lengths change gradually: with twice as many, cells in slots grow too fast."""
 COUNTINGS = 3
 """How often cells are counted, nodes optimised after each, before nodes on fronts are evened and held."""
-EVEN = math.log(1.24)
-"""Logarithm of the ratio by which neighbouring cells along fronts may differ."""
 LIMITS = 1.0, 2.0, 4.0
 """Multiples of it that are tried in turn: nodes that move far along a front fold the cells beside it."""
-FEW_STEPS = 2.0
-"""Steps by which nodes may move along fronts of the fine grid, which no optimisation follows."""
 BASE_GROWTH = math.log(4.0)
 """Logarithm of the ratio of neighbouring edges along a wall and its wake beyond which it gets a ring."""
 
@@ -133,9 +129,9 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
     with stage("optimum", timings):
         on = np.isin(coarse.mesh.places.loop, list(walls.measures))
         for limit in (EVEN * np.array(LIMITS)).tolist():
-            even = walls.symmetric(evened_loops(coarse, walls.measures, times * limit))
-            if smallest_jacobian(even.mesh.nodes, even.mesh.quads) > 0.0:
-                coarse = _optimised(even, walls, rows, counts, ITERATIONS, on)
+            even = evened_loops(coarse, walls.measures, times * limit)
+            if even is not coarse:
+                coarse = _optimised(walls.symmetric(even), walls, rows, counts, ITERATIONS, on)
                 break
         lines = GrowthLines.of(coarse.mesh, times * EVEN, _factors(coarse, walls, rows, times))
         coarse = replace(coarse, mesh=evened_mesh(coarse.mesh, on | coarse.mesh.tied, lines))
@@ -154,8 +150,7 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
         cells = suited(chords, cells, chords.least, multiple=walls.settings.multiple, fixed=fixed)
         fine = _tied(walls.symmetric(refine(coarse, cells, chords)))
         fine = walls.symmetric(unfolded(fine, np.isin(fine.mesh.places.loop, list(walls.measures))))
-        moved = walls.symmetric(evened_loops(fine, walls.measures, EVEN, most=FEW_STEPS))
-        fine = moved if smallest_jacobian(moved.mesh.nodes, moved.mesh.quads) > 0.0 else fine
+        fine = walls.symmetric(evened_loops(fine, walls.measures, EVEN, most=FEW_STEPS))
         return _tied(walls.symmetric(with_layers(fine, rows, walls.of_rows)))
 
 

@@ -9,6 +9,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.blocks import block_figures
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.solvers.blocking.cascade.cascade import Cascade
 from meshonet.solvers.blocking.cascade.cascade_layout import cascade_layout
 from meshonet.solvers.blocking.cascade.passage import Passage
@@ -145,6 +146,17 @@ def test_cells_outside_layers_go_on_with_their_heights(stagger, pitch):
     grid = to_grid(cascade_layout(Cascade(blade(stagger), (0.0, pitch), settings=layers), cells=16000))
     (growth,) = block_figures(grid).lines.by_wall.values()
     assert growth.max < 1.3
+
+
+@pytest.mark.parametrize(("stagger", "pitch"), [(40.0, 0.8), (40.0, 0.6)])
+def test_cells_along_a_blade_with_a_thin_base_grow_no_faster_than_elsewhere(stagger, pitch):
+    body = naca("0010").opened(0.002)
+    points = body.curve.points[1:]
+    settings = LayerSettings.limited(2e-5, 1.2)
+    cascade = Cascade(closed(turned(points, stagger)), (0.0, pitch), settings=settings)
+    grid = to_grid(cascade_layout(cascade, cells=12000))
+    for growth in block_figures(grid).lines.growth.families().values():
+        assert growth.max < 1.25
 
 
 def test_blades_that_cross_are_refused():
