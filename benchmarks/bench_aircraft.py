@@ -38,20 +38,27 @@ HEAD = """# Bodies with a wing
 
 <!-- made by python benchmarks/bench_aircraft.py --airfoils FOLDER --page docs/benchmarks/aircraft.md -->
 
-Use this page to find for how many random bodies with a wing a grid is made, how good these grids are and how
-long they take. For their use see [a body with wings](../guide/aircraft.md).
+Use this page to find the number of random aircraft for which a valid grid is made, the quality of these grids
+and the CPU time. [A body with wings](../guide/aircraft.md) explains how to make such grids.
 
-Each of {count} aircraft has a fuselage with a round nose and a slender tail, and a wing of one of {files}
-real sections, 10 to 20 % thick, half a body radius below to half above the axis, with a taper of 0.3 to 0.7,
-a sweep of 0 to 30 degrees, a dihedral of 0 to 5, and first cells of 1e-5 to 1e-3 chords of the root. Grids
-have {around} nodes around the wing and {span} along it, and a far field at {far:g} chords.
+Each of {count} aircraft has a fuselage with a round nose and a slender tail, and a wing. Random properties:
 
-- *folded*: grids with a Jacobian that is not positive at a corner of a cell, or anywhere in one, by its
-  Bezier coefficients.
-- *seams*: largest distance of nodes that two blocks share.
-- *growth*: share of consecutive edges along all grid lines, across blocks too, whose lengths differ by
-  at most 1.3.
-- *normals*: 95 % of lines are at most so many degrees off the normal of the wall that they leave.
+| property | range |
+| --- | --- |
+| section of the wing | one of {files} real airfoils, 10 to 20 % thick |
+| height of the wing | from half a body radius below the axis to half a body radius above it |
+| taper | 0.3 to 0.7 |
+| sweep, dihedral | 0 to 30 degrees, 0 to 5 degrees |
+| first-cell height | 1e-5 to 1e-3 chords of the root |
+
+Grids have {around} nodes around the wing and {span} along the span, and a far field at {far:g} chords.
+
+- *folded*: grids with a cell in which the Jacobian at a corner, or one of its Bezier coefficients, is not
+  positive. (If all Bezier coefficients are positive, the Jacobian is positive in the whole cell.)
+- *seams*: largest distance between the two copies of a node that two blocks share.
+- *growth*: share of the pairs of consecutive edges along all grid lines, across blocks too, whose lengths
+  differ by a factor of at most 1.3.
+- *normals*: 95th percentile of the angle between a grid line that leaves a wall and the normal of the wall.
 - *CPU s*: one thread of {machine}, while other programs used the machine.
 
 {made} of {count} are made, {folded} of them folded; seams: {seams:g}.

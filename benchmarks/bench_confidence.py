@@ -174,22 +174,24 @@ HEAD = """# Confidence in networks' answers
 Read this page to decide whether you can rely on the expected error that `infer --model` reports, and on its
 threshold.
 
-The expected error of an answer is the distance by which a few steps of the solver that the network imitates
-move its nodes, divided by the size of the grid: 16 iterations of the variational method for `quad-general`
-and `hole-o`, one more Picard step for `airfoil-o`, two multigrid cycles of Winslow's equations for
-`quad-winslow` and the networks of [the paper](../theory/paper-models.md), shipped or trained by you. The true
-error is the relative L2 distance from the converged solution. An answer is accepted if its expected error is
+The *answer* of a network is the grid that it predicts. `infer` applies a few steps of the solver that the
+network imitates. The expected error is the distance by which these steps move the nodes, divided by the size
+of the grid. The steps are 16 iterations of the variational method for `quad-general` and `hole-o`, one more
+Picard step for `airfoil-o`, and two multigrid cycles of Winslow's equations for `quad-winslow` and for the
+networks of [the paper](../theory/paper-models.md). The true error is the relative L2 distance from the
+converged solution. An answer is accepted if its expected error is
 at most {threshold:g} and none of its cells is folded. With `--fallback`, `infer` solves for all other grids.
 
 Shapes are {count} of each kind in `benchmarks/yardstick`, which no network was trained on: six kinds of
 four-sided domains with 65 x 65 nodes, three kinds of bodies with 65 x 33. `meshonet` was trained on 30 arches
-of 33 x 33 nodes; it is evaluated on arches, on the paper's hexagons and semicircles, and on two of the kinds.
-Its boundary nodes are replaced by the true ones, which folds cells.
+of 33 x 33 nodes; it is evaluated on arches, on the paper's hexagons and semicircles, and on two of the six
+kinds. Its boundary nodes are replaced by the given nodes, which folds cells.
 
-The column *error* is the true one, *correlation* that of the ranks of expected and true errors, *ratio* the
-expected over the true one. The column *low* counts expected errors up to the threshold, whatever the folds;
-*folded* says how many of these answers have folded cells, *others* how many of the others. The last
-column is processor time of one thread.
+- *error*: true error. *correlation*: rank correlation of expected and true errors. *ratio*: expected error
+  divided by true error, 5th, 50th and 95th percentile.
+- *low*: number of answers whose expected error is at most the threshold, with or without folded cells.
+- *folded*: number of these answers that have folded cells. *others*: number of the other answers that have.
+- *ms*: CPU time of one thread.
 
 | network | grids | error, median / worst | correlation | ratio, 5 / 50 / 95 % | low | folded | others | ms |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""

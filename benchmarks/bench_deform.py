@@ -36,9 +36,9 @@ HEAD = """# Deformed grids: folded cells, first-cell heights, time
 
 <!-- made by python benchmarks/bench_deform.py --page docs/benchmarks/deform.md -->
 
-Use this page to compare `meshonet deform`, itself an inverse-distance weighting (IDW), with two published
-ones: folded cells, first-cell heights, angles and CPU time. For its use see
-[deforming grids](../guide/deform.md).
+Use this page to compare `meshonet deform` with two published methods, which like `deform` use weights of the
+inverse distance (inverse-distance weighting, IDW): folded cells, first-cell heights, angles and CPU time.
+[Deforming grids](../guide/deform.md) explains how to use `deform`.
 
 The deformations are random (seed {seed}). *airfoils*: the thickness is multiplied by 0.9 to 1.1 and the
 camber changed by -2 to 2 % of the chord, in viscous C grids of 250 x 100 nodes with y+ 1 at Reynolds
@@ -47,7 +47,7 @@ either direction about a point near its leading edge, in a multi-block grid of a
 first-cell heights of 1e-5.
 
 - *deformations*: kind, with the number of deformations in brackets. Deformations whose new outline is not
-  valid are left out ({refused}).
+  valid are left out; there were {refused}.
 - *folded*: number of grids with folded cells, and the largest number of folded cells in one grid.
 - *first cell*: largest relative change of a first-cell height, over all wall nodes and deformations.
 - *angle*: by how many degrees the largest cell corner angle grows, in the grid where it grows most.
@@ -55,15 +55,15 @@ first-cell heights of 1e-5.
   percentile, one thread of {machine}, while other programs used the machine.
 - *IDW*: interpolation of displacements with weights 1/r^3 (Witteveen, Bijl, AIAA 2009-3996). *IDW,
   rotations*: interpolation of displacements and rotations with the weights of Luke, Collins and Blades
-  (J. Comput. Phys. 231 (2012) 586-601). Both run in the compiled kernel of `deform`, sum over all
-  boundary nodes one by one, and leave folded cells as they are.
+  (J. Comput. Phys. 231 (2012) 586-601). Both methods run in the compiled kernel of `deform`, sum over all
+  boundary nodes one by one, and do not repair folded cells.
 
 """
 TAIL = """
-`meshonet deform` also uses weights of the inverse distance, in a compiled kernel. Its exponents are 2
-and 4, those for two dimensions (3 and 5 in the paper); it sums near wall nodes one by one and distant ones
-in groups. If the result has folded cells, it repeats the deformation in several steps, which
-{steps} of these deformations needed.
+`meshonet deform` uses the method of Luke, Collins and Blades with the exponents 2 and 4, because these grids
+are two-dimensional (3 and 5 in their paper). It sums near wall nodes one by one and distant nodes in groups.
+If the result has folded cells, `deform` repeats the deformation in several steps. Number of deformations
+that needed this: {steps}.
 """
 SEED = 20261122
 COLUMNS = "deformations", "method", "folded", "first cell", "angle", "CPU ms"

@@ -44,8 +44,8 @@ not fit into seven is left out, and its row says so. Four things are measured.
 
 - **Layers**: the functions of `meshonet.layer`, exact solvers beside the network `quad-general`. Sides are in
   the memory of the device. The table has the grids per second without and with gradients, the peak memory,
-  whether two runs have the same bits, and the largest distance from the nodes of the compiled solver or
-  operator on the CPU. Batches of 65 x 65 nodes become larger while the time suffices. Single grids of
+  whether two runs give bitwise equal nodes, and the largest distance from the nodes of the compiled solver
+  or operator on the CPU. Batches of 65 x 65 nodes become larger while the time suffices. Single grids of
   800 x 800 and 3200 x 3200 nodes follow. Rows with `coarse=65` solve on 65 x 65 nodes, interpolate, and are
   compared with the same function on the CPU. The aims are 100,000 grids of 65 x 65 nodes per second,
   800 x 800 nodes in 3 ms, and 3200 x 3200 nodes in 40 ms; for these the paper reports 278 ms on an RTX 4090.

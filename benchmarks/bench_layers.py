@@ -39,23 +39,27 @@ HEAD = """# Layers
 
 <!-- made by python benchmarks/bench_layers.py; the last four rows with --count 32 -->
 
-Use this page to see how exactly [`meshonet.layer`](../guide/layers.md) solves what the compiled
-solvers solve, and what a gradient costs. Each function computes one batch, in double precision and, from
-sides rounded to single precision, in single precision. *Distance* is the largest one of a node from that of
-the compiled solver, relative to the domain size, over all members. Grids in single precision are compared
-with those of the compiled solver inside the rounded sides; their nodes are themselves rounded, to 6e-8.
-*Folded* counts members with folded cells, *more* those of them that the compiled solver does not fold.
-*Backward* is the time of a gradient of all boundary nodes over that of the grids. Times are processor time
-of one thread. Airfoils that `conformal` refuses, as they have no conformal map or
-its equations did not converge, are left out.
+Use this page to compare the functions of [`meshonet.layer`](../guide/layers.md) with the compiled solvers:
+the distance between their grids, folded cells, and the time of a gradient. Each function computes one batch
+of domains in double precision, and once more in single precision, with sides rounded to single precision.
+
+- *Distance*: largest distance between a node and the corresponding node of the compiled solver, relative to
+  the domain size, over all domains. For single precision, the compiled solver gets the rounded sides; the
+  nodes of the layer are then rounded to 6e-8.
+- *Folded*: number of domains whose grid has folded cells. *More*: how many of these domains have none in the
+  grid of the compiled solver.
+- *Backward*: time of the gradient with respect to all boundary nodes, divided by the time of the grids.
+- Times are CPU times of one thread.
+
+Airfoils are left out if they have no conformal map, or if the equations of `conformal` do not converge.
 """
 
 TAIL = """
-The compiled variational solver stops before the optimum. There the distance is that from the nodes to which
-Newton's method on the compiled gradient moves them. Grids of `conformal` are compared with those of the
-compiled steps, repeated until they change nothing. Winslow's equations themselves fold grids at sharp
-corners; `solve-pde` repairs these. In larger batches `variational` refuses about one random domain in a
-thousand, for which its equations do not converge.
+The compiled variational solver stops before the optimum. Newton's method with the compiled gradient therefore
+continues the minimisation, and the distance is measured from the nodes that it finds. For `conformal`, the
+compiled Picard steps are repeated until nodes do not move any more. The discrete solution of Winslow's
+equations has folded cells at sharp corners; `solve-pde` repairs these cells. In larger batches, the equations
+of `variational` do not converge for about one random domain in a thousand, which is an error.
 """
 
 FUNCTIONS = "transfinite,winslow,variational,conformal"

@@ -38,25 +38,36 @@ HEAD = """# Blade rows
 
 <!-- made by python benchmarks/bench_rows.py --row TOML --airfoils FOLDER --page docs/benchmarks/rows.md -->
 
-Use this page to find the quality of grids of blade rows and the time that they take. For their use see
-[blade rows](../guide/blade-rows.md).
+Use this page to find the quality of grids of blade rows and the CPU time.
+[Blade rows](../guide/blade-rows.md) explains how to make such grids.
 
-Rotor 37 is NASA's transonic compressor rotor with its tip gap of 0.356 mm; first cells are 1e-4 chords high
-and cells grow by 1.2. Random rows have two real airfoils, blended along the span, a stagger of 0 to 65
-degrees that changes by up to 30 degrees to both ends, a solidity of 0.7 to 2 at mid-span, a hub to tip ratio
-of 0.4 to 0.9, a cylindrical, conical or curved channel, and in two of three a gap of 0 to 3 % of the span.
-They have {cells} cells or what their layers need, and first cells of {first:g} chords. Radial rows are
-centrifugal impellers, radial turbines, mixed-flow pumps and vaned diffusers of `tests/radial_rows.py` in
-turn, about half of the first three with a tip gap; they have as many cells.
+Rotor 37 is NASA's transonic compressor rotor with its tip gap of 0.356 mm; first cells are 1e-4 chords high,
+and the growth ratio is 1.2. The blade of a random row is interpolated between two real airfoils at hub and
+casing. Random properties of these rows:
 
-- *folded*: cells with a Jacobian that is not positive at a corner / anywhere, by its Bezier coefficients.
-- *SJ*: scaled Jacobian, least / 0.1 % / mean; of random rows the least, median / worst.
-- *angle*: largest angle of faces in degrees, largest / 99.9 %; of random rows the largest, median / worst.
-- *first cells*: largest relative error of their height at any wall.
-- *growth*: ratio of consecutive edges along all grid lines, across blocks too, 99 % / 99.9 % / largest; of
-  random rows 99.9 % in the median / the largest of all.
-- *periodic*: distance of periodic nodes after turning, over the radius.
-- *blade*: distance of nodes from the surface through the profiles, in chords.
+| property | range |
+| --- | --- |
+| stagger at mid-span | 0 to 65 degrees; it changes by up to 30 degrees towards hub and casing |
+| solidity at mid-span | 0.7 to 2 |
+| ratio of hub radius to tip radius | 0.4 to 0.9 |
+| channel | cylindrical, conical or curved |
+| gap | 0 to 3 % of the span, in two of three rows; the others have no gap |
+
+Random rows have {cells} cells, or more if their layers need more, and first cells of {first:g} chords.
+Radial rows are in turn centrifugal impellers, radial turbines, mixed-flow pumps and vaned diffusers of
+`tests/radial_rows.py`. About half of the first three kinds have a tip gap. Their numbers of cells are chosen
+as for random rows.
+
+- *folded*: number of cells with a corner Jacobian / a Bezier coefficient of the Jacobian of zero or less.
+- *SJ*: scaled Jacobian of cells: minimum / 0.1th percentile / mean. For groups of rows: minimum of each row,
+  median / worst over the rows.
+- *angle*: largest angle of the faces of a cell in degrees: maximum / 99.9th percentile. For groups of rows:
+  maximum of each row, median / worst over the rows.
+- *first cells*: largest relative error of a first-cell height, over all walls.
+- *growth*: ratio of consecutive edges along all grid lines, across blocks too: 99th / 99.9th percentile /
+  maximum. For groups of rows: median of the 99.9th percentiles / maximum over the rows.
+- *periodic*: largest distance between corresponding periodic nodes after the rotation, divided by the radius.
+- *blade*: largest distance of a node from the surface through the profiles, in chords.
 - *CPU s*: one thread of {machine}, while other programs used the machine.
 
 | grid | nodes | folded | SJ | angle | first cells | growth | periodic | blade | CPU s |

@@ -41,7 +41,7 @@ HEAD = """# Volumes inside six faces
 
 Use this page to find the CPU time and the quality of volume grids inside six faces. For their use see
 [volumes](../guide/volumes.md). Times are CPU times of one thread, the minimum of several runs. The table
-compares them with the time of copying the nodes into memory that is already allocated. Each cell corner
+gives each time relative to that of copying the nodes into memory that is already allocated. Each cell corner
 counts the largest deviation from 90 degrees of its three angles. SJ is the scaled Jacobian at the
 corners.
 """
@@ -51,7 +51,8 @@ NETWORKS = """## A network: 3DMeshNet
 `train --model meshnet` trains a 3DMeshNet for each of the first {count} of these domains, with {epochs} steps
 (15,000 by default), default settings and seed 0. The training is part of the CPU time. The faces of the
 network miss the given ones by {off} % of the size of the domain (largest distance, median).
-They are replaced by the given ones (`infer --answer pasted`). *Repaired* is the output of `infer` by default.
+The faces of the network are therefore replaced by the given faces (`infer --answer pasted`). *Repaired* is
+the output of `infer` by default.
 """
 
 METHODS: dict[str, Callable[[SixFaces], Solution]] = {

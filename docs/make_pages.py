@@ -55,7 +55,7 @@ ERRORS_HEAD = """# Held-out errors of the shipped models
 
 Look here for the accuracy of the models that are part of meshonet: the distance between grids of a model and
 grids of the solver, on shapes that were not used in training. The training parameters are in
-[shipped models](../reference/models.md); `meshonet models` prints errors and parameters. The loss after every
+[shipped models](../reference/models.md); `meshonet models` prints errors and parameters. The loss after each
 epoch is in `docs/benchmarks/curves`; `quad-first` is the first of the two training runs of `quad-general`.
 """
 C_GRIDS = """## C grids: no model
@@ -205,7 +205,8 @@ def curve(name: str) -> list[str]:
         rows = list(csv.DictReader(file))
     some = [rows[k] for k in sorted({0, len(rows) // 4, len(rows) // 2, len(rows) - 1})]
     losses = ", ".join(f"{float(row['held_out_loss']):.3g} after {row['epoch']}" for row in some)
-    return [f"\nLoss on the held-out samples: {losses} epochs ([every epoch](curves/{name}.csv))."]
+    what = "[loss](../theory/operators.md#training) on the held-out samples"
+    return [f"\nThe {what} is {losses} epochs ([every epoch](curves/{name}.csv))."]
 
 
 def strip_figures(figures: dict[str, Any], _: str) -> list[str]:
@@ -246,9 +247,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "Angles of variational grids are smaller than those of Winslow's grids. The network reaches\n"
-        f"{100 * gain['mean_gain']:.0f} % of this reduction for the mean of the largest angle of each cell,\n"
-        f"and {100 * gain['max_gain']:.0f} % for the largest angle of the grid.",
+        "The largest angles of cells are smaller in variational grids than in Winslow's grids. The network\n"
+        f"reaches {100 * gain['mean_gain']:.0f} % of this reduction for the mean over all cells, and\n"
+        f"{100 * gain['max_gain']:.0f} % for the maximum over all cells.",
     ]
     return lines
 

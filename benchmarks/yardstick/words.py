@@ -4,9 +4,9 @@ HEAD = """# A comparison that is open to other programs
 
 <!-- made by python benchmarks/yardstick entries build/yardstick --page docs/benchmarks/yardstick.md -->
 
-Use this page to compare a program that makes structured grids with the ones below, on shapes that none of them was
-made for. The shapes, the judge and the files are in `benchmarks/yardstick`. They need NumPy and h5py, and nothing of
-meshonet.
+Use this page to compare a program that makes structured grids with the programs below, on shapes for which none of them
+was made. The folder `benchmarks/yardstick` contains the programs that draw the shapes, read and write the files and judge
+the grids. They need NumPy and h5py, and do not use meshonet.
 
 There are nine kinds of random shapes, here {count} of each, drawn with seed {seed}. Six kinds are four-sided domains with
 65 x 65 nodes: `wavy`, `sector`, `duct`, `bumps`, `kinked` and `lens`. Three are bodies with 65 x 33 nodes: `star`, `slab`
@@ -25,18 +25,19 @@ and `section`. The boundary nodes are given.
 TAIL = """
 `meshonet` repairs folded cells, except with `--no-repair` and in the rows `meshonet train`.
 
-These rows are the [networks of the MeshONet paper](../theory/paper-models.md) and the operators with which they are
-compared. Each operator is trained twice, with its default settings, seed 0 and 15 epochs: on 600 four-sided domains with
-33 x 33 nodes, and on 576 bodies with 65 x 33 nodes. The latter are those of 600 for which Winslow's equations converge. An
-operator so sees 9,000 shapes in 300 steps, as in
-[the table of every model on every case](paper/index.md#every-model-on-every-case). The grids for training are Winslow's, for
-random shapes of `sample-boundary --family four-sided` and `--family bodies`. None of the nine kinds is among them. The
-boundary nodes of an answer are replaced by the given ones, as in the paper (`infer --answer pasted`), and folded cells stay.
-Almost all of their grids are folded: they have learnt little in 300 steps, and the shapes here have other sizes and places
-than those they learnt from. On one family of shapes their errors are those of [the paper's page](paper/index.md).
+The rows `meshonet train` are the [networks of the MeshONet paper](../theory/paper-models.md) and the operators with which
+the paper compares them. Each operator is trained twice, with its default settings, seed 0 and 15 epochs: on 600 four-sided
+domains with 33 x 33 nodes, and on 576 bodies with 65 x 33 nodes (of 600 random bodies, Winslow's equations converge for
+576). Each training therefore processes about 9,000 shapes in 300 steps, as in
+[the table of every model on every case](paper/index.md#every-model-on-every-case). The grids for training are Winslow's
+grids of random shapes of `sample-boundary --family four-sided` and `--family bodies`; the nine kinds of shapes are not used
+in training. As in the paper, the boundary nodes of a predicted grid are replaced by the given nodes (`infer --answer
+pasted`); folded cells are not repaired. Almost all grids of these operators have folded cells, for two reasons: 300 steps
+are few, and the shapes on this page have other sizes and positions than the shapes for training. Their errors on one
+family of shapes, after longer training, are on [the page of the paper](paper/index.md).
 
-`mgnet` and `meshnet` learn one geometry each. They are trained for the first shape of each kind only, with 500 steps;
-the training is part of their time.
+Each network `mgnet` or `meshnet` is trained for one geometry. There is one for the first shape of each kind, with 500
+steps; the training is part of the time.
 
 ## How to enter
 

@@ -7,6 +7,7 @@ from functools import partial
 from meshonet.formats.convert import Conversion, plot3d_variant, unused_iblank
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.measure import count_folded_in
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import Batch, BatchTask, each
 from meshonet_cli.report.delivered import Delivered, delivered, part_names
@@ -32,6 +33,9 @@ def _converted(
     note = unused_iblank(item.what)
     if note:
         warn(f"{item.label}: {note}")
+    folded = count_folded_in(what) if isinstance(what, Grid) else 0
+    if folded:
+        warn(f"{item.label}: the grid has {folded} folded cells; they are written as they are")
     return what, delivered(item, what, part_names(what))
 
 

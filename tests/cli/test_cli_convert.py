@@ -122,6 +122,18 @@ def test_iblank_is_told_of(meshonet: Meshonet, grid_vts: Path) -> None:
     assert "warning: grid.p3d: iblank marks nodes (1 with 0, 1 with 2); they are kept as ord" in done.err
 
 
+def test_folded_cells_are_told_of(meshonet: Meshonet, grid_vts: Path) -> None:
+    assert meshonet("convert", grid_vts, "fine.h5", "-q").err == ""
+    (grid,) = read_grids(str(grid_vts))
+    nodes = grid.nodes.copy()
+    nodes[20, 7] = nodes[20, 9]  # a node beyond its neighbour: some of its four cells are inverted
+    write("folded.vts", [Grid.from_nodes(nodes, "o")])
+    folded = meshonet("quality", "folded.vts", "--json").only["folded"]
+    done = meshonet("convert", "folded.vts", "folded.cgns")
+    assert (done.code, folded > 0) == (0, True)
+    assert f"warning: folded.vts: the grid has {folded} folded cells; they are written" in done.err
+
+
 @pytest.mark.parametrize("name", ["both.p3d", "both.bin", "both.cgns", "both.vtm"])
 def test_grids_of_different_sizes_are_blocks_of_one_file(
     meshonet: Meshonet, grid_vts: Path, name: str
