@@ -12,12 +12,13 @@ Floats: TypeAlias = NDArray[np.float64]
 Complexes: TypeAlias = NDArray[np.complex128]
 """complex128 array of points x + iy."""
 Indices: TypeAlias = NDArray[np.intp]
-"""Array of numbers of nodes, cells and the like."""
+"""Array of integers: indices or numbers of nodes and cells."""
 Bools: TypeAlias = NDArray[np.bool_]
 """Array of flags, a mask."""
 
 Topology: TypeAlias = Literal["quad", "o", "c", "blocks"]
-"""Kind of a grid by its connections; ``blocks`` stands for all that are not of the other three."""
+"""Kind of a grid by its connections; ``blocks`` are all grids that are neither ``quad`` nor ``o`` nor ``c``.
+"""
 Side: TypeAlias = Literal["south", "east", "north", "west", "bottom", "top"]
 
 TOPOLOGIES: tuple[Topology, ...] = ("quad", "o", "c")
@@ -29,7 +30,9 @@ SIDES: tuple[Side, ...] = ("south", "east", "north", "west")
 AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
 
 _ROUNDING = 1e-12
-"""Distance over the extent of a closed curve below which its ends differ by rounding, e.g. of sin(2 pi)."""
+"""Distance of the ends of a closed curve, divided by its extent, that counts as rounding, for example of
+sin(2 pi).
+"""
 _MANY, _SAMPLE = 1 << 17, 1 << 14  # values of which ranks are found by a sample, and how large that is
 
 
@@ -67,7 +70,7 @@ def ends_meet(points: Floats) -> bool:
 
 
 def rolled(values: AnyArray, by: int) -> Any:
-    """Return values (n, ...) moved along their first axis, around its ends; faster than NumPy's for few.
+    """Return values (n, ...) rolled by `by` along the first axis; for few values faster than `np.roll`.
 
     >>> rolled(np.arange(5), 2).tolist()
     [3, 4, 0, 1, 2]
@@ -91,7 +94,7 @@ def pairs_of(values: NDArray[Any]) -> Floats:
 
 
 def wrapped(parts: Floats, least: float = -0.5) -> Floats:
-    """Return parts of a turn as those from `least` to `least` + 1 that are whole turns away.
+    """Return fractions of a turn (...), each moved by a whole number of turns into [`least`, `least` + 1).
 
     >>> wrapped(np.array([0.75, -0.25])).tolist()
     [-0.25, -0.25]
@@ -107,7 +110,7 @@ def arc_lengths(line: Floats) -> Floats:
 
 
 def arc_parts(line: Floats) -> Floats:
-    """Return the arc lengths (..., n) at the nodes of lines (..., n, d), over their lengths."""
+    """Return the arc lengths (..., n) at the nodes of lines (..., n, d) as fractions of the whole length."""
     arcs = arc_lengths(line)
     return np.asarray(arcs / arcs[..., -1:])
 
@@ -124,7 +127,7 @@ def running_sums(values: Floats, count: int) -> Floats:
 
 
 def along_and_across(vectors: Floats, axis: Floats) -> tuple[Floats, Floats]:
-    """Return the coordinates (...) of vectors (..., 2) along `axis` (2,) and left of it, times its length."""
+    """Return the scalar products (...) of vectors (..., 2) with `axis` (2,), and with `axis` turned left."""
     x, y = vectors[..., 0], vectors[..., 1]
     return x * axis[0] + y * axis[1], y * axis[0] - x * axis[1]
 

@@ -9,9 +9,10 @@ Made = TypeVar("Made")
 
 
 class cached_property(functools.cached_property[Made]):  # noqa: N801  # as the one that it is
-    """As that of `functools`, without the lock that all objects of a class share in Python 3.11.
+    """`functools.cached_property` without a lock.
 
-    With it, threads that work out the same property of different objects would wait for each other.
+    In Python 3.11 all objects of a class share one lock. With this lock, threads that compute the same
+    property of different objects would wait for each other.
     """
 
     def __init__(self, work: Callable[[Any], Made]) -> None:

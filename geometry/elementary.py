@@ -36,7 +36,7 @@ def _function(name: bytes, x: Any) -> Any:
 
 _kernel: Callable[[bytes], Callable[[Any], Any]] = partial(partial, _function)
 exp, log, sin, cos = map(_kernel, (b"exp", b"log", b"sin", b"cos"))
-"""To 2 units in the last place; angles are in radians here and below."""
+"""Functions accurate to 2 units in the last place; angles are in radians."""
 expm1, log1p, log2, log10, cbrt = map(_kernel, (b"expm1", b"log1p", b"log2", b"log10", b"cbrt"))
 tan, arcsin, arccos, arctan = map(_kernel, (b"tan", b"arcsin", b"arccos", b"arctan"))
 sinh, cosh, tanh, arcsinh, arccosh = map(_kernel, (b"sinh", b"cosh", b"tanh", b"arcsinh", b"arccosh"))
@@ -54,14 +54,18 @@ def angle(z: Any) -> Any:
 
 
 def modulus(z: Any) -> Any:
-    """Return the modulus of complex numbers, or the absolute value of real ones; torch does its tensors."""
+    """Return the modulus |z| of complex numbers, or the absolute value of real numbers.
+
+    Torch tensors are computed by torch.
+    """
     return np.hypot(z.real, z.imag) if _is_complex(z) else abs(z)
 
 
 def times(a: Any, b: Any) -> Any:
-    """Return the product of complex numbers, each product and sum of real parts rounded by itself.
+    """Return the product of complex numbers, in which each product and each sum of real numbers is rounded.
 
-    NumPy fuses them on some processors. Real numbers and tensors are multiplied as usual.
+    On some processors NumPy uses fused multiply-adds instead. Real numbers and tensors are multiplied as
+    usual.
     """
     if not (_is_complex(a) and _is_complex(b)):
         return a * b
@@ -94,14 +98,15 @@ def geomspace(start: float, stop: float, count: int) -> Floats:
 
 
 def functions_of(xp: Any) -> Any:
-    """Return the module of elementary functions for arrays of `xp`, numpy or torch: this one for numpy."""
+    """Return the module with elementary functions for arrays of `xp`: this one for numpy, else torch."""
     return sys.modules[__name__] if xp is np else xp
 
 
 def product(a: Any, b: Any) -> Any:
-    """Return the matrix product ``a @ b`` in double precision, its sums in a fixed order.
+    """Return the matrix product ``a @ b`` in double precision, with sums in a fixed order.
 
-    Stacks of matrices `b` (..., inner, columns) should have few inner terms, which are summed one by one.
+    If `b` is a stack of matrices (..., inner, columns), the inner terms are summed one by one, so they should
+    be few.
     """
     left, right = np.asarray(a), np.asarray(b)
     if left.dtype.kind == "c" or right.dtype.kind == "c":

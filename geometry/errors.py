@@ -69,9 +69,9 @@ class InputError(MeshonetError):
 
 
 def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
-    """Return ``did you mean ...?`` with the most similar word of `known`, or an empty string.
+    """Return ``did you mean ...?`` with the word of `known` most similar to `word`, or an empty string.
 
-    `likeness` is the least similarity ratio, 0 to 1, unless `word` begins with one of `known`.
+    The similarity ratio, 0 to 1, must be at least `likeness`, unless `word` begins with a word of `known`.
 
     >>> meant("max_angel", ["max_angle", "min_angle"])
     "did you mean 'max_angle'? "

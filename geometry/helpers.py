@@ -31,7 +31,7 @@ class _Jobs:
 
 
 class Helpers:
-    """Threads that help the one that asks for them, `most` at the most; they start when there are jobs."""
+    """At most `most` threads that help the thread which asks for them; they start when there are jobs."""
 
     def __init__(self, most: int) -> None:
         self._most, self._idle = most, 0
@@ -43,7 +43,7 @@ class Helpers:
     @classmethod
     @contextmanager
     def at_hand(cls, most: int) -> Iterator[Helpers]:
-        """Have helpers that end with the ``with`` block."""
+        """Provide helpers within the ``with`` block; at its end they are stopped."""
         helpers = cls(most)
         try:
             yield helpers
@@ -55,7 +55,7 @@ class Helpers:
                 thread.join()
 
     def run(self, jobs: Sequence[Callable[[], Any]]) -> list[Any]:
-        """Return what each of `jobs` returns. Raises what the first of those that fail raises."""
+        """Return the results of all `jobs`, in their order; if jobs fail, raise the error of the first."""
         own = _Jobs(jobs)
         with self._change:
             self._open.append(own)

@@ -17,11 +17,11 @@ from meshonet.geometry.elementary import product
 from meshonet.kernels._native import solve_systems
 
 _SWEEPS = 60
-"""Most sweeps of Jacobi rotations; they converge quadratically, in 4 to 10."""
+"""Largest number of sweeps of Jacobi rotations; they converge quadratically, in 4 to 10 sweeps."""
 _SMALL = 2**-58
 """Relative size of off-diagonal entries at which sweeps end: they no longer change any digit."""
 _RIGHT_ANGLE = 2**-50
-"""Cosine up to which columns count as orthogonal: that of rounding errors."""
+"""Columns count as orthogonal if the cosine of their angle is at most this: rounding errors."""
 
 
 def solve(matrix: Any, right: Any) -> Floats:
@@ -129,9 +129,8 @@ def least_squares(matrix: Any, right: Any) -> Floats:
 def nearest_rotation(maps: Any) -> Floats:
     """Return the rotation nearest, in the Frobenius norm, to each matrix (..., d, d), with d 2 or 3.
 
-    In three dimensions it is the unit quaternion that is the eigenvector of largest eigenvalue of a matrix
-    made from the given one (Horn, J. Opt. Soc. Am. A 4, 1987), also where that has a negative or zero
-    determinant.
+    In three dimensions its unit quaternion is the eigenvector with the largest eigenvalue of a 4 x 4 matrix
+    made from the given matrix, whose determinant may be zero or negative (Horn, J. Opt. Soc. Am. A 4, 1987).
     """
     m = np.asarray(maps, np.float64)
     if m.shape[-1] == 2:

@@ -4,13 +4,13 @@ from collections.abc import Iterable
 
 
 class Change(str):
-    """A sentence that says how a shape was changed, or what was left out of its file."""
+    """A note that says how a shape was changed, or which part of its file was left out."""
 
     __slots__ = ()
 
 
 class Advice(str):
-    """A sentence about the settings, which is the same for every shape."""
+    """A note about the settings, which is the same for every shape of a batch."""
 
     __slots__ = ()
 

@@ -3,17 +3,18 @@
 from meshonet.geometry.errors import InputError
 
 MOST_CELLS = 20_000_000
-"""Cells of a grid where nobody says how many there are to be."""
+"""Largest number of cells of a grid if the request does not prescribe a number."""
 MOST_REFINED = 200_000_000
-"""Cells of one block in the plane whose cells are halved: 3 GB of nodes."""
+"""Largest number of cells of a planar block after refinement: 3 GB of nodes."""
 
 
 def check_reach(
     count: float, things: str, cause: str, remedy: str, *, most: float = MOST_CELLS, parameter: str = ""
 ) -> None:
-    """Raise InputError if what is asked for, the `cause`, takes a `count` of `things` above `most`.
+    """Raise InputError if a request needs more than `most` things.
 
-    `parameter` is the Python name of the parameter that asks for it.
+    `count` is the number that it needs, `things` their name, such as cells, and `cause` the words for the
+    setting that needs them; `remedy` says what to change, and `parameter` is the Python name of the setting.
     """
     if not count <= most:
         problem = f"{cause} takes {count:.3g} {things}, more than {most:.3g}"

@@ -14,7 +14,7 @@ class Summary:
     mean: float
     max: float
     worst: tuple[int, ...]
-    """The first cell (i, j) with the worst value; (block, i, j) or (block, i, j, k) in a grid of blocks."""
+    """The first cell with the worst value: (i, j), in multi-block grids (block, i, j) or (block, i, j, k)."""
     p01: float | None = None
     p99: float | None = None
 

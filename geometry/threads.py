@@ -18,12 +18,14 @@ if TYPE_CHECKING:
     from meshonet.geometry.helpers import Helpers
 
 MOST = 64
-"""Threads that a kernel starts at the most (``TEAM_MOST`` of ``team.h``)."""
+"""Largest number of threads of a kernel (``TEAM_MOST`` of ``team.h``)."""
 
 NODES_EACH = 1 << 17
-"""Nodes per thread: starting one takes as long as the fastest kernel takes for 5,000 nodes."""
+"""Smallest number of nodes per thread: starting a thread takes as long as the fastest kernel takes for 5,000
+nodes.
+"""
 MANY_VISITS = 16
-"""How often kernels that iterate, as descents and marches do, visit a node at the least."""
+"""Smallest number of visits of each node by kernels that iterate, such as minimisations and marches."""
 
 Item = TypeVar("Item")
 Made = TypeVar("Made")
@@ -52,9 +54,9 @@ def threads_for(nodes: int, visits: int = 1) -> int:
 def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made]:
     """Return what `work` returns for each of `items`, several at once if threads are free.
 
-    Worth it where each takes milliseconds, most of them in kernels or NumPy's loops. Each may use its share
-    of the threads in turn, and threads that have nothing left to do help others with their items. Items are
-    begun in their order: the longest should be first.
+    This saves time if an item takes milliseconds, mostly in kernels or in loops of NumPy. `work` may use its
+    share of the threads itself; threads without an item help others. Items are begun in their order, so the
+    longest should be first.
     """
     inside = _helpers.get()
     if len(items) < 2 or not (inside or thread_count() > 1):
@@ -78,9 +80,10 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
 
 
 def over_blocks(work: Callable[[Item], Made], items: Sequence[Item], nodes: Sequence[int]) -> list[Made]:
-    """Return what `work` returns for each of `items`, which have so many `nodes`.
+    """Return what `work` returns for each of `items`; `nodes` are their numbers of nodes.
 
-    Those with many, whose kernels use all threads, come one after the other, the rest several at once.
+    Items with many nodes, whose kernels use all threads, are processed one after the other, the others
+    several at once.
     """
     many = [threads_for(count) > 1 for count in nodes]
     few = [item for item, alone in zip(items, many, strict=True) if not alone]
@@ -100,7 +103,7 @@ def limited_to(threads: int | None) -> Iterator[None]:
 
     Python threads started inside do not inherit the limit.
 
-    Raises InputError: fewer than one.
+    Raises InputError: fewer than one thread.
     """
     if threads is not None and threads < 1:
         raise InputError(f"{threads} threads", "use 1 or more", parameter="threads")

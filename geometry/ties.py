@@ -14,9 +14,9 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Indices
 
 EQUAL = 1e-9
-"""Difference, over the larger of two values, up to which they are equal."""
+"""Largest difference of two equal values, divided by the larger one."""
 _NOISE = 1e-7
-"""Relative perturbation of costs: above rounding errors, far below real differences."""
+"""Relative perturbation of costs: larger than rounding errors, far smaller than real differences."""
 
 Item = TypeVar("Item")
 
@@ -27,9 +27,9 @@ def less(a: float, b: float) -> bool:
 
 
 def first_least(items: Iterable[Item], key: Callable[[Item], float]) -> Item:
-    """Return the first item whose `key` no other's is less than, by more than rounding.
+    """Return the first item with the smallest `key`; keys that differ by rounding only are equal.
 
-    Raises ValueError: there are none.
+    Raises ValueError: there are no items.
 
     Examples
     --------
@@ -66,7 +66,9 @@ def ascending(values: Floats) -> Indices:
 
 
 def nearest_whole(values: Floats) -> Floats:
-    """Return the integers nearest to positive values; of two equally near, to rounding, the smaller one.
+    """Return the integers nearest to positive `values`.
+
+    If two are equally near, to rounding, the smaller one.
 
     Examples
     --------
@@ -77,10 +79,10 @@ def nearest_whole(values: Floats) -> Floats:
 
 
 def made_unlike(costs: Floats) -> Floats:
-    """Return costs (..., n) perturbed so that hardly any sums are equal: linear programmes have one solution.
+    """Return costs (..., n), perturbed so that hardly any sums of them are equal.
 
-    The relative change is less than `_NOISE` and depends on the index alone: it is taken from the digits of
-    square roots.
+    A linear programme with these costs then has only one solution. The relative change is far below real
+    differences, and depends on the index only: it is made from the digits of square roots.
     """
     digits = np.mod(1e3 * np.sqrt(np.arange(costs.size) + 0.618), 1.0)
     return costs + _NOISE * np.abs(costs) * digits.reshape(costs.shape)

@@ -12,7 +12,9 @@ from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 _TAPER = 0.02
-"""Least chord over the longest one: around a wing that ends in a point there are no cells of equal counts."""
+"""Smallest allowed ratio of the shortest chord of a wing to its longest one: a wing must not end in a point,
+because all sections have the same number of cells.
+"""
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,19 +13,21 @@ from meshonet.geometry.blocks.halves import with_i_reversed
 
 _NAMES = "xyz"
 FLAT = 1e-6
-"""Distance from the plane of symmetry or an end of the body, over the size of a surface, that is none."""
+"""Largest distance of a node that counts as in the plane of symmetry, or at an end of the body, divided by
+the size of the surface.
+"""
 
 
 @dataclass(frozen=True)
 class AircraftAxes:
-    """The axis of a file that points up, and that along the span, by their numbers.
+    """The numbers of the axes of a file that point upwards and along the span.
 
     Parameters
     ----------
     up, span : int, optional
         1 for y, 2 for z.
     sign : int, optional
-        -1 where the half of the aircraft in the file is that of negative places along the span.
+        -1 if the half of the aircraft in the file has negative coordinates along the span, else 1.
     """
 
     up: int = 1
@@ -34,7 +36,7 @@ class AircraftAxes:
 
     @property
     def description(self) -> str:
-        """The axes as a part of a sentence."""
+        """A phrase that describes the axes, for notes."""
         half = ">=" if self.sign > 0 else "<="
         return f"{_NAMES[self.up]} points up, and the half is that of {_NAMES[self.span]} {half} 0"
 
@@ -58,11 +60,14 @@ class AircraftAxes:
 
 
 FILE_AXES = AircraftAxes()
-"""Those of an aircraft that is not turned."""
+"""The axes of a file that already has the axes of an aircraft."""
 
 
 def axes_of(points: Floats) -> AircraftAxes | None:
-    """Return the axes of half an aircraft with points (n, 3); None if these are those of both halves."""
+    """Return the axes of the file of half an aircraft with points (n, 3).
+
+    None if the points are those of both halves.
+    """
     flat = FLAT * float(np.ptp(points, axis=0).max())
     for span in (2, 1):
         for sign in (1, -1):

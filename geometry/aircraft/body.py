@@ -129,19 +129,19 @@ class Body:
         return 2.0 * self.radius
 
     def meridional(self, s: Floats) -> Floats:
-        """Return x and radius (n, 2) at arc lengths (n,)."""
+        """Return x and radius (n, 2) of the meridian at arc lengths `s` (n,)."""
         x, r = self._spline(s).T
         return np.stack([x, np.maximum(r, 0.0)], axis=1)
 
     def points(self, s: Floats, theta: Floats) -> Floats:
-        """Return points (..., 3) at arc lengths and angles (...)."""
+        """Return points (..., 3) at arc lengths `s` (...) and angles `theta` (...) in radians."""
         s, theta = np.broadcast_arrays(s, theta)
         x, r = np.moveaxis(self._spline(s.ravel()).reshape(*s.shape, 2), -1, 0)
         r = np.maximum(r, 0.0)
         return np.stack([x, self.y - r * cos(theta), r * sin(theta)], axis=-1)
 
     def arc_at(self, x: Floats) -> Floats:
-        """Return the arc length (n,) at positions x (n,), clipped to the body's."""
+        """Return the arc length (n,) of the meridian at x (n,), clipped to the range of the body."""
         x = np.clip(x, self.meridian[0, 0], self.meridian[-1, 0])
         s = monotone_cubic(self.meridian[:, 0], self.arc, x, linear=True)
         for _ in range(_STEPS):  # Newton's method
@@ -153,9 +153,11 @@ class Body:
         return np.asarray(s)
 
     def arcs_near(self, points: Floats) -> Floats:
-        """Return the arc lengths (n,) of the meridian next to points (n, 2), given from nose to tail.
+        """Return the arc lengths (n,) at which the meridian is nearest to points (n, 2), x and radius.
 
-        The arc length identifies a point also at a blunt nose, where x does not change along the meridian.
+        The points are in order from nose to tail.
+
+        At a blunt nose x does not change along the meridian; the arc length identifies a point there too.
         """
         s = arc_lengths(points)
         s *= self.length / s[-1]
@@ -166,12 +168,15 @@ class Body:
         return s
 
     def outside(self, points: Floats) -> Floats:
-        """Return how far points (n, 3) are from the surface along the radius, negative inside."""
+        """Return the distances (n,) of points (n, 3) from the surface, along the radius.
+
+        Negative inside the body.
+        """
         r = self._spline(self.arc_at(points[:, 0]))[:, 1]
         return np.asarray(np.hypot(points[:, 1] - self.y, points[:, 2]) - r)
 
     def beside(self, point: Floats) -> str:
-        """Return the distance of a point (3,) from the axis, and the radius of the body at its x, as text."""
+        """Return as text the distance of a point (3,) from the axis, and the body's radius at its x."""
         away, radius = np.hypot(point[1] - self.y, point[2]), float(np.interp(point[0], *self.meridian.T))
         return f"{away:.4g} from its axis, where its radius is {radius:.4g}"
 

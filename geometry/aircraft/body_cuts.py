@@ -37,14 +37,14 @@ _ROUND = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class BodyCuts:
-    """Cuts through a body at rising x, from the point of its nose to that of its tail.
+    """Cross-sections of one half (z >= 0) of a body, in planes of constant x between its nose and its tail.
 
     Parameters
     ----------
-    x : (n,) planes of the cuts between nose and tail.
-    points : of each cut, (k, 2) y and z from keel to crown.
-    nose, tail : x and y of the ends.
-    notes : what was added.
+    x : (n,) positions of the planes, ascending, without nose and tail.
+    points : for each plane (k, 2), y and z of the points of the cut from keel to crown.
+    nose, tail : x and y of the two ends of the body.
+    notes : sentences about the caps that were added to an end without a point.
     """
 
     x: Floats
@@ -55,7 +55,10 @@ class BodyCuts:
 
     @property
     def meridian(self) -> Floats | None:
-        """(n + 2, 2) x and radius if the body is one of revolution about a line parallel to x, else None."""
+        """(n + 2, 2) x and radius from nose to tail.
+
+        None if this is no body of revolution about a line parallel to x.
+        """
         y, size = self.nose[1], _ROUND * (self.tail[0] - self.nose[0])
         radii = [np.hypot(cut[:, 0] - y, cut[:, 1]) for cut in self.points]
         if abs(self.tail[1] - y) > size or max(float(np.ptp(each)) for each in radii) > size:
@@ -65,11 +68,13 @@ class BodyCuts:
 
 
 def body_cuts(patches: Sequence[Floats], name: str) -> BodyCuts:
-    """Return cuts through the half z >= 0 of a body of `patches` (ni, nj, 3), at the x of nodes in z = 0.
+    """Return cuts through the half z >= 0 of a body, whose surface are `patches` (ni, nj, 3).
 
-    A body without a point at nose or tail gets a cap: half of an ellipsoid, as long as it is high there.
+    The planes of the cuts have the x of the nodes in the plane of symmetry z = 0; beside corners of keel and
+    crown there are more. An end of the body that is not a point gets a cap, half of an ellipsoid, whose
+    length is half the height of this end.
 
-    Raises InputError: a surface with holes or without nodes in the plane of symmetry.
+    Raises InputError: a surface with holes, or with fewer than 4 nodes in the plane of symmetry.
     """
     nodes, lattices = merged(patches)
     length = extent_of(nodes)

@@ -15,16 +15,18 @@ from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.polygon.corners import turning
 
 ANGLES = 513
-"""Angles from keel to crown for which the shape of a section is known."""
+"""Number of equally spaced angles from keel to crown at which the shape of a section is stored."""
 _DENSE = 8
-"""Times as many points between two given ones, through which shape and angle are known."""
+"""Number of points on the spline between two given points, from which the shape is interpolated."""
 _FEWEST_POINTS = 5
 _EXPONENTS = 1.2, 20.0
 """Least and largest exponent: sections between a rhombus and a rectangle, whose corners are rounded."""
 _MOST_TURN = math.radians(60.0)
-"""Largest turn of a section at a point: beyond it a spline through its points would bulge beside it."""
+"""Largest turn of a section at a point: at a larger turn, the spline would bulge beside the point."""
 _IN_PLANE = 1e-6
-"""Distance from z = 0 of the ends of a section, over its width, that is a matter of its digits."""
+"""Distance of an end of a section from z = 0, divided by the width, that counts as rounding of the
+coordinates.
+"""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Dimensions of an aircraft and of its grid by which a reader recognises both."""
+"""Dimensions of an aircraft and of its grid, so that a user notices a wrong unit or a wrong file."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class AircraftDimensions:
     diameter : the larger of width and height, which are the same for a body of revolution.
     spans : distance from tip to tip of each wing, both halves together, by the name of its patch.
     fins : height y of the tip of each fin, by the name of its patch.
-    chord : the longest of the first wing, in which heights of cells and distances are given.
-    first_cell : height of the cells at the walls.
-    far_field : radius of the outer boundary.
+    chord : longest chord of the first wing, the unit of the options for first-cell height and far field.
+    first_cell : height of the cells at the walls, in the unit of the file.
+    far_field : radius of the outer boundary, in the unit of the file.
     """
 
     length: float
@@ -38,7 +38,7 @@ class AircraftDimensions:
 
     @property
     def lines(self) -> dict[str, str]:
-        """Lines of text by their headings."""
+        """The report: lines of text, by their headings."""
         spans = "".join(f"; {name} {span:.4g} from tip to tip" for name, span in self.spans.items())
         fins = "".join(f"; {name} up to y={y:.4g}" for name, y in self.fins.items())
         across = f"{self.width:.4g} wide and {self.height:.4g} high"
@@ -52,7 +52,10 @@ class AircraftDimensions:
 
 
 def aircraft_dimensions(aircraft: Aircraft, first_cell: float, far_field: float) -> AircraftDimensions:
-    """Return the dimensions of an aircraft and of its grid, both lengths in longest chords of the wing."""
+    """Return the dimensions of an aircraft and of its grid.
+
+    `first_cell` and `far_field` are in longest chords.
+    """
     chord, body = aircraft.wing.chord, aircraft.body
     wings = [(name, wing) for (name, _), wing in zip(aircraft.patches, aircraft.wings, strict=True)]
     return AircraftDimensions(

@@ -150,7 +150,7 @@ class LoftedBody(Body):
         return np.ascontiguousarray(np.stack([spline.values, spline.slopes], axis=-1))
 
     def arc_position(self, s: Floats) -> Floats:
-        """Return x (n,) at arc lengths of the meridian (n,)."""
+        """Return x (n,) at arc lengths `s` (n,) of the meridian."""
         return self.meridional(s)[:, 0]
 
     def sizes(self, s: Floats) -> tuple[Floats, Floats, Floats]:
@@ -182,7 +182,10 @@ class LoftedBody(Body):
         return np.stack([self.arc_position(arcs), y, z], axis=-1).reshape(*s.shape, 3)
 
     def outside(self, points: Floats) -> Floats:
-        """Return how far points (n, 3) are from the surface, as seen from the middle; negative inside."""
+        """Return the distances (n,) of points (n, 3) from the surface, along rays from the middle.
+
+        Negative inside.
+        """
         s = self.arc_at(points[:, 0])
         across, up, middle = self.sizes(s)
         y, z = points[:, 1] - middle, np.abs(points[:, 2])
@@ -191,7 +194,7 @@ class LoftedBody(Body):
         return np.asarray(np.hypot(y, z) - shape * np.hypot(up * cos(angles), across * sin(angles)))
 
     def beside(self, point: Floats) -> str:
-        """Return where a point (3,) is in relation to its section."""
+        """Return as text where a point (3,) is, and how large the body's section at its x is."""
         across, up, middle = (float(each[0]) for each in self.sizes(self.arc_at(point[:1])))
         low, high = middle - up, middle + up
         return f"where its section is from y={low:.4g} to {high:.4g} and {2.0 * across:.4g} wide"

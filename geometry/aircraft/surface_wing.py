@@ -15,15 +15,19 @@ from meshonet.geometry.notes import Change
 from meshonet.geometry.sections.stack import Tip
 
 _NOSE = 0.02
-"""Distance from the point farthest from the trailing edge, in chords, within which a joint is the nose."""
+"""Distance in chords: a joint of two strips this near to the point farthest from the trailing edge is the
+nose.
+"""
 _SLIM = 0.95
-"""Thickness over chord at a tip, over that one chord before it, below which the tip is closing."""
+"""A tip counts as closing if its ratio of thickness to chord, divided by the ratio one chord before it, is
+less.
+"""
 _SHORT = 0.05
-"""Least chord of the tip over the longest one."""
+"""Smallest allowed ratio of the chord of the tip to the longest chord."""
 _CLOSING = 0.1
-"""Part of the span at the tip within which lines need not rise."""
+"""Fraction of the span, at the tip, in which z need not increase along the lines."""
 _LEVELS = 33
-"""Heights between root and tip at which chords are measured."""
+"""Number of heights between root and tip at which chords are measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +51,9 @@ class SurfaceWing:
     height : float
         z of the plane in which the wing ends.
     name : str, optional
-        Of the wing and its patch.
+        Name of the wing and of its patch.
     notes : tuple of str, optional
-        What was changed.
+        Sentences on what was changed.
 
     Raises
     ------
@@ -79,7 +83,10 @@ class SurfaceWing:
 
     @classmethod
     def ending(cls, strips: tuple[Floats, ...], name: str = "wing") -> SurfaceWing:
-        """Return the wing that ends at the last station, or where its tip begins to close, with a note."""
+        """Return the wing with these `strips`, up to the last station or to where its tip begins to close.
+
+        In the second case the wing has a note.
+        """
         strips = tuple(map(_rising, strips))
         end = min(float(strip[-1, :, 2].min()) for strip in strips)
         wing = cls(strips, end, name)
@@ -100,7 +107,7 @@ class SurfaceWing:
 
     @property
     def z(self) -> Floats:
-        """(n,) heights from the first one that all lines have to the tip."""
+        """(n,) heights z, from the lowest one that all lines along the span reach to the tip."""
         begin = max(float(strip[0, :, 2].max()) for strip in self.strips)
         return np.linspace(begin, self.height, _LEVELS)
 
@@ -122,14 +129,14 @@ class SurfaceWing:
 
     @cached_property
     def arcs(self) -> Floats:
-        """(strips,) lengths across the strips in chords, half way along the span."""
+        """(strips,) widths of the strips around the section half way along the span, in chords."""
         z = self.z[[_LEVELS // 2]]
         lengths = [float(norms(np.diff(at_heights(strip, z)[0], axis=0)).sum()) for strip in self.strips]
         return np.array(lengths) / self.sizes(z)[0]
 
     @cached_property
     def nose(self) -> float:
-        """The place of the nose (see `line`)."""
+        """Place of the nose around the section (see `line`)."""
         z = self.z[[_LEVELS // 2]]
         rows = [at_heights(strip, z)[0] for strip in self.strips]
         edge = 0.5 * (rows[0][0] + rows[-1][-1])
@@ -143,7 +150,10 @@ class SurfaceWing:
         return number + float(way[int(apart[number].argmax())] / way[-1])
 
     def line(self, place: float) -> Floats:
-        """Return the line (stations, 3) along the span at a place: a strip's number, plus the part across."""
+        """Return the line (stations, 3) along the span at a place around the section.
+
+        The integer part of `place` is the number of a strip, the fraction the position across this strip.
+        """
         return self.lines(np.array([place]))[0]
 
     def lines(self, places: Floats) -> list[Floats]:
@@ -156,7 +166,10 @@ class SurfaceWing:
         return out
 
     def arc(self, place: float) -> float:
-        """Return the length from the base's upper corner to a place, in chords, half way along the span."""
+        """Return the length around the section from the upper corner of the base to a place.
+
+        It is measured half way along the span, in chords there.
+        """
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
     def places(self, arcs: Floats) -> Floats:
@@ -168,7 +181,7 @@ class SurfaceWing:
         return np.append(0.0, np.cumsum(self.arcs))
 
     def base(self, z: Floats) -> Floats:
-        """Return the heights of the base (n,) at heights z (n,), in chords there."""
+        """Return the thickness of the base (n,) at heights z (n,), divided by the chord at each z."""
         upper, lower = self.edges(z)
         across = upper - lower
         along = 0.5 * (upper + lower) - on_line(self.line(self.nose), z)
@@ -180,9 +193,11 @@ class SurfaceWing:
         return on_line(self.line(0.0), z), on_line(self.line(float(len(self.strips))), z)
 
     def opened(self, least: float) -> SurfaceWing:
-        """Return the wing with a base of at least so many chords, and a note if it was lower.
+        """Return the wing with a base at least `least` chords thick.
 
-        The thickness increases in proportion to the distance from the nose.
+        A wing whose base is thinner gets a note.
+
+        The added thickness increases from 0 at the nose in proportion to the distance from the nose.
         """
         thin = float(self.base(self.z).min())
         if thin >= least * (1.0 - 1e-9):
@@ -216,7 +231,7 @@ class SurfaceWing:
         return np.stack(rows)
 
     def sizes(self, z: Floats) -> tuple[Floats, Floats]:
-        """Return chord and thickness (n,) at heights z (n,)."""
+        """Return the chord (n,) and the largest thickness (n,) of the sections at heights z (n,)."""
         loops = np.concatenate([at_heights(strip, z) for strip in self.strips], axis=1)
         chord = loops[:, 0] + loops[:, -1]
         apart = norms(loops - 0.5 * chord[:, None])

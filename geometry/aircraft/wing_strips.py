@@ -15,15 +15,17 @@ from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import angle_between
 
 _CORNER = np.pi / 3.0
-"""Angle by which the nodes of a section turn at the corners of a trailing edge, at least."""
+"""Smallest turn of a section at a corner of the trailing edge."""
 _PART = 0.5
-"""Least extent along the span of a strip, over the largest: those with less close the tip."""
+"""Smallest extent of a strip along the span, divided by the largest: patches with a smaller one close the
+tip.
+"""
 _EDGE, _BASE = 0.03, 0.1
-"""Distance from the trailing edge, and greatest length, of a base, in chords."""
+"""Largest distance of a base from the trailing edge, and largest length of a base, in chords."""
 _GAP = 0.05
 """Largest distance of neighbouring strips, in chords."""
 _LEVELS = 5
-"""Heights at which strips are compared."""
+"""Number of heights at which strips are compared."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,12 +41,12 @@ class _Strip:
 
 
 def wing_strips(patches: Sequence[Floats], name: str) -> tuple[tuple[Floats, ...], tuple[int, ...]]:
-    """Return strips (stations, n, 3) for `SurfaceWing`, and the positions of the patches that close its tip.
+    """Return strips (stations, n, 3) for `SurfaceWing`, and the indices of the patches that close the tip.
 
-    `patches` (ni, nj, 3) are those of the half z >= 0 of a wing. Those of its base are left out: it lies
-    between the last strip and the first.
+    `patches` (ni, nj, 3) are the surface of a wing in the half z >= 0. Patches of the base are left out: the
+    base lies between the last strip and the first.
 
-    Raises InputError: patches that do not lie next to each other around the wing.
+    Raises InputError: patches that do not lie next to each other around the wing or along the span.
     """
     turned = [_from_root(patch) for patch in patches]
     spans = np.array([float((nodes[-1, :, 2] - nodes[0, :, 2]).mean()) for nodes in turned])

@@ -17,10 +17,11 @@ from meshonet.geometry.errors import InputError
 
 
 def across(grid: Grid, connection: Connection, depth: int) -> tuple[Floats, Floats]:
-    """Return rows of nodes on both sides of a connection, in the order of the first side, shared row first.
+    """Return the rows of nodes next to a connection, in the block of its side and in the block of its donor.
 
-    Both arrays are (depth, n, d), in volumes (depth, n, m, 3), with fewer rows if a block has fewer. At a
-    periodic connection the rows of the first side are moved to the second.
+    Both arrays are (depth, n, d), in volumes (depth, n, m, 3), with fewer rows if a block has fewer. The
+    shared row comes first, and nodes have the order of the side. At a periodic connection the rows of the
+    side are moved to the donor.
     """
     own, donor = (rows_beside(grid, *end, depth) for end in connection.ends)
     if connection.transform:
@@ -46,7 +47,7 @@ def rows_at(grid: Grid, patch: Patch, depth: int) -> Floats:
 
 
 def rows_beside(grid: Grid, block: int, side: Side, span: Range, depth: int) -> Floats:
-    """Return `depth` rows (depth, n, d) or (depth, n, m, 3) from the nodes `span` of a side inwards."""
+    """Return `depth` rows (depth, n, d) or (depth, n, m, 3) of nodes, from `span` of a side inwards."""
     axis, end = PLACES[side]
     nodes = np.moveaxis(grid.blocks[block].nodes, axis, 0)
     return (nodes[::-1] if end else nodes)[(slice(depth), *(slice(first, last + 1) for first, last in span))]

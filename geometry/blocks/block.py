@@ -73,13 +73,13 @@ class Block:
 
 
 def face_of(values: AnyArray, side: Side) -> AnyArray:
-    """Return a view of the entries of `values` (ni, nj, ...) on a side of the block."""
+    """Return a view of the entries of `values` (ni, nj, ...) or (ni, nj, nk, ...) at the nodes of a side."""
     axis, end = PLACES[side]
     return values[(slice(None),) * axis + (end,)]  # type: ignore[return-value]
 
 
 def part_of(values: AnyArray, span: Range) -> AnyArray:
-    """Return a view of `values` (n, m, ...) at the nodes of `span`, first and last included."""
+    """Return a view of the entries of `values` (n, ...) or (n, m, ...) of a side in the range `span`."""
     for axis, (first, last) in enumerate(span):
         values = values[(slice(None),) * axis + (slice(first, last + 1),)]  # type: ignore[assignment]
     return values

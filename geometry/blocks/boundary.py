@@ -127,13 +127,16 @@ class Boundary(Connected):
 
     @cached_property
     def corners(self) -> Mapping[str, Indices]:
-        """Indices of the corners on each edge, without its two ends (`meshonet.geometry.polygon.corners`)."""
+        """Indices of the corners inside each edge, by side; the two ends are left out (`polygon.corners`)."""
         return {side: read_only(find_corners(getattr(self, side))) for side in SIDES}
 
     def grid(
         self, nodes: Floats, provenance: Mapping[str, Any] | None = None, *, finite: bool = False
     ) -> Grid:
-        """Return the grid of `nodes` (ni, nj, 2) inside this boundary, with its patches and connections."""
+        """Return the grid of `nodes` (ni, nj, 2), with the patches and connections of this boundary.
+
+        With `finite` the nodes are known to be finite, and are not checked.
+        """
         block = Block(nodes, finite)
         return Grid((block,), self.patches, self.connections, self.name, provenance or {})
 

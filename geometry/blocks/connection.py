@@ -68,7 +68,10 @@ class Motion:
         return angle, solve(np.eye(2) - turn, self.translation) if angle else np.zeros(2)
 
     def alike(self, other: Motion, tolerance: float) -> bool:
-        """Return whether two motions are equal, to `tolerance` of the shifts (of 1 if they rotate)."""
+        """Return whether two motions are equal to a relative `tolerance`.
+
+        Differences are compared with the length of the shifts, of rotations with 1.
+        """
         size = max(1e-300, *map(abs, (*self.shift, *other.shift, float(bool(self.turn or other.turn)))))
         dimension = max(2, *(len(rows) for rows in (self.shift, self.turn, other.shift, other.turn)))
         frame = size * np.concatenate([np.zeros((1, dimension)), np.eye(dimension)])
@@ -84,7 +87,10 @@ class Motion:
 
 @dataclass(frozen=True)
 class Connection:
-    """A part of one side and a part of another, the donor, with the same nodes; index ranges ascend."""
+    """A part of one side of a block and a part of another side, the donor, whose nodes coincide.
+
+    Index ranges ascend.
+    """
 
     block: int
     side: Side
@@ -93,7 +99,9 @@ class Connection:
     donor_side: Side
     donor_range: Range
     orientation: tuple[int, ...]
-    """The donor's direction, from 1, along each direction of the side; negative if they are opposite."""
+    """For each direction of the side the number (1 or 2) of the same direction of the donor, negative if
+    opposite.
+    """
     transform: Motion | None = None
     """Motion from the nodes of the side to those of the donor, if they are periodic."""
 
@@ -103,7 +111,10 @@ class Connection:
         return (self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range)
 
     def pairs(self, values: Sequence[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return views (n, 1) or (n, m, 1) of `values` (one array per block) at both sides, in one order."""
+        """Return views (n, 1) or (n, m, 1) of `values`, one array per block, at the side and at the donor.
+
+        Both views have the order of the side.
+        """
 
         def face(block: int, side: Side) -> NDArray[Any]:
             return np.asarray(face_of(values[block], side)[..., None])
@@ -111,7 +122,10 @@ class Connection:
         return replace(self, transform=None).nodes(face)
 
     def nodes(self, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return the nodes of both sides in one order, (n, d) or (n, m, d); `transform` moves the first."""
+        """Return the nodes of the side and of the donor, both in the order of the side.
+
+        Both arrays are (n, d) or (n, m, d); the nodes of the side are moved by `transform`.
+        """
         own = part_of(face(self.block, self.side), self.range)
         donor = part_of(face(self.donor, self.donor_side), self.donor_range)
         if len(self.orientation) != own.ndim - 1:
@@ -150,12 +164,14 @@ class Connection:
         return f"the connection of {own} of block {self.block} to {donor} of block {self.donor}"
 
     def stretches(self, block: int) -> list[tuple[Side, int, int]]:
-        """Return side, first and last node of each part of a planar block's boundary that it connects."""
+        """Return the parts of the boundary of a planar block that are joined: side, first and last node."""
         return [(side, *nodes[0]) for number, side, nodes in self.ends if number == block]
 
 
 def cells_at(connection: Connection, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return views (n, d) or (n, m, d) of the values of the cells at both sides, in one order.
+    """Return views (n, d) or (n, m, d) of the values of the cells next to the side and next to the donor.
+
+    Both have the order of the side.
 
     `face` returns the values of the cells at a side of a block.
     """
@@ -216,7 +232,10 @@ def wake_cells(connections: Sequence[Connection]) -> int:
 
 
 def wake_nodes(south: Floats) -> int:
-    """Return how many first nodes of `south` (ni, 2) are repeated in reverse at its end; 0 if all are."""
+    """Return the number of nodes at the start of `south` (ni, 2) that are repeated in reverse at its end.
+
+    0 if all nodes are repeated.
+    """
     half = south[: len(south) // 2]
     differs = (half != south[::-1][: len(half)]).any(axis=1)
     return int(np.argmax(differs)) if differs.any() else 0
@@ -261,5 +280,8 @@ class Connected:
 
     @property
     def wake(self) -> int:
-        """Number of wake cells at each end of south: up to this i, node (i, 0) is node (ni-1-i, 0)."""
+        """Number of wake cells at each end of south.
+
+        For i up to this number, nodes (i, 0) and (ni-1-i, 0) coincide.
+        """
         return wake_cells(self.connections)

@@ -28,7 +28,7 @@ from meshonet.geometry.errors import InputError
 
 MOST_COPIES = 10_000
 _SAME = 1e-9
-"""Relative difference that is rounding: of two motions, and of a whole turn from a number of periods."""
+"""Relative difference that counts as rounding: of two motions, or of a whole turn and a number of periods."""
 
 
 def copied(grid: Grid, copies: int | Sequence[int]) -> Grid:
@@ -39,12 +39,13 @@ def copied(grid: Grid, copies: int | Sequence[int]) -> Grid:
     grid : Grid
         A grid with one period, a rotation or a translation, or with several translations.
     copies : int or sequence of int
-        How many along each period; at most as many as fill a whole turn.
+        Number of copies along each period; at most as many as fill a whole turn.
 
     Raises
     ------
     InputError
-        A grid that is not periodic, or in other ways than there are numbers; a number out of its range.
+        A grid that is not periodic; more or fewer numbers than the grid has periods; a number out of its
+        range.
     """
     counts = (copies,) if isinstance(copies, int) else tuple(copies)
     if counts == (1,):

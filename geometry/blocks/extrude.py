@@ -34,11 +34,12 @@ BACK, FRONT = "back", "front"
 
 
 def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
-    """Return `grid`, which is planar, with its nodes repeated at each z of `heights`, in its unit.
+    """Return a planar `grid` as volumes, with its nodes repeated at each z of `heights`.
 
     `heights` are at least two and increase. Patches and connections extend over all heights. A body that is a
-    wall by its position alone gets the kind wall. Bottoms are the patch `BACK` and tops the patch `FRONT`,
-    both symmetry planes; a patch of the plane with one of these names is renamed.
+    wall only because of its position gets the kind wall. The sides `bottom` become the patch ``back`` and the
+    sides `top` the patch ``front``, both symmetry planes; a patch of `grid` with one of these names is
+    renamed.
 
     Raises InputError: blocks that are not planar, fewer than two heights, heights that do not increase.
     """
@@ -57,11 +58,12 @@ def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
 def thickened(
     grid: Grid, nodes: Sequence[Floats], ends: tuple[End, End] | None, motion: Motion | None = None
 ) -> Grid:
-    """Return a planar grid as volumes, given the finite nodes (ni, nj, nk, 3) of each block.
+    """Return volumes with the patches and connections of a planar grid.
 
-    Patches and connections extend over all planes of nodes. `ends` are the name and the kind of the patches
-    at the first and at the last plane; None connects the first plane of each block with its last, to which
-    `motion` moves it where they are not the same.
+    `nodes` are the finite nodes (ni, nj, nk, 3) of each block. Patches and connections extend over all planes
+    of nodes. `ends` are name and kind of the patches at the first and at the last plane. If `ends` is None,
+    the first plane of each block is connected to its last plane; `motion` is the periodic motion from the
+    first to the last, None if they coincide.
 
     Raises InputError: blocks that are not planar; nodes that differ where blocks are connected.
     """
@@ -82,7 +84,7 @@ def thickened(
 
 
 def plane_of_extruded(grid: Grid) -> Grid | None:
-    """Return the planar grid of which `extruded` makes `grid`; None if it cannot have been made so."""
+    """Return the planar grid from which `extruded` would make `grid`; None if there is no such grid."""
     if any(block.nodes.shape[3:] != (3,) for block in grid.blocks):
         return None
     z = grid.blocks[0].nodes[0, 0, :, 2]
@@ -131,7 +133,7 @@ def _renamed(patches: Sequence[Patch], ends: Sequence[str]) -> list[Patch]:
 
 
 def thick(each: Connection, planes: int) -> Connection:
-    """Return a connection of planar blocks over all planes."""
+    """Return a connection of planar blocks, extended over `planes` planes of nodes."""
     whole = (0, planes - 1)
     ranges = (*each.range, whole), (*each.donor_range, whole)
     motion = each.transform

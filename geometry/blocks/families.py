@@ -29,7 +29,7 @@ class Member:
 
 
 def joins_whole_sides(grid: Grid, connection: Connection) -> bool:
-    """Return whether a connection joins a whole side to a whole side."""
+    """Return whether a connection joins all nodes of one side to all nodes of another."""
     return all(
         span == tuple((0, count - 1) for count in face_counts(grid.blocks[block].counts, side))
         for block, side, span in connection.ends

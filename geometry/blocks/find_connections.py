@@ -24,11 +24,11 @@ from meshonet.geometry.blocks.meeting_sides import meeting_sides
 from meshonet.geometry.errors import InputError
 
 TOLERANCE = 1e-6
-"""Nodes are the same up to this distance, over the length of the shorter of two edges."""
+"""Largest distance of coincident nodes, divided by the length of the shorter of two edges."""
 Stretch: TypeAlias = tuple[int, Side, int, int]
-"""Block, side, first and last node of a part of its boundary."""
+"""Part of the boundary of a planar block: block, side, first and last node."""
 Part: TypeAlias = tuple[int, Side, Range]
-"""Block, side, and first and last node along each of its directions, of a part of the boundary."""
+"""Part of a side: block, side, and first and last node along each direction of the side."""
 
 
 def find_connections(
@@ -36,11 +36,11 @@ def find_connections(
 ) -> tuple[Connection, ...]:
     """Return the connections of right-handed `blocks`, sorted by block and side.
 
-    Nodes count as equal up to a distance of `tolerance` edge lengths, or of the last digit that coordinates
-    were rounded to (`rounding`), if that is more. `with_equal_nodes`
-    (`meshonet.geometry.blocks.shared_nodes`) then makes them bitwise equal. `without` lists parts of sides
-    that are known to be no interface. Where more than two sides coincide, a block is joined to itself first,
-    then to the next.
+    Nodes count as equal if their distance is at most `tolerance` edge lengths, or at most one unit of the
+    last digit of the coordinates (`rounding`), whichever is larger. `with_equal_nodes`
+    (`meshonet.geometry.blocks.shared_nodes`) can then make these nodes bitwise equal. `without` lists parts
+    of sides that are known to be no interface. Where more than two sides coincide, two sides of one block are
+    joined first, then the sides of successive blocks.
 
     Raises InputError: planar blocks mixed with blocks in space.
     """

@@ -42,14 +42,15 @@ if TYPE_CHECKING:
 
 _COUNTS = attrgetter("counts")
 _MOST_SHOWN = 6
-"""Blocks whose sizes are in the text of a grid."""
+"""Largest number of blocks whose sizes are listed in the text form of a grid."""
 
 
 @dataclass(frozen=True)
 class Origin:
-    """Names and values of the parameters that a sample was made from, and ``train``, ``test`` or nothing.
+    """Where a sample of a dataset comes from.
 
-    `title` is what its file calls the shape, where its name is that of the file.
+    Names and values of the parameters of its shape; `split`, which is ``train``, ``test`` or empty; and
+    `title`, the name of the shape in its file, if the name of the sample is that of the file.
     """
 
     parameters: tuple[tuple[str, float], ...] = ()
@@ -157,12 +158,15 @@ class Grid(Connected):
 
     @property
     def form(self) -> Form:
-        """Form of its blocks: ``plane`` (ni, nj, 2), ``surface`` (ni, nj, 3), ``volume`` (ni, nj, nk, 3)."""
+        """Form of the blocks: ``plane`` (ni, nj, 2), ``surface`` (ni, nj, 3), ``volume`` (ni, nj, nk, 3)."""
         return form_of(self.blocks[0].nodes)
 
     @cached_property
     def nodes(self) -> Floats:
-        """(ni, nj, 2) nodes of a grid of one block."""
+        """Nodes of a grid of one block: (ni, nj, 2), on a surface (ni, nj, 3), in a volume (ni, nj, nk, 3).
+
+        Raises InputError: a grid of several blocks.
+        """
         if len(self.blocks) != 1:
             remedy = "take the nodes of its blocks one by one"
             raise InputError(f"a grid of {len(self.blocks)} blocks", remedy)
@@ -170,22 +174,28 @@ class Grid(Connected):
 
     @property
     def ni(self) -> int:
-        """Number of nodes along xi, of a grid of one block."""
+        """Number of nodes along xi of a grid of one block. Raises InputError: several blocks."""
         return int(self.nodes.shape[0])
 
     @property
     def nj(self) -> int:
-        """Number of nodes along eta, of a grid of one block."""
+        """Number of nodes along eta of a grid of one block. Raises InputError: several blocks."""
         return int(self.nodes.shape[1])
 
     @property
     def x(self) -> Floats:
-        """(ni, nj) x coordinates, C-contiguous, a view."""
+        """The x coordinates of the nodes of a grid of one block: (ni, nj), in a volume (ni, nj, nk).
+
+        A C-contiguous view. Raises InputError: a grid of several blocks.
+        """
         return self.nodes[..., 0]
 
     @property
     def y(self) -> Floats:
-        """(ni, nj) y coordinates, C-contiguous, a view."""
+        """The y coordinates of the nodes of a grid of one block: (ni, nj), in a volume (ni, nj, nk).
+
+        A C-contiguous view. Raises InputError: a grid of several blocks.
+        """
         return self.nodes[..., 1]
 
     def __repr__(self) -> str:
@@ -198,7 +208,7 @@ class Grid(Connected):
         return f"Grid({name}{self.topology}, {sizes} nodes, patches {names})"
 
     def face(self, block: int, side: Side) -> Floats:
-        """Return the nodes of a side of a block."""
+        """Return the nodes (n, d) or (n, m, d) of a side of a block."""
         return face_of(self.blocks[block].nodes, side)
 
     def at(self, patch: Patch) -> Floats:
@@ -214,7 +224,7 @@ class Grid(Connected):
         return low, np.max([block.nodes.max(axis=axes) for block in self.blocks], axis=0)
 
     def outer_patches(self) -> list[Patch]:
-        """Return patches that cover the outer boundary, each boundary cell once (`outer_patches`)."""
+        """Return patches that cover the outer boundary of all blocks, each cell once (`outer_patches`)."""
         from meshonet.geometry.blocks.outer_patches import outer_patches
 
         named: list[list[Patch]] = [[] for _ in self.blocks]
@@ -227,7 +237,7 @@ class Grid(Connected):
         return outer
 
     def joined_ranges(self) -> list[list[tuple[Side, Range]]]:
-        """Return for each block the sides, and their index ranges, that are connected."""
+        """Return for each block a list of its connected parts: the side and the index range."""
         inside: list[list[tuple[Side, Range]]] = [[] for _ in self.blocks]
         for each in self.connections:
             for block, side, span in each.ends:
@@ -235,10 +245,11 @@ class Grid(Connected):
         return inside
 
     def walls(self) -> list[Patch]:
-        """Return the patches of kind wall, and those of unknown kind on a body.
+        """Return the patches that are walls: those of kind wall, and on a body those of unknown kind too.
 
         If a four-sided grid of one block has no patch of kind wall, its walls are the patches of unknown kind
-        on south and north. In a grid of several blocks only patches with names of walls are walls.
+        on south and north. In a grid of several blocks only patches of kind wall, or with the name of a wall,
+        are walls.
         """
         outer = self.outer_patches()
         body = ("south",) if self.around_body else ()
@@ -248,7 +259,10 @@ class Grid(Connected):
         return [patch for patch in outer if patch.side in ("south", "north") and patch.may_be_wall]
 
     def with_nodes(self, nodes: Floats, *, finite: bool = False) -> Grid:
-        """Return the same grid with other nodes (ni, nj, 2), as many as before."""
+        """Return the grid of one block with other nodes of the same shape.
+
+        With `finite` the nodes are known to be finite, and are not checked.
+        """
         return replace(self, blocks=(Block(nodes, finite),))
 
     def with_provenance(self, **facts: Any) -> Grid:

@@ -21,14 +21,14 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 
 _OTHER: dict[Side, Side] = {"west": "east", "east": "west"}
-"""Sides that change places where i is reversed."""
+"""Sides that are exchanged if i is reversed."""
 
 
 def with_image(half: Grid) -> Grid:
     """Return a grid in space and its mirror image in z = 0, joined at its patches of kind symmetry.
 
-    These lie in z = 0 exactly. The blocks of the image follow those of the half, in the same order; the grid
-    is not periodic. Names of its blocks get the ending ``-image``.
+    The nodes of these patches lie in z = 0 exactly. The blocks of the image follow the blocks of the half, in
+    the same order; their names get the ending ``-image``. The half must not be periodic.
     """
     step, image = len(half.blocks), with_i_reversed(half)
     blocks = (*half.blocks, *map(_mirrored, image.blocks))
@@ -55,9 +55,9 @@ def with_image(half: Grid) -> Grid:
 
 
 def with_i_reversed(grid: Grid) -> Grid:
-    """Return a grid with i of its blocks running the other way, which changes its handedness.
+    """Return a grid with the direction of i reversed in all blocks, which changes their handedness.
 
-    It is not periodic.
+    The grid must not be periodic.
     """
     counts = [block.counts for block in grid.blocks]
     patches, joints = [], []

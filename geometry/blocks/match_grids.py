@@ -23,9 +23,9 @@ class GridMatcher:
         self._passed: list[Grid] = []
 
     def match(self, name: str) -> Grid:
-        """Return the reference grid called `name`, or, paired by order, the next one.
+        """Return the partner of the next grid, which is called `name`.
 
-        Raises InputError: there is none.
+        Raises InputError: the reference set has no grid of this name, or no further grid.
         """
         if self._pairing == "auto":
             self._pairing = self._decided(name)

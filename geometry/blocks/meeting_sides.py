@@ -31,16 +31,18 @@ from meshonet.geometry.blocks.outer_patches import JOINED, rectangles
 AROUND: Mapping[Side, int] = {"west": -1, "east": 1, "south": 1, "north": -1}
 """Whether the nodes of a side of a planar block run counter-clockwise around it."""
 _DIRECTION = np.array([0.5403023, 0.6710117, 0.5076571])
-"""Cells are sorted along this direction, in which few grids have many cells at the same position."""
+"""Direction along which cells are sorted. It is oblique, so that hardly any grid has many cells at one
+position.
+"""
 _MOST = 0.25
 """Nodes farther apart than this fraction of an edge are different, whatever their rounding."""
 _FLAT = 1e-12
-"""Area of a cell, over the square of its longest edge, up to which it counts as a line."""
+"""Largest area of a cell that counts as a line, divided by the square of its longest edge."""
 
 _DECIMALS = range(3, 13)  # decimal places that numbers may have been written with
 _DIGITS = range(5, 14)  # significant digits that numbers may have been written with
 _COUNTED = 400
-"""Number of values of which the digits are counted."""
+"""Largest number of values whose digits are counted."""
 
 
 def meeting_sides(

@@ -20,7 +20,7 @@ from meshonet.geometry.blocks.block import PLACES, Range, face_counts
 from meshonet.geometry.blocks.patches import Patch
 
 JOINED, UNNAMED = -2, -1
-"""Owner of cells that are connected to others, and of cells without a patch."""
+"""Owner numbers of connected cells, and of cells without a patch."""
 
 
 def listed_sides(counts: tuple[int, ...]) -> tuple[Side, ...]:
@@ -31,9 +31,11 @@ def listed_sides(counts: tuple[int, ...]) -> tuple[Side, ...]:
 def owners_of(
     patches: Sequence[Patch], counts: tuple[int, ...], inside: Iterable[tuple[Side, Range]], side: Side
 ) -> NDArray[np.intp]:
-    """Return the index in `patches` of the patch of each cell (n,) or (n, m) at a side; the last of several.
+    """Return for each cell (n,) or (n, m) at a side the index in `patches` of its patch.
 
-    Cells in the connected sides and ranges `inside` are `JOINED`, cells without a patch `UNNAMED`.
+    If there are several, the last.
+
+    Cells in the connected sides and ranges `inside` get `JOINED`, other cells without a patch `UNNAMED`.
     """
     nodes = face_counts(counts, side)
     owners = np.full([n - 1 for n in nodes], UNNAMED, dtype=np.intp)
@@ -54,8 +56,8 @@ def outer_patches(
 ) -> list[Patch]:
     """Return patches that cover the outer boundary of block number `block`, each boundary cell once.
 
-    Where `patches` overlap the later one counts; cells without one get a patch with the name of their side.
-    `counts` are the numbers of nodes along each direction, `inside` the connected sides and ranges.
+    Where `patches` overlap, the later patch counts; cells without a patch get one with the name of their
+    side. `counts` are the numbers of nodes along each direction, `inside` the connected sides and ranges.
     """
     own = [patch for patch in patches if patch.block == block]
     inside = list(inside)

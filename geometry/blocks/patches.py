@@ -22,7 +22,7 @@ _SIGNS: tuple[tuple[Kind, str], ...] = (
     ("periodic", "periodic"),
     ("interface", "interface"), ("interface", "wake"),
 )  # fmt: skip
-"""Kinds of boundary, and words in the names of their patches; the first that matches counts."""
+"""Kinds of boundary with the words that mark them in names of patches; the first kind that matches counts."""
 
 
 def kind_of(name: str, otherwise: Kind = "other") -> Kind:
@@ -39,7 +39,7 @@ def kind_of(name: str, otherwise: Kind = "other") -> Kind:
 
 
 def may_be_wall(name: str, kind: Kind = "other") -> bool:
-    """Return whether a patch may have layers: neither its kind nor its name says that it is no wall.
+    """Return whether a patch may be a wall, and have layers: neither its kind nor its name says the contrary.
 
     >>> [may_be_wall(name) for name in ("wall", "ceiling", "inlet", "axis")]
     [True, True, False, False]
@@ -71,16 +71,16 @@ class Patch:
 
     @property
     def place(self) -> tuple[int, int]:
-        """The direction normal to its side, and the end of it (`meshonet.geometry.blocks.block.PLACES`)."""
+        """The index direction normal to the side, and its end (`meshonet.geometry.blocks.block.PLACES`)."""
         return PLACES[self.side]
 
     @property
     def may_be_wall(self) -> bool:
-        """Whether neither its kind nor its name says that it is no wall."""
+        """Whether the patch may be a wall: neither its kind nor its name says the contrary."""
         return may_be_wall(self.name, self.kind)
 
     def range(self, counts: tuple[int, ...]) -> Range:
-        """Return the range of its nodes along each direction of its side, in a block with `counts` nodes."""
+        """Return the range of nodes along each direction of the side, in a block with `counts` nodes."""
         along: Range = ((self.start, self.stop),)
         return along if len(counts) == 1 else (*along, self.across or (0, counts[1] - 1))
 

@@ -23,10 +23,13 @@ _ACROSS: tuple[Side, Side] = ("west", "east")
 
 
 def resample_edge(nodes: Floats, m: int, *, closed: bool) -> Floats:
-    """Return `m` nodes (m, 2), at least 2, on the curve through `nodes` (n, 2), distributed like these.
+    """Return `m` nodes (m, 2), at least 2, on the curve through `nodes` (n, 2), distributed as these are.
 
-    Arc length as a function of index / (n - 1) is preserved. Corners of the curve stay nodes as far as `m`
-    suffices; the end nodes are kept bitwise.
+    The arc length, as a function of the index divided by the number of cells, is preserved. Corners of the
+    curve stay nodes if `m` is large enough; the end nodes are kept bitwise. A `closed` edge repeats its first
+    node at the end, before and after.
+
+    Raises InputError: the errors of `Curve`.
 
     >>> resample_edge(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), 5, closed=False)[:, 0].tolist()
     [0.0, 0.5, 1.0, 1.5, 2.0]
@@ -51,8 +54,8 @@ def resample_edges(
 ) -> dict[Side, Floats]:
     """Return the four `edges` of a block resampled to ni nodes along xi and nj along eta.
 
-    The two wakes, of `wake` cells at each end of south, share their nodes; they keep their fraction of the
-    cells.
+    South has a wake of `wake` cells at each end. Both share their nodes, and they keep their fraction of the
+    number of cells.
 
     Raises InputError: too few nodes for a closed edge, or for the wall between the two sides of a wake.
     """
@@ -101,9 +104,9 @@ def resample_patches(
 
 
 def patches_in_place(had: Boundary, has: Boundary) -> tuple[Patch, ...]:
-    """Return the patches of `had` at the nodes of `has`, the same edges with other nodes.
+    """Return the patches of the boundary `had` for `has`, which has the same edges with other nodes.
 
-    They end at the nodes nearest to their ends, by the part of the length of the side.
+    The ends of a patch move to the nearest nodes, measured by the fraction of the length of the side.
     """
 
     def moved(patch: Patch) -> Patch:

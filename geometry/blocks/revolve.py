@@ -27,13 +27,13 @@ from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError
 
 WEDGE_DEG = 10.0
-"""Largest angle of a wedge: beyond it the faces of one cell are far from the arc."""
+"""Largest angle of a wedge, which is one cell thick, in degrees."""
 CELL_DEG = 4.0
-"""Angle of a cell of a sector, at most, unless its planes are counted."""
+"""Largest angle of a cell of a sector if the number of planes is not given, in degrees."""
 AXIS = "axis"
 """Patch of sides that lie on the axis."""
 FLOWS: tuple[End, End] = (("inlet", "inlet"), ("outlet", "outlet"))
-"""Ends of a sector that is flown through along the turn."""
+"""Name and kind of the two ends of a sector through which the fluid flows about the axis."""
 _ON_AXIS = 1e-12  # over the size of the grid: nodes nearer to the axis are on it
 _MOST_PLANES = 10_000  # more is taken for a typing error
 _LEAST_DEG = 1e-3  # thinner cells lose their digits beside the radius
@@ -88,7 +88,7 @@ class Revolution:
 
     @property
     def closed(self) -> bool:
-        """Whether it is a full revolution, in which the last plane is the first."""
+        """Whether this is a full revolution, in which the last plane coincides with the first."""
         return self.degrees == 360.0
 
     @property
@@ -100,7 +100,7 @@ class Revolution:
 
     @property
     def wedge(self) -> bool:
-        """Whether it is a wedge: a single cell, and thin enough."""
+        """Whether this is a wedge: a single cell, of at most 10 degrees."""
         return self.count == 2 and self.degrees <= WEDGE_DEG
 
     @property
@@ -123,23 +123,29 @@ def revolution(degrees: float | None, planes: int | None, axis: AxisLine | None)
 
 
 class AxisFrame(NamedTuple):
-    """A point of the axis, its direction, and the direction (2,) from it to the grid."""
+    """Coordinates about an axis.
+
+    A point of the axis, its direction, and the direction from the axis to the grid, each (2,).
+    """
 
     point: Floats
     along: Floats
     away: Floats
     slack: float = 0.0
-    """Distance from the axis at which nodes are on it."""
+    """Largest distance of nodes that count as on the axis."""
 
     def places(self, nodes: Floats, angles: Floats) -> Floats:
-        """Return nodes (..., 3): planar ones (..., 2) rotated by `angles`, which broadcast with them."""
+        """Return planar nodes (..., 2) rotated about the axis by `angles` in radians, as nodes (..., 3).
+
+        The shape of `angles` broadcasts with the leading axes of `nodes`.
+        """
         s, r = (((nodes - self.point) * way).sum(axis=-1) for way in (self.along, self.away))
         r = np.where(np.abs(r) <= self.slack, 0.0, r)
         flat = self.point + self.along * s[..., None] + self.away * (r * cos(angles))[..., None]
         return np.concatenate([flat, (r * sin(angles))[..., None]], axis=-1)
 
     def motion(self, angle: float) -> Motion:
-        """Return the rotation by an angle in radians."""
+        """Return the rotation about the axis by an angle in radians."""
         along, away = np.append(self.along, 0.0), np.append(self.away, 0.0)
         up, c, s = np.array([0.0, 0.0, 1.0]), math.cos(angle), math.sin(angle)
         turn = (
@@ -154,7 +160,7 @@ class AxisFrame(NamedTuple):
 
 
 def frame_of(points: Floats, axis: AxisLine) -> AxisFrame:
-    """Return the frame of an axis that lies beside `points` (n, 2).
+    """Return the frame of an axis; all `points` (n, 2) must lie on one side of it.
 
     Raises InputError: points on both sides of the axis, or all on it.
     """
@@ -176,10 +182,11 @@ def frame_of(points: Floats, axis: AxisLine) -> AxisFrame:
 def revolved(grid: Grid, turn: Revolution, ends: tuple[End, End] | None = None) -> Grid:
     """Return a planar grid revolved about an axis.
 
-    The ends of a wedge are the patches ``wedge1`` and ``wedge2``. The ends of a sector are periodic, or the
-    patches `ends`. A full revolution is connected to itself.
+    The ends of a wedge are the patches ``wedge1`` and ``wedge2``. The ends of a sector are periodic, or
+    patches with the names and kinds `ends`. A full revolution is connected to itself.
 
-    Raises InputError: blocks that are not planar, periodic sides, a grid on both sides of the axis.
+    Raises InputError: blocks that are not planar; periodic connections; nodes on both sides of the axis, or
+    all on the axis.
     """
     planar(grid)
     if any(each.transform for each in grid.connections):
@@ -216,7 +223,9 @@ def _with_axis(grid: Grid, frame: AxisFrame) -> Grid:
 
 
 def bent(nodes: Sequence[Floats], turn: Revolution) -> list[Floats]:
-    """Return volumes (ni, nj, nk, 3) bent about an axis: z becomes an angle, its whole range `turn.degrees`.
+    """Return volumes (ni, nj, nk, 3) bent about the axis of `turn`.
+
+    z becomes the angle about the axis; the range of z over all `nodes` becomes `turn.degrees`.
 
     Raises InputError: nodes on both sides of the axis.
     """

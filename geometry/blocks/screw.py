@@ -13,15 +13,15 @@ from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import solve
 
 _NEARLY_HALF = 3.1
-"""Angle beyond which the antisymmetric part of a rotation is too small to give the axis."""
+"""Angle in radians above which the antisymmetric part of a rotation matrix is too small to give the axis."""
 
 
 class Screw(NamedTuple):
-    """A rotation by `angle` radians about the unit `axis` (3,) through `centre` (3,), then `shift` (3,).
+    """A rotation by `angle` radians about the unit `axis` (3,) through `centre` (3,), then a `shift` (3,).
 
-    Without a rotation the angle is 0, the axis z and the centre the origin. With one, the shift is along the
-    axis and the centre is the point of the axis nearest to the origin. `angles` (3,) are those of successive
-    rotations about x, y and z.
+    If there is a rotation, the shift is along the axis, and the centre is the point of the axis nearest to
+    the origin. If there is none, the angle is 0, the axis z and the centre the origin. `angles` (3,) are the
+    angles of successive rotations about x, y and z that give the same rotation.
     """
 
     angle: float

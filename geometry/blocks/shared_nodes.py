@@ -20,7 +20,7 @@ from meshonet.geometry.blocks.connection import Connection
 from meshonet.kernels._native import joined_classes
 
 _PASSES = 9
-"""Periodic sides that end on other ones need one more pass each."""
+"""Number of passes: periodic sides that end on other periodic sides need one more pass each."""
 
 
 def shared_nodes(
@@ -44,7 +44,10 @@ def shared_nodes(
 def numbered(
     counts: Sequence[tuple[int, ...]], order: Literal["C", "F"] = "C"
 ) -> tuple[Indices, list[Indices]]:
-    """Return the offsets of the blocks in a list of all their nodes, and each block's node numbers in it."""
+    """Return the number of the first node of each block, with the total, and the node numbers of each block.
+
+    Nodes are numbered block after block; joined nodes have several numbers.
+    """
     ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
     parts = zip(ends, ends[1:], counts, strict=False)
     return ends, [np.arange(a, b).reshape(n, order=order) for a, b, n in parts]
@@ -53,7 +56,7 @@ def numbered(
 def node_table(
     blocks: Sequence[Block], connections: Sequence[Connection]
 ) -> tuple[Floats, tuple[Indices, ...]]:
-    """Return all nodes (n, d) of `blocks`, joined ones once, and the number of each block's nodes in them."""
+    """Return all nodes (n, d) of `blocks`, joined nodes once, and the numbers of the nodes of each block."""
     numbers = shared_nodes([block.counts for block in blocks], connections)
     if len(blocks) == 1 and not connections:
         return np.ascontiguousarray(blocks[0].nodes.reshape(-1, blocks[0].nodes.shape[-1])), numbers
@@ -66,7 +69,7 @@ def node_table(
 def places_among(
     pairs: Sequence[tuple[Indices, Indices]],
 ) -> tuple[Indices, list[tuple[Indices, Indices]]]:
-    """Return the distinct numbers in `pairs`, ascending, and the pairs as indices (n,) into these."""
+    """Return the distinct numbers in `pairs`, ascending, and the pairs as indices into these numbers."""
     flat = [nodes.ravel() for pair in pairs for nodes in pair]
     used, where = np.unique(np.concatenate(flat), return_inverse=True)
     parts = np.split(where.ravel(), np.cumsum([len(nodes) for nodes in flat])[:-1])
@@ -86,8 +89,8 @@ def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indic
 def with_equal_nodes(blocks: Sequence[Block], connections: Sequence[Connection]) -> tuple[Block, ...]:
     """Return `blocks` with the nodes that `connections` join made bitwise equal.
 
-    Joined nodes take the coordinates of the first of them; the second of two periodic sides is the first
-    moved.
+    Joined nodes get the coordinates of the first node. Nodes of the second of two periodic sides get the
+    coordinates of the first side, moved by the periodic motion.
     """
     if not connections:
         return tuple(blocks)

@@ -89,7 +89,7 @@ class SixFaces:
         return edge_of(getattr(self, side), side, second)
 
     def steps_inwards(self, side: Side, second: Side) -> Floats:
-        """Return the steps (n, 3) from the first to the second row of a face at a second, in index order."""
+        """Return the vectors (n, 3) from the edge of a face with the face `second` to its next row."""
         axis, end = PLACES[second]
         rows = np.moveaxis(getattr(self, side), axis - (axis > PLACES[side][0]), 0)
         return np.asarray(rows[1] - rows[0] if end == 0 else rows[-1] - rows[-2])
@@ -104,7 +104,8 @@ class SixFaces:
     def edges_along(self, axis: int) -> list[Floats]:
         """Return the four block edges (n, 3) along a direction.
 
-        They are at the (low, low), (high, low), (low, high) and (high, high) ends of the other two.
+        They lie at the (low, low), (high, low), (low, high) and (high, high) ends of the other two
+        directions.
         """
         first, second = (
             [side for side in FACES if PLACES[side][0] == each] for each in range(3) if each != axis
@@ -173,7 +174,7 @@ def edge_of(face: Floats, side: Side, second: Side) -> Floats:
 
 
 def share_edges(faces: dict[Side, Floats]) -> None:
-    """Make shared edges bitwise equal, in place: each takes the nodes of the face that comes first."""
+    """Make shared edges bitwise equal, in place: each edge gets the nodes of the first of its two faces."""
     for side in FACES:
         faces[side] = np.array(faces[side])
     for side, second in edges():

@@ -25,11 +25,11 @@ _NEAR = 0.2  # largest distance between matching corners, over the shortest side
 def six_faces(grid: Grid) -> SixFaces:
     """Return the boundary of a volume: the outer faces of one block, or six patches in any order.
 
-    Where shared edges differ by no more than a millionth of the size, the second takes the nodes of the
-    first, and a note says so.
+    If nodes of shared edges differ by at most 1e-6 of the diagonal of the bounding box, the second patch gets
+    the nodes of the first, with a note.
 
-    Raises InputError: neither one block nor six patches; patches that do not close, with the edge and its
-    gap.
+    Raises InputError: neither one block nor six patches; patches that do not close (the message gives the
+    edge and the width of the gap).
     """
     volumes = [block for block in grid.blocks if len(block.counts) == 3]
     if len(grid.blocks) == 1 and volumes:
@@ -48,8 +48,9 @@ def matched_patches(grid: Grid) -> SixFaces:
     Patches in the order west, east, south, north, bottom, top keep their sides and directions; otherwise the
     first patch becomes the bottom. The volume is right-handed.
 
-    Raises InputError: corners that do not meet in threes; shared edges with different node counts, or farther
-    apart than `TOLERANCE`, with the patches and the place.
+    Raises InputError, with the patches and the place: corners at which not three patches meet; shared edges
+    with different node counts, or with nodes that differ by more than 1e-6 of the diagonal of the bounding
+    box.
     """
     patches = [block.nodes for block in grid.blocks]
     vertices = _vertices(patches)

@@ -29,10 +29,10 @@ from meshonet.geometry.polygon.corners import find_corners
 
 _SIDES: dict[Side, Side] = {"east": "south", "west": "north", "south": "west", "north": "east"}
 _LENGTHS = "wall_spacing", "spacing_"
-"""Beginnings of the names of facts in a grid's provenance that are lengths."""
+"""First words of the provenance entries that are lengths."""
 _MOST_SCALED = 1e12  # factor beyond which a change of unit is a mistake
 _COUNTED_BACK = ("south", "north")
-"""Sides whose nodes are counted from their other end once a grid is turned."""
+"""Sides whose nodes are counted from the other end after a grid is turned."""
 
 
 def coarser_grid(grid: Grid, k: int) -> Grid:
@@ -40,8 +40,8 @@ def coarser_grid(grid: Grid, k: int) -> Grid:
 
     In a multi-block grid every block is coarsened, and its connections are kept.
 
-    Raises InputError: `k` does not divide the number of cells along a direction; or the end of a patch or
-    connection, or a corner of the outline of a planar grid, would be lost.
+    Raises InputError: `k` does not divide the number of cells along a direction; an end of a patch or
+    connection, or a corner of the outline of a planar grid, is at a node that is not kept.
     """
     for number, block in enumerate(grid.blocks):
         with in_place(f"block {number}" if grid.topology == "blocks" else ""):
@@ -73,7 +73,7 @@ def coarser_boundary(boundary: Boundary, k: int) -> Boundary:
 
 
 _Corners: TypeAlias = list[tuple[str, int, Floats]]
-"""Names of sides, and indices and places of nodes at which they have corners."""
+"""For each side with corners: its name, and the indices and positions of the corner nodes."""
 
 
 def _corners_of_patches(grid: Grid) -> _Corners:
@@ -167,9 +167,9 @@ def _coarser_patches(patches: tuple[Patch, ...], k: int) -> tuple[Patch, ...]:
 def normalised(grid: Grid) -> Grid:
     """Return `grid` moved and scaled to unit size and, around a body, rotated.
 
-    In an O or C grid the trailing edge, where xi begins on the body, comes to (1, 0), and the node of the
-    body farthest from it to (0, 0). In any other grid the lower left corner of the bounding box comes to the
-    origin and the longest side of the box becomes 1.
+    In an O or C grid the trailing edge, where xi begins on the body, is moved to (1, 0), and the node of the
+    body that is farthest from the trailing edge to (0, 0). In any other grid the lower left corner of the
+    bounding box is moved to the origin, and the longest side of the box gets length 1.
 
     Raises InputError: the body has no length.
     """
@@ -204,7 +204,7 @@ def _normalised_blocks(grid: Grid) -> Grid:
 
 
 def scaled(grid: Grid, factor: float) -> Grid:
-    """Return `grid` in another unit: nodes, periods and heights of first cells times `factor`.
+    """Return `grid` in another unit: nodes, periods and first-cell heights are multiplied by `factor`.
 
     Raises InputError: a factor that is not positive, or beyond 1e-12 to 1e12.
     """
@@ -227,7 +227,7 @@ def scaled(grid: Grid, factor: float) -> Grid:
 
 
 def rotated(grid: Grid, rotation: Motion) -> Grid:
-    """Return a grid of volumes rotated about the origin, with the motions between its periodic sides."""
+    """Return a grid of volumes rotated by `rotation`; the motions between periodic sides are rotated too."""
     back = rotation.inverse()
     blocks = [Block(rotation(block.nodes), finite=True) for block in grid.blocks]
     connections = []
@@ -244,7 +244,7 @@ def rotated(grid: Grid, rotation: Motion) -> Grid:
 
 
 def turned(grid: Grid) -> Grid:
-    """Return `grid` with node (i, j) at (j, ni-1-i), each block by itself, with its patches.
+    """Return `grid` with xi and eta exchanged: node (i, j) of each block becomes node (j, ni-1-i).
 
     Raises InputError: an O or C grid, whose xi runs around the body by definition.
     """

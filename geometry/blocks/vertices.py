@@ -37,7 +37,7 @@ class Vertices:
 
     @cached_property
     def regular(self) -> Bools:
-        """(n,) whether as many cells meet as inside a block, or as on a side of one."""
+        """(n,) whether a node is regular: four cells meet in the interior, two on the boundary."""
         return np.asarray(self.valence == np.where(self.outer, 2, 4))
 
     @cached_property

@@ -32,8 +32,8 @@ class CadEdge:
 
     Parameters
     ----------
-    ends : numbers of its first and last vertex, the same for a closed curve or a pole.
-    points : its points (n, 3) at parameters (n,) from 0 to 1; None for a pole.
+    ends : numbers of the first and the last vertex; they are equal for a closed curve or a pole.
+    points : function from parameters (n,), 0 to 1, to points (n, 3) of the curve; None for a pole.
     """
 
     ends: tuple[int, int]
@@ -48,7 +48,7 @@ class EdgeUse:
     ----------
     edge : number of the edge.
     forward : whether the loop goes along it from its first vertex.
-    trace : coordinates (n, 2) on the face at parameters (n,) of the edge.
+    trace : function from parameters (n,) of the edge to coordinates (n, 2) on the face.
     """
 
     edge: int
@@ -63,9 +63,9 @@ class CadFace:
     Parameters
     ----------
     uses : edges of the outer loop, in order, counter-clockwise in the coordinates on the face.
-    points : points (n, 3) of the surface at coordinates (n, 2).
-    inside_out : whether the product of the derivatives points inwards.
-    holes : number of other loops.
+    points : function from coordinates (n, 2) on the face to points (n, 3) of the surface.
+    inside_out : whether the cross product of the derivatives by the two coordinates points into the body.
+    holes : number of loops besides the outer one.
     """
 
     uses: tuple[EdgeUse, ...]
@@ -80,7 +80,7 @@ class CadModel:
 
     Parameters
     ----------
-    vertices : (n, 3) their positions, in the unit of the file.
+    vertices : (n, 3) positions of the vertices, in the unit of the file.
     edges, faces : in the order of the file.
     name : of the file.
     notes : sentences on what was changed when the file was read.
@@ -100,6 +100,6 @@ class CadModel:
         return extent_of(np.concatenate([self.vertices, *curves]))
 
     def boundary(self, sampling: Sampling) -> Boundary:  # noqa: ARG002 - as all shapes have it
-        """Raise InputError: the faces of a CAD file have no four edges in the plane."""
+        """Raise InputError: the faces of a CAD file do not have the four edges of a plane domain."""
         problem = "is a CAD file, and its faces are not a boundary in the plane"
         raise InputError(problem, "make patches first: meshonet sample-boundary FILE -o surface.xyz")

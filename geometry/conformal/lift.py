@@ -37,7 +37,10 @@ SECOND_PRONG = 0.25  # as in kernels/conformal/lift.c
 
 @dataclass(frozen=True)
 class Corner:
-    """One corner removal: p, q before and P, Q after it, exterior angle k pi; numbers or torch tensors."""
+    """One corner removal: the points p, q before it and P, Q after it, and k, with the exterior angle k pi.
+
+    All are numbers or torch tensors.
+    """
 
     p: Any
     q: Any
@@ -73,7 +76,10 @@ class Lift:
         return self.centre + self.quarter * (zeta + 1.0 / zeta)
 
     def to_strip(self, z: Complexes) -> Complexes:
-        """Return w for points z in order around the body and outside it; phi is continuous along them."""
+        """Return the strip points w (n,) of points z (n,) outside the body, which go around it in order.
+
+        phi is continuous from each point to the next.
+        """
         return _native.lift_to_strip(self, np.ascontiguousarray(z, complex))
 
 
@@ -103,10 +109,13 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
 
 
 def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
-    """Return zeta along the wall; the root changes where a side of a cambered wall crosses the slit."""
+    """Return zeta (n,) along the `wall` (n,), continuous although the wall may cross the slit.
+
+    Where a cambered wall crosses the slit, the other root of Joukowski's equation is taken.
+    """
     return _native.lift_follow(np.ascontiguousarray(wall, complex), centre, quarter)
 
 
 def removable(k: float) -> bool:
-    """Return whether a corner with exterior angle k pi is straightened."""
+    """Return whether the map straightens a corner with exterior angle k pi."""
     return 0.55 < k < 0.995 or 1.03 < k < 1.9

@@ -29,7 +29,9 @@ from meshonet.geometry.spacing.sampling import first_within
 ANGLES = 1024  # points on the circle at which the angle is computed
 ITERATIONS = 28.0  # at most, over the factor of under-relaxation
 RELAXATIONS = 0.7, 0.3, 0.1, 0.03, 0.01
-"""Factors of under-relaxation that are tried: for dpsi/dphi up to e, those below 2 / (1 + e^2) settle."""
+"""Factors of under-relaxation that are tried in turn. If |dpsi/dphi| is at most e, factors below 2 / (1 +
+e^2) converge.
+"""
 DENSE = 640  # points that represent the whole wall
 
 
@@ -39,11 +41,11 @@ def conformal_knots(
     """Return arc lengths (count,) on a closed curve at equal steps of the circle's angle.
 
     The curve is closed and clockwise; arc length 0 is at the first node, which is repeated as the last.
-    `marks` are rising arc lengths in (0, length) that become nodes; the angles between them are divided
-    smoothly. The marks fall on nodes `at` (m,), or on multiples of the first of `steps` for which the first
-    mark is that far.
+    `marks` (m,) are rising arc lengths in (0, length) that become nodes; the angles between them are divided
+    smoothly. The indices of these nodes are `at` (m,), or multiples of the first of `steps` that does not
+    exceed the index of the first mark.
 
-    Raises InputError: the lifted wall is not star-shaped, or the iteration does not settle.
+    Raises InputError: the wall in the strip is not a function of phi, or the iteration does not converge.
     """
     back = None if at is None else count - 1 - at[::-1]
     clockwise = _one_way(curve, marks, count, at, steps, mirror=False)

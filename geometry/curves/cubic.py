@@ -10,8 +10,8 @@ class CubicTable:
     """The cubic spline through `values` (n, ...) at rising `knots` (n,).
 
     Not-a-knot: the third derivative is continuous at the second and at the last but one knot. 2 knots give a
-    straight line, 3 a parabola. Values at knots are bitwise kept. Outside of the knots the first and the last
-    cubic go on. de Boor, A Practical Guide to Splines (1978), chapter IV.
+    straight line, 3 a parabola. Values at knots are bitwise kept. Beyond the first and the last knot the
+    outer cubics are continued. de Boor, A Practical Guide to Splines (1978), chapter IV.
     """
 
     def __init__(self, values: Floats, knots: Floats) -> None:
@@ -19,11 +19,11 @@ class CubicTable:
         self.bends = _bends(values.reshape(len(knots), -1), knots).reshape(values.shape)
 
     def __call__(self, places: Floats) -> Floats:
-        """Return all columns (p, ...) at the same places (p,)."""
+        """Return the values (p, ...) of the spline at `places` (p,)."""
         return cubic_piece(*self._parts(places))
 
     def slope(self, places: Floats) -> Floats:
-        """Return the derivatives (p, ...) of all columns at the same places (p,)."""
+        """Return the derivatives (p, ...) of the spline at `places` (p,)."""
         h, t, start, stop, begin, end = self._parts(places)
         left = 1.0 - t
         return np.asarray(
@@ -38,7 +38,7 @@ class CubicTable:
         return np.concatenate([np.zeros_like(self.values[:1]), np.cumsum(pieces, axis=0)])
 
     def unit_cubics(self) -> Floats:
-        """Return the coefficients (4, n - 1, ...), by rising power of t from 0 to 1 in each piece."""
+        """Return coefficients (4, n - 1, ...) of the pieces as cubics in t, 0 to 1, lowest power first."""
         h = np.diff(self.knots).reshape(-1, *(1,) * (self.values.ndim - 1))
         begin, end = self.bends[:-1] * h**2, self.bends[1:] * h**2
         rise = np.diff(self.values, axis=0)
@@ -55,7 +55,11 @@ class CubicTable:
 
 
 def cubic_piece(h: Floats, t: Floats, start: Floats, stop: Floats, begin: Floats, end: Floats) -> Floats:
-    """Return values at the parts t of pieces h long, from values and second derivatives at both ends."""
+    """Return the values of cubic pieces of length `h` at t, 0 to 1.
+
+    `start` and `stop` are the values at the two ends, `begin` and `end` the second derivatives there. All
+    arrays broadcast.
+    """
     bend = (2.0 - t) * begin + (1.0 + t) * end
     inner = start + t * (stop - start) - t * (1.0 - t) * h**2 / 6.0 * bend
     return np.asarray(np.where(t == 1.0, stop, inner))

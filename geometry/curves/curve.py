@@ -24,10 +24,10 @@ _EDGES = np.arange(_STEPS + 1) / _STEPS  # ends of the parts
 class Curve:
     """A smooth curve bitwise through given points, a cubic per interval (`meshonet.geometry.curves.spline`).
 
-    The `points` (n, 2) are in any unit of length, neighbours distinct, at least 2 (closed: 3); a closed curve
-    may repeat its first at the end. At `corners`, indices of points, the tangent may jump; with None they are
-    detected (`meshonet.geometry.polygon.corners`). Intervals where `straight` (intervals,) is true are
-    straight.
+    There are at least 2 `points` (n, 2), for a closed curve 3, in any unit of length; neighbours must differ.
+    A closed curve may repeat its first point at the end. At `corners`, indices of points, the tangent may
+    jump; if None, corners are detected (`meshonet.geometry.polygon.corners`). Intervals with a true value in
+    `straight` (intervals,) are straight.
 
     Raises InputError: too few points; a point that is not finite or equals its neighbour; a corner out of
     range.
@@ -40,7 +40,7 @@ class Curve:
     """
 
     points: Floats
-    """(n, 2) the given points; a closed curve's first is not repeated."""
+    """(n, 2) the given points; the first point of a closed curve is not repeated."""
     length: float
     """Arc length of the whole curve."""
     knots: Floats
@@ -50,7 +50,7 @@ class Curve:
     corner_index: Indices
     """Indices of the points that are corners."""
     straight: Bools | None
-    """(intervals,) where the curve follows the chord; None is nowhere."""
+    """(intervals,) whether an interval is straight; None: none is."""
 
     def __init__(
         self,
@@ -104,9 +104,10 @@ class Curve:
 
     @property
     def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:
-        """Coefficients (4, n, 2) of the cubics, arc lengths, slopes of their inverse, parts per interval.
+        """Tables for kernels that evaluate the curve (``kernels/geometry/curve.h``).
 
-        For kernels that evaluate the curve themselves (``kernels/geometry/curve.h``).
+        Coefficients (4, n, 2) of the cubics, tables of arc length and of the slopes of its inverse, and the
+        number of parts into which the tables divide each interval.
         """
         return self._cubic, self._table, self._rate_start, self._rate_stop, _STEPS
 
@@ -128,14 +129,20 @@ class Curve:
         return points
 
     def tangent(self, s: Floats) -> Floats:
-        """Return unit tangents (m, 2) at arc lengths `s` (m,); at a corner, of the interval after it."""
+        """Return unit tangents (m, 2) at arc lengths `s` (m,).
+
+        At a corner the tangent of the interval after it.
+        """
         i, t = self._locate(s)
         d = np.empty((len(t), 2))
         curve_slopes(self._cubic, i, t, d)
         return np.asarray(d / np.hypot(d[:, 0], d[:, 1])[:, None])
 
     def polyline(self, places: Floats) -> Floats:
-        """Return the points at parameters `places` in [0, 1) of each interval, and an open curve's end."""
+        """Return the points at the same parameters `places` (k,), in [0, 1), of every interval.
+
+        They are (intervals * k, 2), followed by the end point of an open curve.
+        """
         i = np.arange(self._cubic.shape[1])[:, None]
         t = places[None, :, None]
         a, b, c, d = self._cubic[:, i]

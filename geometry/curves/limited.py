@@ -13,9 +13,9 @@ from meshonet.geometry.curves.monotone import hermite_piece
 class LimitedSpline:
     """The cubic spline through `values` (n, ...) at rising `knots` (n,), with slopes limited to be monotone.
 
-    Slopes at knots are those of `CubicTable`, at most three times those of the straight lines on either side,
-    and 0 at extrema: values in an interval lie between those at its ends. Other than by
-    `monotone.monotone_cubic`, the spline of smooth data is kept where it is monotone.
+    Slopes at knots are the slopes of `CubicTable`, limited to three times the slopes of the straight lines on
+    both sides, and 0 at extrema. Values in an interval therefore lie between the values at its ends. Unlike
+    `monotone.monotone_cubic`, this does not change the spline of smooth data where the spline is monotone.
     """
 
     def __init__(self, values: Floats, knots: Floats) -> None:

@@ -11,7 +11,8 @@ from meshonet.geometry.arrays import Floats
 def inner_slopes(h: Floats, delta: Floats) -> Floats:
     """Return slopes (n-1, ...) at the inner points of n intervals of lengths `h` and slopes `delta`.
 
-    They are weighted harmonic means of `delta`, 0 where its sign changes, so that cubics do not overshoot.
+    They are weighted harmonic means of neighbouring `delta`, and 0 where `delta` changes its sign, so that
+    cubics do not overshoot.
     """
     w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -20,10 +21,10 @@ def inner_slopes(h: Floats, delta: Floats) -> Floats:
 
 
 def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = False) -> Floats:
-    """Return at places `at` (m,) the interpolant through `values` (n, ...) at increasing `x` (n,).
+    """Return values (m, ...) at `at` (m,) of the curve through `values` (n, ...) at increasing `x` (n,).
 
-    It is piecewise cubic, monotone in each interval and flat at extrema; with `linear`, piecewise linear. The
-    slopes at the ends are those of parabolas through three points, limited.
+    The curve is piecewise cubic, monotone in each interval and flat at extrema; with `linear`, piecewise
+    linear. The slopes at the two ends are those of parabolas through three points, limited.
     """
     h = np.diff(x)
     i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(h) - 1)
@@ -39,7 +40,11 @@ def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = Fals
 
 
 def hermite_piece(t: Floats, low: Floats, high: Floats, a: Floats, b: Floats) -> Floats:
-    """Return values at the parts t of pieces, from values at both ends and slopes there, times lengths."""
+    """Return the values of cubic pieces at t, 0 to 1.
+
+    `low` and `high` are the values at both ends, `a` and `b` the derivatives with respect to t there. All
+    arrays broadcast.
+    """
     rise = high - low
     out = low + t * (a + t * ((3 * rise - 2 * a - b) + t * (a + b - 2 * rise)))
     return np.asarray(np.where(t >= 1.0, high, out))

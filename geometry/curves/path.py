@@ -28,7 +28,7 @@ class PathPoints(NamedTuple):
 
 
 class Path(Protocol):
-    """A curve in space, by its arc length."""
+    """A curve in space, parametrised by its arc length."""
 
     length: float
     closed: bool
@@ -45,9 +45,10 @@ _PARTS = 16  # parts of an interval in the table of arc length
 class SplinePath:
     """The cubic spline through `points` (n, 3), with continuous curvature.
 
-    A closed one repeats its first point. The parameter is cumulative chord length; the last intervals of an
-    open one are parabolas. Raises InputError: fewer than two points (closed: four with the repeated one),
-    equal neighbouring points, values that are not finite.
+    A closed path repeats its first point at the end. The parameter of the spline is the cumulative chord
+    length; the first and the last interval of an open path are parabolas. Raises InputError: fewer than two
+    points (of a closed path four, with the repeated point), equal neighbouring points, values that are not
+    finite.
 
     >>> round(SplinePath(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]])).length, 9)
     3.0
@@ -158,7 +159,10 @@ class PiecedPath:
         self._start, self._tangent, self._normal = np.array(starts), np.array(tangents), np.array(normals)
 
     def at(self, s: Floats) -> PathPoints:
-        """Return points, tangents and curvature at arc lengths `s` (n,); at joints, of the piece after."""
+        """Return points, tangents and curvature at arc lengths `s` (n,).
+
+        At a joint those of the piece after it.
+        """
         s = np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length)
         k = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._radius) - 1)
         places = [np.empty((len(s), 3)) for _ in range(3)]

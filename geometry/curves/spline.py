@@ -18,7 +18,7 @@ from meshonet.geometry.polygon.corners import angle_between, turning
 from meshonet.kernels._native import solve_tridiagonal
 
 SLACK = 0.25
-"""How far a tangent may leave the angle between its two chords, as a fraction of nearby turns."""
+"""How far a tangent may lie outside the angle between its two chords, as a fraction of the turns nearby."""
 LEAST_SLACK = np.radians(0.5)  # where chords hardly turn
 LONGEST = 2.0
 """Largest size of a slope: a longer one makes a loop or a cusp."""
@@ -52,10 +52,20 @@ def cubics(start: Floats, chord: Floats, first: Floats, last: Floats) -> Floats:
 
 
 def checked_points(points: Floats, what: str, point: str, dimension: int, *, closed: bool = False) -> Floats:
-    """Return the points (n, d) of a curve as an array; of a `closed` one without a repeated first point.
+    """Return the points (n, d) of a curve as a float64 array.
 
-    `what` and `point` are the words for the curve and a point in messages. Raises InputError: too few points,
-    one that is not finite or equals its neighbour.
+    If a `closed` curve repeats its first point at the end, the repeated point is left out.
+
+    Parameters
+    ----------
+    points : (n, d) points, at least 2, for a closed curve 3 different ones.
+    what : name of the curve in messages.
+    point : name of a point in messages, with a field for its index, such as ``point {}``.
+    dimension : number of coordinates d.
+    closed : whether the curve is closed.
+
+    Raises InputError: an array of another shape; too few points; a point that is not finite or equals its
+    neighbour.
     """
     nodes = np.array(points, dtype=np.float64)
     if nodes.ndim != 2 or nodes.shape[1] != dimension:
@@ -83,12 +93,12 @@ def _chords(points: Floats, *, closed: bool) -> tuple[Floats, Floats]:
 
 
 def open_slopes(chord: Floats, h: Floats, stops: Indices) -> tuple[Floats, Floats]:
-    """Return slopes at both ends of each interval of an open curve, with a separate spline between `stops`.
+    """Return the slopes (intervals, d) at the start and at the end of each interval of an open curve.
 
-    `chord` (intervals, d) are the vectors between points and `h` their lengths; `stops` are indices of
-    points, the first and the last among them. All splines are solved as one tridiagonal system: a stop has
-    two unknowns, one for each side, and their rows are not coupled. End condition: the last interval is a
-    parabola, m_0 + m_1 = 2 delta_0.
+    There is a separate spline between each two neighbouring `stops`, indices of points that include the first
+    and the last. `chord` (intervals, d) are the vectors between points and `h` (intervals,) their lengths.
+    All splines are solved as one tridiagonal system: a stop has two unknowns, one for each side, and their
+    rows are not coupled. The first and the last interval of each spline is a parabola, m_0 + m_1 = 2 delta_0.
     """
     delta = chord / h[:, None]
     doubled = np.zeros(len(h) + 1, dtype=np.intp)
@@ -112,9 +122,10 @@ def open_slopes(chord: Floats, h: Floats, stops: Indices) -> tuple[Floats, Float
 
 
 def periodic_slopes(chord: Floats, h: Floats) -> Floats:
-    """Return slopes (n, d) of the periodic spline at the start of each of the chords (n, d) of lengths `h`.
+    """Return the slopes (n, d) of the periodic spline at the start of each interval.
 
-    By the Sherman-Morrison formula.
+    `chord` (n, d) are the vectors from each point to the next, `h` (n,) their lengths. The cyclic system is
+    solved by the Sherman-Morrison formula.
     """
     delta = chord / h[:, None]
     before = rolled(h, 1)
@@ -136,9 +147,10 @@ def limited(
 ) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, 2) at the start and at the end of each interval, limited.
 
-    At a corner, a point of (n, 2) where the tangent may jump, an interval has no chord on its other side:
-    there the tangent may turn from the interval's chord by as much as the polygon turns at the interval's
-    other end.
+    Each tangent is kept near the angle between the chords before and after its point. `corners` are indices
+    of `points` (n, 2) at which the tangent may jump. At a corner the chord of the next interval says nothing:
+    there the tangent may deviate from the chord of its own interval by as much as the polygon turns at the
+    other end of this interval. A closed curve does not repeat its first point.
     """
     n = len(points)
     chord = rolled(points, -1) - points  # the last of an open curve is not used

@@ -97,7 +97,7 @@ class Domain:
 
     @cached_property
     def area(self) -> float:
-        """Area of the domain, with the polygons through the points of the loops."""
+        """Area between the polygons through the points of the loops."""
         return float(sum(polygon_area(loop.curve.points) for loop in self.loops))
 
     @cached_property
@@ -106,7 +106,7 @@ class Domain:
         return np.array([loop.length for loop in self.loops])
 
     def at(self, loop: Indices, arc: Floats) -> Floats:
-        """Return the points (n, 2) at arc lengths (n,) on the loops of the numbers `loop` (n,)."""
+        """Return the points (n, 2) at arc lengths `arc` (n,) on the loops with the numbers `loop` (n,)."""
         points = np.empty((len(loop), 2))
         for number, each in enumerate(self.loops):
             points[loop == number] = each.at(arc[loop == number])
@@ -114,9 +114,10 @@ class Domain:
 
     @cached_property
     def layered_loops(self) -> range:
-        """Numbers of the loops that have layers where no wall is named: the holes.
+        """Numbers of the loops that get layers if no wall is named: the holes.
 
-        Without holes it is the outer loop if part of it is an inlet, an axis or the like by its name.
+        If there are no holes: the outer loop, provided that the name of one of its parts says that it is no
+        wall.
         """
         channel = (
             len(self.loops) == 1 and not self.periodic and not all(map(may_be_wall, self.loops[0].names))

@@ -12,11 +12,13 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.kernels._native import nearest_ahead
 
 IN_FRONT = 0.6
-"""Cosine of the angle to the normal up to which a wall counts as being in front: 53 degrees."""
+"""A wall point is in front if its direction deviates from the normal by at most 53 degrees; the cosine of
+this angle.
+"""
 _BEYOND = 1.0 + 1e-9
-"""Factor on a limit, so that a value equal to it except for rounding does not exceed it."""
+"""Factor on a limit, so that a value that equals the limit except for rounding does not exceed it."""
 _SAME = 1e-9
-"""Distance over the extent of the walls up to which a wall point is the point itself, and no gap."""
+"""Wall points nearer than this fraction of the extent of the walls are the point itself."""
 _AROUND_CORNER = 1.1
 """Largest way along a loop with such corners, over the distance, to a wall that is beside and not in front.
 
@@ -26,11 +28,11 @@ _SAMPLES = 2000  # points on all walls together
 
 
 def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
-    """Return the distance (n,) from points of a loop to the nearest wall in front, infinite without one.
+    """Return the distances (n,) from points of a loop to the nearest wall in front, infinite without one.
 
-    The points are at arc lengths `arcs` (n,). A wall, which may be part of the same loop, is in front if the
-    cosine of its direction to the inward normal exceeds `IN_FRONT`. The other wall of a convex corner of two
-    cells does not count near to it: layers turn there.
+    The points are at arc lengths `arcs` (n,). A wall, which may be part of the same loop, is in front if its
+    direction deviates from the inward normal by at most 53 degrees. Near a corner at which two cells meet,
+    the other wall of the corner does not count, because layers turn there.
     """
     walls, points, along = wall_points(domain.loops), loop.at(arcs), loop.tangent(arcs)
     gaps = gaps_in_front(walls, points, along)
@@ -48,7 +50,7 @@ def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
 
 
 def wall_points(loops: Sequence[Loop]) -> Floats:
-    """Return points (m, 2) on all loops, about `_SAMPLES` in total and at least 32 on each."""
+    """Return points (m, 2) at nearly equal distances on all loops, at least 32 on each."""
     counts = _sample_counts(loops)
     return np.concatenate([each.sample(count) for each, count in zip(loops, counts, strict=True)])
 
@@ -61,8 +63,9 @@ def _sample_counts(loops: Sequence[Loop]) -> list[int]:
 def gaps_in_front(walls: Floats, points: Floats, along: Floats) -> Floats:
     """Return the distance (n,) from `points` (n, 2) to the nearest of the wall points (m, 2) in front.
 
-    `along` (n, 2) are unit directions, whose normals point to their left. A wall point is in front if the
-    cosine of its direction to the normal exceeds `IN_FRONT`.
+    `walls` are points of all walls. `along` (n, 2) are unit vectors along the wall at `points`; the normal
+    points to their left. A wall point is in front if its direction deviates from the normal by at most 53
+    degrees.
     """
     gaps, same = np.empty(len(points)), _SAME * extent_of(walls)
     walls, points, along = (np.ascontiguousarray(each) for each in (walls, points, along))

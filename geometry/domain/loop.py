@@ -15,11 +15,11 @@ from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.ties import EQUAL
 
 CORNER_DEG = 30.0
-"""A point where the loop turns by more is a corner, unless the input says which are."""
+"""Turn in degrees above which a point is a corner, unless the input lists the corners."""
 
 
 def turns_sharply(turn: Floats) -> Bools:
-    """Return where turns in radians, of either sign, are more than `CORNER_DEG`, by more than rounding."""
+    """Return whether turns (n,) in radians, of either sign, exceed `CORNER_DEG` by more than rounding."""
     return np.asarray(np.abs(turn) > np.radians(CORNER_DEG) * (1.0 + EQUAL))
 
 
@@ -33,7 +33,7 @@ class Loop:
         A polygon is followed exactly (``Curve(..., straight=...)``), an airfoil is a spline between corners.
     corners : ascending indices of the points that are corners. A grid has a node at each.
     names : one name for the whole loop, or one for each stretch between corners.
-    cells : number of cells that should meet at each corner; empty where the angles say it.
+    cells : number of cells that should meet at each corner; empty: the number follows from the angle.
 
     Raises InputError: a corner index that is out of range; the wrong number of names.
     """
@@ -42,7 +42,7 @@ class Loop:
     corners: tuple[int, ...] = ()
     names: tuple[str, ...] = ("outer",)
     places: tuple[str, ...] = field(default=(), repr=False)
-    """Where each point stands in its source, for messages; may be empty."""
+    """Position of each point in the input, such as ``line 12``, for messages; may be empty."""
     cells: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
@@ -57,7 +57,11 @@ class Loop:
     def of_polygon(
         cls, points: Floats, corners: tuple[int, ...] | None = None, names: tuple[str, ...] = ("outer",)
     ) -> Loop:
-        """Return the loop along a polygon (n, 2), the domain on its left; None for `corners` detects them."""
+        """Return the loop along a polygon `points` (n, 2), with the domain on its left.
+
+        `corners` are the indices of the corners; None: detected by the turning angle. `names` are as in
+        `Loop`.
+        """
         curve = Curve(points, closed=True, corners=(), straight=np.ones(len(points), dtype=bool))
         if corners is None:
             corners = tuple(np.flatnonzero(turns_sharply(turning(curve.points, closed=True))))
@@ -83,7 +87,7 @@ class Loop:
     def corner_cells(self) -> NDArray[np.intp]:
         """Number of cells (c,) that should meet at each corner, 1 to 4: about one per 90 degrees.
 
-        Of 135 and 225 degrees, to rounding, it is two.
+        At angles of exactly 135 and 225 degrees, to rounding, the number is two.
         """
         if self.cells:
             return np.array(self.cells, dtype=np.intp)
@@ -95,7 +99,10 @@ class Loop:
         return self.curve.at(np.mod(arc, self.length))
 
     def tangent(self, arc: Floats) -> Floats:
-        """Return unit tangents (m, 2) at arc lengths (m,); at corners, of the stretch after the corner."""
+        """Return unit tangents (m, 2) at arc lengths (m,).
+
+        At a corner the tangent of the stretch after it.
+        """
         return self.curve.tangent(np.mod(arc, self.length))
 
     def name_at(self, arc: float) -> str:

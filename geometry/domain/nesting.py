@@ -11,10 +11,10 @@ from meshonet.geometry.polygon.area import contains, polygon_area
 
 
 def nested(polygons: Sequence[Floats]) -> list[tuple[int, list[int]]]:
-    """Return (index of an outer polygon, indices of its holes) for each outer polygon, in the order given.
+    """Return for each outer polygon its index and the indices of its holes, in the order of `polygons`.
 
-    A polygon inside a hole is an outer one again. For polygons that cross or touch, the first point of each
-    decides.
+    A polygon inside a hole is an outer polygon. Whether a polygon lies inside another is decided by its first
+    point.
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> nested([square + 1.0, 4.0 * square, square + 2.5])

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.domain.loop import Loop
 
 SAME = 1e-6
-"""Largest distance between one side, moved, and the other, in extents of the domain."""
+"""Largest distance between the moved first side and the second side, divided by the extent of the domain."""
 _SAMPLES = 129  # points at which two sides are compared
 _NOTHING = 1e-9  # part of a shift below which a coordinate of it is rounding of the input
 _BITS = 50  # of coordinates that are kept where sums of them have to be exact
@@ -25,7 +25,7 @@ _BITS = 50  # of coordinates that are kept where sums of them have to be exact
 
 @dataclass(frozen=True)
 class Periodic:
-    """Two stretches of the outer loop, of which the second is the first moved by `shift`."""
+    """Two parts of the outer loop; the second is the first moved by `shift`."""
 
     first: tuple[float, float]
     """Arc lengths where the first stretch starts and ends, in the direction of the loop."""
@@ -35,9 +35,9 @@ class Periodic:
 
 
 def rounded(values: Floats, domain: Domain) -> Floats:
-    """Return coordinates (..., 2) rounded so far that shifts added to them in any order give the same sum.
+    """Return coordinates (..., 2), rounded so that sums with the shifts do not depend on their order.
 
-    Shifts along different axes do so anyway: then the coordinates stay as they are.
+    If the shifts are along different axes, the order has no effect, and coordinates are not rounded.
     """
     shifts = np.unique(np.abs([each.shift for each in domain.periodic]), axis=0)
     if (np.count_nonzero(shifts, axis=0) < 2).all():
@@ -48,15 +48,16 @@ def rounded(values: Floats, domain: Domain) -> Floats:
 
 
 def with_periodic_sides(domain: Domain, pairs: Sequence[tuple[str, str]]) -> Domain:
-    """Return the domain with pairs of sides of its outer loop, given by their names, as periodic ones.
+    """Return the domain with periodic `pairs` of sides of its outer loop, each given by two names.
 
-    Corners at which a periodic side turns by less than 45 degrees are none any more: its nodes are free.
+    Points of a periodic side at which it turns by less than 45 degrees are no corners any more, so that the
+    nodes there can move.
 
     Raises
     ------
     InputError
-        A name that no stretch of the outer loop has, or that is given twice; sides that are not translated
-        copies of each other, with the distance between them.
+        A name that no part of the outer loop has, or that is given twice; sides that are not translated
+        copies of each other (the message gives the distance).
     """
     if not pairs:
         return domain

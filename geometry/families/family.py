@@ -30,12 +30,12 @@ class Family:
     high: float
     least: float
     most: float
-    """Outside these two there is no such shape."""
+    """Smallest and largest value of the parameter for which the shape exists."""
     topology: Topology
     make: Callable[[float, int, int], Boundary]
-    """Parameter, ni, nj to a boundary."""
+    """Function from the parameter, ni and nj to the boundary."""
     to_low: bool = False
-    """Extrapolation goes from high values of the parameter to low ones."""
+    """Whether extrapolation tests low values of the parameter instead of high values."""
 
     def boundary(self, parameter: float, ni: int, nj: int) -> Boundary:
         """Return the member with the given parameter and ni by nj nodes, named after family and parameter.
@@ -62,7 +62,8 @@ def family(name: str) -> Family:
 def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
     """Return n nodes (n, 2) along straight pieces, in nearly equal steps; every corner is bitwise a node.
 
-    If `like` is given, a polyline with as many corners, each corner gets the same node index as in `like`.
+    `like` is another polyline with as many corners; if it is given, each corner gets the same node index as
+    in `like`.
 
     >>> polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], 5).tolist()
     [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]]

@@ -20,7 +20,9 @@ FINE = 601
 """Points of a side before nodes are placed on it."""
 
 CHECKED = 65
-"""Nodes of a side at which a domain is judged, whatever its node counts: a seed is one shape at any size."""
+"""Number of nodes per side with which a random domain is accepted or rejected, so that a seed gives the same
+shape for any node counts.
+"""
 
 LEAST, MOST = np.radians(3.0), np.radians(178.0)
 """Angles of the four corners."""

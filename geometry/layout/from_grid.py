@@ -50,7 +50,7 @@ def layout_of(grid: Grid) -> Layout:
 
 
 def with_nodes(grid: Grid, layout: Layout) -> Grid:
-    """Return `grid` with the moved nodes of `layout`, which was made from it."""
+    """Return `grid` with the nodes of `layout`, which was made from this grid and whose nodes have moved."""
     nodes = layout.mesh.nodes
     return replace(grid, blocks=tuple(Block(nodes[block]) for block in layout.blocks))
 

@@ -48,7 +48,7 @@ class Layout:
 
     @cached_property
     def vertices(self) -> Indices:
-        """(v,) ascending numbers of the nodes that are corners of blocks."""
+        """(v,) numbers of the nodes at corners of blocks, ascending."""
         corners = [block[[0, -1, -1, 0], [0, 0, -1, -1]] for block in self.blocks]
         return np.asarray(distinct(np.concatenate(corners)))
 

@@ -15,11 +15,16 @@ from meshonet.geometry.domain.periodic import Periodic, rounded
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 
 Sides = tuple[Periodic, Indices, Indices]
-"""A pair of stretches, and the nodes of both, corners included, in the order of the first."""
+"""A pair of periodic parts of the boundary, and the nodes of each part, corners included, in the order of the
+first.
+"""
 
 
 def sides_of(mesh: QuadMesh) -> list[Sides]:
-    """Return the nodes along both stretches of each pair; they are as many only where counts were matched."""
+    """Return for each periodic pair the nodes along both parts.
+
+    The two numbers of nodes are equal only if the counts of the mesh were matched.
+    """
     after = following(mesh)
     return [
         (each, _chain(mesh, after, each.first), _chain(mesh, after, each.second)[::-1])
@@ -28,7 +33,7 @@ def sides_of(mesh: QuadMesh) -> list[Sides]:
 
 
 def following(mesh: QuadMesh) -> Indices:
-    """Return the next node (n,) along the boundary, the domain on the left; -1 inside."""
+    """Return for each node (n,) the next node along the boundary, with the domain on the left; -1 inside."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     after = np.full(len(mesh.nodes), -1, dtype=np.intp)
     after[mesh.quads[cell, side]] = mesh.quads[cell, (side + 1) % 4]
@@ -36,7 +41,7 @@ def following(mesh: QuadMesh) -> Indices:
 
 
 def with_tied_sides(mesh: QuadMesh) -> QuadMesh:
-    """Return the mesh with partners across its periodic sides, both at the mean of where they were."""
+    """Return the mesh with the nodes of periodic sides tied in pairs, each pair at its mean position."""
     if not mesh.domain.periodic:
         return mesh
     places, nodes = mesh.places, mesh.nodes.copy()
@@ -50,9 +55,9 @@ def with_tied_sides(mesh: QuadMesh) -> QuadMesh:
 
 
 def matched_nodes(mesh: QuadMesh) -> Floats:
-    """Return the nodes (n, 2), those of the second side of each pair bitwise those of the first, moved.
+    """Return the nodes (n, 2); those of the second side of each pair are bitwise those of the first, moved.
 
-    Corners in two pairs of sides suit both of them.
+    A corner that belongs to two pairs satisfies both.
     """
     nodes, sides = mesh.nodes.copy(), sides_of(mesh)
     for _, first, _ in sides:

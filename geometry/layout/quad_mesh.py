@@ -24,9 +24,11 @@ class Places:
     arc: Floats
     """Arc length on that loop, in [0, its length); 0 inside."""
     cells: Indices
-    """Cells that should meet at a node which is a corner and stays where it is; 0 for all others."""
+    """Number of cells that should meet at a corner, which does not move; 0 for nodes that are no corners."""
     partner: Indices
-    """The node that this one is, moved by the domain's period; -1 for all others."""
+    """Number of the partner: this node is the partner, moved by the period of the domain; -1 without a
+    partner.
+    """
 
     @classmethod
     def inside(cls, count: int) -> Places:
@@ -45,7 +47,7 @@ class Places:
         return np.asarray(on[np.argsort(self.arc[on], kind="stable")])
 
     def take(self, nodes: Indices) -> Places:
-        """Return the places of the given nodes, without their partners."""
+        """Return the places of the given nodes; their partners are dropped."""
         cleared = np.full(len(nodes), -1, dtype=np.intp)
         return Places(self.loop[nodes], self.arc[nodes], self.cells[nodes], cleared)
 
@@ -94,12 +96,12 @@ class QuadMesh:
 
     @property
     def twin(self) -> Indices:
-        """(m, 4) for each of these edges: 4 q + k if it is edge k of quad q across it; -1 at walls."""
+        """(m, 4) the quad across each of these edges, as 4 q + k for edge k of quad q; -1 at walls."""
         return self._sides[1]
 
     @property
     def manifold(self) -> bool:
-        """Whether every edge has at most two quads, which traverse it in opposite directions."""
+        """Whether every edge belongs to at most two quads, which traverse it in opposite directions."""
         return self._sides[3]
 
     @cached_property
@@ -126,17 +128,20 @@ class QuadMesh:
 
     @cached_property
     def of_quads(self) -> dict[object, object]:
-        """What others have derived of the quads alone; meshes of the same quads share it."""
+        """Cache of results that depend on the quads only; meshes with the same quads share it."""
         return {}
 
     def aspects(self, lengths: Floats) -> Floats:
-        """Return aspect ratios (m,): geometric mean of sides 1-2, 3-0 over 0-1, 2-3, of `lengths` (e,)."""
+        """Return the aspect ratios (m,) of the quads, for edges of `lengths` (e,).
+
+        The geometric mean of the sides 1-2 and 3-0, divided by that of the sides 0-1 and 2-3.
+        """
         sides = lengths[self.edge_of]
         return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))
 
     @property
     def tied(self) -> Bools:
-        """(n,) whether a node has a partner or is one: nodes of periodic sides, which move freely."""
+        """(n,) whether a node has a partner or is a partner: nodes of periodic sides, which can move."""
         tied = self.places.partner >= 0
         tied[self.places.partner[tied]] = True
         return tied
@@ -149,7 +154,7 @@ class QuadMesh:
         return np.asarray(known[off.argmin(axis=1)])
 
     def beside_partners(self, nodes: Floats) -> Floats:
-        """Return `nodes` (n, 2), those with a partner where it is, moved by the period."""
+        """Return `nodes` (n, 2) with each tied node at the position of its partner, moved by the period."""
         images = np.flatnonzero(self.places.partner >= 0)
         if images.size and self.domain.periodic:
             nodes = nodes.copy()

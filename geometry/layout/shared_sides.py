@@ -10,11 +10,11 @@ from meshonet.geometry.arrays import Indices, Side
 from meshonet.geometry.blocks.connection import Connection, Motion
 
 Line: TypeAlias = tuple[int, Side, Indices]
-"""Number of a block, a side of it, and the nodes along that."""
+"""Number of a block, one of its sides, and the node numbers along this side."""
 
 
 def shared(lines: list[Line]) -> tuple[list[Connection], list[Line]]:
-    """Return the connections of lines with the same nodes, and the lines that match no other."""
+    """Return the connections of lines with the same nodes, and the lines that no other line matches."""
     waiting: dict[tuple[int, ...], Line] = {}
     connections = []
     for line in lines:

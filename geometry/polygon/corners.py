@@ -8,18 +8,20 @@ from meshonet.geometry.arrays import Bools, Floats, Indices, along_and_across, c
 from meshonet.geometry.elementary import arctan2
 
 KINK = np.radians(8.0)
-"""A turn that counts as a corner where its neighbours turn by less than a fifth of it."""
+"""Radians: a larger turn is a corner if both neighbouring points turn by less than a fifth of it."""
 SHARP = np.radians(40.0)
-"""A turn that counts where its neighbours turn by less than half of it, or where the points are few."""
+"""Radians: a larger turn is a corner if both neighbouring points turn by less than half of it, or if points
+are few.
+"""
 ALWAYS = np.radians(75.0)
-"""A turn that counts whatever its neighbours do."""
+"""Radians: a larger turn is always a corner."""
 HAIRPIN = np.radians(100.0)
-"""A turn that may be the round end of a thin body with few points (`SHARP` beside small turns)."""
+"""Radians: a larger turn may be the round end of a thin body given by few points."""
 WIDENS = 0.75
 """Behind an oblique base a body widens at this fraction or more of its first rate, behind a nose at half."""
 ALONE = np.radians(50.0)  # turning beside a corner below which a sharp one may be a coarsely given round end
 FEW = 12
-"""A closed polygon of at most this many points is taken as a polygon, not as samples of a curve."""
+"""A closed polygon with at most this many points is a polygon, not a sampled curve."""
 
 
 def angle_between(a: Floats, b: Floats) -> Floats:
@@ -30,9 +32,9 @@ def angle_between(a: Floats, b: Floats) -> Floats:
 
 
 def turning(points: Floats, *, closed: bool = False) -> Floats:
-    """Return the angle (n,) in radians by which a polygon (n, 2) turns at each point.
+    """Return the angle (n,) in radians by which a polygon `points` (n, 2) turns at each point.
 
-    Left turns are positive; it is 0 at the ends of an open polygon.
+    Left turns are positive; the angle is 0 at the ends of an open polygon.
     """
     ring = np.concatenate([points[-1:], points, points[:1]]) if closed else points
     step = ring[1:] - ring[:-1]
@@ -43,15 +45,19 @@ def turning(points: Floats, *, closed: bool = False) -> Floats:
 def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Indices:
     """Return the ascending indices of the points that are corners.
 
-    A corner turns sharply while its neighbours do not: by more than `KINK` and five times as much as each
-    neighbour, or more than `SHARP` and twice as much, or more than `ALWAYS`; or it is one of two adjacent
-    points that turn by more than `SHARP`, or `KINK` along an open polygon, and five times as much as the
-    points beyond them. The round end of a
-    thin body given by few points also turns by up to 155 degrees at one point, but is no corner: the
-    thickness behind it grows like the square root of the distance, behind an edge linearly
-    (`growth_exponent`). The two ends of an oblique base, one of which turns as much, are both corners
-    (`_oblique_bases`). All points of a closed polygon (n, 2) of at most `few` points may be corners: it is
-    not taken for samples of a round body.
+    A point is a corner if the polygon `points` (n, 2) turns there
+
+    - by more than 8 degrees and five times as much as at both neighbouring points;
+    - by more than 40 degrees and twice as much as at both neighbouring points;
+    - by more than 75 degrees.
+
+    Two adjacent points are both corners if both turn by more than 40 degrees (along an open polygon 8), and
+    five times as much as the points beyond them. The two ends of an oblique base are both corners too.
+
+    The round end of a thin body given by few points can turn by up to 155 degrees at one point, but is no
+    corner: there the thickness grows like the square root of the distance, behind an edge linearly
+    (`growth_exponent`). Closed polygons of at most `few` points are not sampled curves; all their points may
+    be corners.
     """
     angle = np.abs(turning(points, closed=closed))
     if not angle.max() > KINK:
@@ -117,8 +123,8 @@ def _widens_on(points: Floats, k: int) -> bool:
 def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:
     """Return p where the thickness behind point k of a polygon (n, 2) grows like distance to the power p.
 
-    p is about 1/2 behind a round end, 1 behind a wedge, more behind a cusp. It is measured between the first
-    and the second points on both sides, and infinite if an open polygon has too few points next to k.
+    p is about 1/2 behind a round end, 1 behind a wedge, and more behind a cusp. It is computed from the first
+    and the second points on both sides of point k, and infinite if an open polygon has too few points there.
     """
     n = len(points)
     if n < 5 or (not closed and not 2 <= k < n - 2):

@@ -8,13 +8,16 @@ from meshonet.geometry.arrays import Complexes
 from meshonet.geometry.elementary import modulus
 
 Axis: TypeAlias = tuple[complex, complex]
-"""A straight line: a point of it, and its direction squared (a unit complex number)."""
+"""A straight line: one of its points, and the square of its direction (a unit complex number)."""
 
 EQUAL = 1e-10  # in units of the wall's extent: nodes closer than this are mirror images
 
 
 def farthest(wall: Complexes) -> tuple[int, int]:
-    """Return the first and the last of the nodes that are farthest from node 0, to rounding."""
+    """Return the first and the last index of the nodes of `wall` (n,) that are farthest from node 0.
+
+    Distances count as equal to rounding.
+    """
     reach = modulus(wall - wall[0])
     ends = np.flatnonzero(reach > (1.0 - 1e-12) * reach.max())
     return int(ends[0]), int(ends[-1])
@@ -23,8 +26,9 @@ def farthest(wall: Complexes) -> tuple[int, int]:
 def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
     """Return 1 or -1 for two walls (n,), the opposite for their mirror images, and 0 if they are symmetric.
 
-    Node i of the mirror image is the image of node n - i. The axis runs from the first node to the middle of
-    the farthest nodes. The node farthest from its partner's image decides, first on `wall`, then on `far`.
+    Node i of the mirror image is the image of node n - i. The axis of the mirror, which is returned too, runs
+    from the first node to the middle of the farthest nodes. The sign follows from the node that is farthest
+    from the image of its partner, on `wall`, or on `far` if the wall is symmetric.
     """
     a, b = farthest(wall)
     along = 0.5 * (wall[a] + wall[b]) - wall[0]

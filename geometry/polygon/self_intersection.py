@@ -13,7 +13,9 @@ from meshonet.kernels._native import crossing_segments
 
 _BUDGET = 50_000_000  # comparisons, a quarter of a second, before an index tree replaces the sweep
 _SWEEP = np.array([0.846, 0.533])
-"""Direction of the sweep. Along an axis, all segments of a straight side normal to it would overlap."""
+"""Direction along which segments are sorted. It is oblique: along a coordinate axis, all segments of a
+straight side normal to this axis would overlap.
+"""
 _ROUNDING = 1e-15  # relative, of products with it
 _CHUNK = 256  # segments queried at a time, so that the crossings of a tangle do not fill the memory
 
@@ -68,7 +70,10 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
 
 
 def sweep_spans(p: Floats, end: Floats) -> tuple[Floats, Floats]:
-    """Return start and end (m,) of the segments from `p` to `end` along the sweep, rounded outwards."""
+    """Return start and end (m,) of the segments from `p` (m, 2) to `end` (m, 2) along the sweep direction.
+
+    They are rounded outwards.
+    """
     along, along_end = product(p[: len(end)], _SWEEP), product(end, _SWEEP)
     low, top = np.minimum(along, along_end), np.maximum(along, along_end)
     top += _ROUNDING * max(
@@ -95,7 +100,10 @@ def _pairs_by_tree(p: Floats, end: Floats, closed: bool, limit: int) -> list[tup
 
 
 def shared_point(p: Floats, end: Floats, i: int, j: int) -> tuple[float, float]:
-    """Return a point common to segments i and j; they may be collinear."""
+    """Return a point (x, y) that lies on both of the segments i and j, which may be collinear.
+
+    Segments run from `p` (m, 2) to `end` (m, 2).
+    """
     a, b, c, d = p[i], end[i], p[j], end[j]
     r, s, w = b - a, d - c, c - a
     across = r[0] * s[1] - r[1] * s[0]

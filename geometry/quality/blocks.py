@@ -20,9 +20,9 @@ from meshonet.geometry.summary import Quality
 class Deviation:
     """Deviation of corner angles from 90 degrees: mean over all corners, 99th percentile over cells.
 
-    The percentile is that of the worst corner of each cell; `p99` is None if percentiles were not computed.
-    `max` is at cell `at`, (block, i, j) or (block, i, j, k). Of the three angles at a corner of a volume the
-    worst counts.
+    In degrees. The percentile is taken over the largest deviation of each cell; `p99` is None if percentiles
+    were not computed. The maximum `max` occurs in the cell `at`, (block, i, j) or (block, i, j, k). At a
+    corner of a volume the largest deviation of its three angles counts.
     """
 
     mean: float
@@ -35,8 +35,8 @@ class Deviation:
 class BlockCounts:
     """Blocks and irregular vertices of a grid.
 
-    `sizes` are the numbers of nodes of each block along its directions. `irregular` are the inner nodes
-    (block, i, j) where other than four cells meet, each with the number of cells; None in volumes.
+    `sizes` are the numbers of nodes of each block along its directions. `irregular` lists the inner nodes
+    (block, i, j) at which a number of cells other than four meet, with this number; None for volumes.
     """
 
     sizes: tuple[tuple[int, ...], ...]
@@ -70,13 +70,14 @@ class BlockFigures(BlockCounts):
 
 
 LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")
-"""Fields of `Lines` that are reported."""
+"""Fields of `Lines` that reports contain."""
 
 
 def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None = None) -> BlockFigures:
-    """Return the figures of a multi-block grid; of volumes, `quality` is measured unless it is given.
+    """Return the figures of a multi-block grid.
 
-    Lines of volumes have percentiles if `quality` has. Without these, lines `run` need no measuring.
+    `quality` is needed for volumes, and measured if it is not given; growth and bend have percentiles if
+    `quality` has percentiles. `run` are growth and bend without percentiles, if they are known.
     """
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes
@@ -113,7 +114,10 @@ def extreme_dict(extreme: Extreme | None) -> dict[str, Any] | None:
 
 
 def deviation(grid: Grid) -> Deviation:
-    """Return the deviation of all corners of 2-D blocks from 90 degrees; in the plane it is up to 270."""
+    """Return the deviation of the corner angles of planar blocks or surface patches from 90 degrees.
+
+    In the plane it can be up to 270 degrees.
+    """
     every = [corner_deviations(block.nodes) for block in grid.blocks]
     worst = [corners.max(axis=0) for corners in every]
     block = int(np.argmax([cells.max() for cells in worst]))
@@ -128,7 +132,7 @@ def deviation(grid: Grid) -> Deviation:
 
 
 def solid_deviation(quality: Quality) -> Deviation:
-    """Return the deviation of the corners of volumes, from their metrics."""
+    """Return the deviation of the corner angles of volumes, from their `quality`."""
     worst = quality["skewness"]  # deviation over 90 degrees
     p99 = None if worst.p99 is None else 90.0 * worst.p99
     return Deviation(quality["deviation"].mean, p99, 90.0 * worst.max, worst.worst)

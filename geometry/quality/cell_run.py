@@ -13,15 +13,21 @@ from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import measure_cells
 
 PERCENTS = (1.0, 99.0)
-"""Percentiles that are asked for."""
+"""Percentiles of reports."""
 FEW = 1 << 22
-"""Cells up to which the values of all metrics are in memory together; of more, those of some metrics."""
+"""Grids with at most this many cells keep the values of all metrics in memory at once; larger grids those of
+a few.
+"""
 NONE = slice(0)
-"""No metrics."""
+"""Slice of no metric."""
 
 
 class CellRun(NamedTuple):
-    """Result of a pass: min, mean, max (metrics, 3), cells of min and max (metrics, 2, 2), kept values."""
+    """Result of one pass over the cells of a block.
+
+    Minimum, mean and maximum of each metric (metrics, 3), the cells with minimum and maximum (metrics, 2, 2),
+    and the values of the metrics that were kept.
+    """
 
     table: Floats
     where: NDArray[np.int64]
@@ -29,10 +35,12 @@ class CellRun(NamedTuple):
 
 
 def run_over(x: Floats, y: Floats, kept: slice = NONE, *, periodic: bool = False, wake: int = 0) -> CellRun:
-    """Compute the metrics of nodes x, y (ni, nj); for metrics `kept`, return the values (n, ni-1, nj-1) too.
+    """Return the statistics of all metrics of nodes x, y (ni, nj).
 
-    In a `periodic` block i = ni-1 and i = 0 coincide; the first `wake` cells of south are neighbours of its
-    last.
+    For the metrics `kept`, the result also has the values (n, ni-1, nj-1) of all cells.
+
+    In a `periodic` block i = ni-1 and i = 0 coincide. The first `wake` cells along south are neighbours of
+    the last `wake` cells.
     """
     metrics = len(QUAD_METRICS)
     table, where = np.empty((metrics, 3)), np.empty((metrics, 2, 2), dtype=np.int64)

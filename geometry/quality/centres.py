@@ -11,7 +11,7 @@ from meshonet.geometry.blocks.grid import Grid
 def centre_of(grid: Grid, at: tuple[int, ...]) -> Floats:
     """Return the centre (2,) or (3,) of the cell `at`: (i, j), (block, i, j) or (block, i, j, k).
 
-    At the last node of a line it is that of the last cell.
+    An index of the last node along a direction counts as that of the last cell.
     """
     block, *place = at if len(at) > 2 else (0, *at)
     nodes = grid.blocks[block].nodes

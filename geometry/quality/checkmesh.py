@@ -42,15 +42,17 @@ from meshonet.geometry.quality.growth import Extreme, Tally, strips
 from meshonet.geometry.quality.metrics import FACE_NAMES
 
 FACES = FACE_NAMES
-"""Figures of `FaceMeasures`."""
+"""Names of the measures in `FaceMeasures`."""
 
 Values: TypeAlias = tuple[tuple[int, ...], Floats | None, Floats]
-"""Cell of the first face, as in `SolidFaceMeasures`; angles, None at the boundary; skewness (m, n[, l])."""
+"""Measures of an array of faces: cell of the first face, angles (m, n[, l]) in degrees (None at the
+boundary), and skewness (m, n[, l]).
+"""
 
 
 @dataclass(frozen=True)
 class FaceMeasures:
-    """Statistics of each measure, with the cell (i, j) of the largest; None if there are no such faces.
+    """Statistics of each measure, with the cell (i, j) of the largest value; None if there are no such faces.
 
     Cells are (block, i, j) in a multi-block grid, and (block, i, j, k) in volumes.
     """
@@ -81,10 +83,12 @@ def faces(grid: Grid) -> FaceMeasures:
 
 
 def worst_faces(grid: Grid, name: str) -> list[Floats]:
-    """Return for each block the measure `name`, (ni-1, nj-1[, nk-1]): the greatest of the faces of a cell.
+    """Return for each block the largest value of the measure `name` of the faces of each cell.
 
-    A face between two cells counts for the first one, whose indices `faces` gives. Raises InputError: as
-    `faces`.
+    Arrays (ni-1, nj-1[, nk-1]). A face between two cells counts for the first of them, the cell that `faces`
+    reports.
+
+    Raises InputError: a surface, whose cells have no faces.
     """
     if name == "box_ratio":
         volume = grid.form == "volume"
@@ -108,7 +112,10 @@ def _of_volume(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
 
 
 def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:
-    """Return the cells (block, i, j) with a face beyond `angle` (non-orthogonality, degrees) or `skew`."""
+    """Return the cells (block, i, j) with a face whose non-orthogonality exceeds `angle`, or skewness `skew`.
+
+    `angle` is in degrees.
+    """
     cells: list[tuple[int, int, int]] = []
     for (block, i, j), angles, skews in _of_blocks(grid):
         where = skews > skew if angles is None else (angles > angle) | (skews > skew)

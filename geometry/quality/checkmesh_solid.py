@@ -32,7 +32,11 @@ _TINY = 1e-300  # in place of 0 in divisors
 
 
 class SolidFaceMeasures(NamedTuple):
-    """Place (block, i, j, k) of the first of faces (n, m), their angles (None at the boundary), skewness."""
+    """Measures of an array of faces (n, m).
+
+    The cell (block, i, j, k) of the first face, the angles in degrees (None at the boundary), and the
+    skewness.
+    """
 
     place: tuple[int, ...]
     axis: int
@@ -49,7 +53,7 @@ class Cells:
 
 
 def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[SolidFaceMeasures]:
-    """Yield the measures of the faces of volumes, layer by layer; `cells` are those of each block."""
+    """Yield the measures of the faces of volumes, layer by layer; `cells` has one entry per block."""
     for number, (block, own) in enumerate(zip(grid.blocks, cells, strict=True)):
         nodes = np.moveaxis(block.nodes, -1, 0)
         for axis in range(3):
@@ -193,7 +197,7 @@ def _cross(u: Floats, v: Floats) -> Floats:
 
 
 def cell_at(grid: Grid, block: int, side: Side, first: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the cell (block, i, j, ...) at a side, given its index or indices `first` along the side."""
+    """Return the cell (block, i, j, ...) at a side whose index or indices along the side are `first`."""
     axis, end = PLACES[side]
     return _place(block, axis, 0 if end == 0 else grid.blocks[block].counts[axis] - 2, first)
 

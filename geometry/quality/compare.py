@@ -10,7 +10,7 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 NEAR = 0.1
-"""Fraction of the rows that counts as near the wall."""
+"""Fraction of the rows that are near the wall."""
 
 
 @dataclass(frozen=True)
@@ -20,13 +20,17 @@ class Difference:
     max: float
     mean: float
     at: tuple[int, ...]
-    """Node (i, j) of the greatest; (block, i, j) or (block, i, j, k) of many blocks."""
+    """Node with the largest distance: (i, j), in multi-block grids (block, i, j) or (block, i, j, k)."""
     relative_l2: float
-    """Root of the mean squared distance over that of the reference's nodes from their mean."""
+    """Root mean square distance, divided by the root mean square distance of the reference nodes from their
+    mean.
+    """
     near_wall: float
-    """The same with the distances in the tenth of all rows from j = 0 on; of many blocks, from walls on."""
+    """The same for the tenth of all rows nearest to j = 0; in multi-block grids nearest to walls."""
     boundary: float
-    """Greatest distance on the four sides; on the two walls of O grids; on the outer sides of many blocks."""
+    """Largest distance on the four sides, in O grids on body and far field, in multi-block grids on outer
+    sides.
+    """
 
 
 def compare(grid: Grid, reference: Grid) -> Difference:

@@ -13,7 +13,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Criteria:
-    """Gates and names of profiles, at least one of both; what judges nothing has None in their place.
+    """Gates and profiles by which grids are judged.
+
+    There is at least one. Where nothing is judged, None takes its place.
 
     Parameters
     ----------
@@ -22,7 +24,7 @@ class Criteria:
     profiles : tuple of str, optional
         Names in `meshonet.geometry.quality.profiles.PROFILES`.
     leave_out : bool, optional
-        Whether grids that fail are left out of what is written.
+        Whether grids that fail are not written.
     """
 
     gates: tuple[Gate, ...] = ()
@@ -31,7 +33,7 @@ class Criteria:
 
     @property
     def percentiles(self) -> bool:
-        """Whether a gate needs a percentile, which the quality given to `judge` must then have."""
+        """Whether a gate needs a percentile; the quality passed to `judge` must then contain percentiles."""
         if not self.gates:
             return False
         from meshonet.geometry.quality.gates import need_percentiles

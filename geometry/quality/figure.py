@@ -7,7 +7,7 @@ from types import MappingProxyType
 from meshonet.geometry.summary import named
 
 COUNTS = ("folded", "bezier_folded")
-"""Counts of cells: by corners, and by the Bezier test of volumes."""
+"""Names of the counts of folded cells: by corner Jacobians, and by the Bezier test of volumes."""
 FIGURES: Mapping[str, str] = MappingProxyType({
     "growth": "greatest ratio of neighbouring steps along all directions of grid lines, sides of blocks too",
     "wall_growth": "the same along the lines that leave walls",
@@ -27,7 +27,10 @@ FIGURES: Mapping[str, str] = MappingProxyType({
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure, its node or cell (i, j) or (block, i, j[, k]), and its grid line's direction, if known."""
+    """A value, with its node or cell (i, j) or (block, i, j[, k]) and the direction of its grid line.
+
+    Place and direction are given if they are known.
+    """
 
     value: float
     at: tuple[int, ...] | None = None

@@ -18,12 +18,12 @@ from meshonet.geometry.quality.walls import WallRow, wall_rows
 from meshonet.geometry.summary import Quality
 
 _SAME = 1e-9
-"""Part of a length within rounding: of its extent by which the ends of a closed line may be apart."""
+"""Largest distance of the ends of a closed line, divided by its extent: rounding."""
 
 
 @dataclass(frozen=True, eq=False)
 class Figures:
-    """The figures of a grid by name; each group is measured when it is first asked for."""
+    """Figures of a grid by name; each group of figures is measured when it is first asked for."""
 
     grid: Grid
     quality: Quality
@@ -51,7 +51,7 @@ class Figures:
         return wall_rows(self.grid, self.walls, by_wall)
 
     def __call__(self, name: str, statistic: str = "max") -> Figure | None:
-        """Return the figure `name`, for a metric its `statistic`; None if this grid has none.
+        """Return the figure `name`, for a metric this `statistic` of it; None if the grid has no such figure.
 
         Raises InputError: a checkMesh measure of a surface.
         """

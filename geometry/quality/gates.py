@@ -23,16 +23,16 @@ _GATE = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*(>=|<=|>|<)\s*([-+.\w]+)\s*", re.ASC
 
 @dataclass(frozen=True)
 class Gate:
-    """A condition that a grid must not meet, from a user's ``METRIC[.STATISTIC] OPERATOR VALUE``."""
+    """A condition that a grid must not meet, written as ``METRIC[.STATISTIC] OPERATOR VALUE``."""
 
     text: str
     metric: str
-    """Of `meshonet.geometry.quality.metrics`, one of `COUNTS` or `FIGURES`, or a figure beside them."""
+    """Name of a metric, a count (`COUNTS`), one of `FIGURES`, or another figure that the caller allows."""
     statistic: str
-    """Of the metric over all cells: min, mean, max, p01 or p99."""
+    """Statistic of the metric over all cells: min, mean, max, p01 or p99."""
     compare: str
     limit: float
-    """In the metric's unit."""
+    """Limit, in the unit of the metric."""
 
     def figure(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> Figure:
         """Return the figure that the gate judges, from `figures` or from `more`.
@@ -47,7 +47,7 @@ class Gate:
         return figure
 
     def broken(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> str | None:
-        """Return a message if the `figure` is beyond the limit, else None.
+        """Return a message if the grid meets the condition, else None.
 
         Raises InputError: a figure that this grid does not have.
         """
@@ -57,14 +57,14 @@ class Gate:
         return f"{self._what} is {figure.value:.6g}{figure.where}, which fails {{fail_on}} '{self.text}'"
 
     def in_short(self, figure: Figure) -> str:
-        """Return the figure and the limit that it is beyond as text: ``max_angle.max 178.2 > 170``."""
+        """Return a figure that exceeds the limit, and the limit, as text: ``max_angle.max 178.2 > 170``."""
         return in_short(self._what, figure, self.compare, self.limit)
 
     def replaces(self, figure: str, compare: str) -> bool:
-        """Return whether the gate takes the place of a check of `figure` with a limit in this direction.
+        """Return whether the gate replaces a profile's limit on `figure` with the comparison `compare`.
 
-        It must judge the same figure; of a metric, its greatest or least cell. A gate on a mean is an
-        additional one.
+        It does if it has the same figure and direction and, for a metric, judges its maximum or minimum. A
+        gate on a mean or a percentile applies in addition.
         """
         return (self.metric, self.compare[0], self.statistic) == (figure, compare[0], end_of(compare))
 
@@ -74,17 +74,19 @@ class Gate:
 
 
 def beyond(value: float, compare: str, limit: float) -> bool:
-    """Return whether a figure is beyond a limit; NaN always is."""
+    """Return whether a value exceeds a limit in the direction of `compare`; NaN always does."""
     return bool(COMPARE[compare](value, limit)) or value != value
 
 
 def end_of(compare: str) -> str:
-    """Return which extreme of a metric a limit is for, ``max`` or ``min``."""
+    """Return the extreme of a metric to which a limit applies: ``max`` for ``>``, ``min`` for ``<``."""
     return "max" if compare in (">", ">=") else "min"
 
 
 def in_short(name: str, figure: Figure, compare: str, limit: float) -> str:
-    """Return a figure and its limit as text, for growth and bend with direction and place, which tables lack.
+    """Return a figure and its limit as text.
+
+    Growth and bend with direction and place, which tables do not have.
 
     >>> in_short("growth", Figure(1.417, (12, 0), "xi"), ">", 1.3)
     'growth 1.417 > 1.3 along xi at i=12, j=0'
@@ -101,8 +103,8 @@ class Judgement:
     problems : tuple of str
         A line for each gate, and each check of a profile, that failed.
     beyond : tuple of str
-        The same in short, including the warnings of profiles: ``max_angle 178.2 > 170``.
-    replaced : tuple of str
+        The same as short texts, including the warnings of profiles: ``max_angle 178.2 > 170``.
+        replaced : tuple of str
         Limits of gates that replace those of profiles: ``box_ratio > 4000``.
     profile : ProfileReport, optional
         The outcome of every check of the profiles.

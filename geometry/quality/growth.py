@@ -17,20 +17,22 @@ from meshonet.geometry.blocks.patches import Patch
 Singles = NDArray[np.float32]
 
 ROWS = 128
-"""Columns of nodes processed at a time, so that large grids need little memory besides their own."""
+"""Number of columns of nodes that are processed at a time, so that large grids need little additional memory.
+"""
 
 DIRECTIONS = ("xi", "eta", "zeta")
 
 LARGE = 1e30
-"""Growth at an edge of zero length."""
+"""Growth that is reported at an edge of zero length."""
 
 
 @dataclass(frozen=True)
 class Extreme:
     """Greatest and mean value of a quantity over a grid, and the node or cell (i, j) of the greatest.
 
-    The place is (block, i, j) in a multi-block grid and (block, i, j, k) in a volume; these also have the
-    99th percentile. `along` is the direction of the grid line with the greatest value, one of `DIRECTIONS`.
+    The place is (block, i, j) in a multi-block grid and (block, i, j, k) in a volume; in these grids there is
+    also the 99th percentile. `along` is the direction of the grid line with the largest value, one of
+    `DIRECTIONS`.
     """
 
     max: float
@@ -42,7 +44,7 @@ class Extreme:
 
 @dataclass(frozen=True)
 class Growth:
-    """Growth along each direction; None where a line has a single edge. Only volumes have zeta."""
+    """Growth along each direction, None if lines have a single edge; zeta exists in volumes only."""
 
     xi: Extreme | None
     eta: Extreme | None
@@ -54,9 +56,9 @@ class Growth:
 
 
 class Tally:
-    """Accumulates the extreme of values given part by part; with `kept` also their percentile.
+    """Collects the extreme of values that are given part by part; with `kept` also their percentile.
 
-    Values are kept as they are given, possibly in single precision.
+    Values are kept with the precision in which they are given.
     """
 
     def __init__(self, *, kept: bool = False) -> None:
@@ -118,7 +120,10 @@ def growth(grid: Grid) -> Growth:
 
 
 def growth_off_walls(growth: Growth, walls: Sequence[Patch]) -> Extreme | None:
-    """Return the growth along lines that leave the `walls` of a one-block grid, from that along all lines."""
+    """Return the growth along the lines that leave the `walls` of a one-block grid.
+
+    `growth` is the growth along the lines of each direction.
+    """
     sides = {patch.side for patch in walls}
     families = (growth.eta, {"south", "north"}), (growth.xi, {"west", "east"})
     return most_of(extreme for extreme, ends in families if extreme and sides & ends)
@@ -135,14 +140,20 @@ def beyond_seam(grid: Grid) -> Floats:
 
 
 def across_wake(grid: Grid) -> Floats:
-    """Return nodes (n, 3, 2) across the wake of a C grid, wake nodes in the middle; n is 0 for others."""
+    """Return nodes (n, 3, 2) across the wake of a C grid: above, on and below the wake.
+
+    N is 0 for other grids.
+    """
     nodes = grid.wake + 1 if grid.wake else 0
     below = grid.nodes[::-1][:nodes, 1]
     return np.stack([below, grid.nodes[:nodes, 0], grid.nodes[:nodes, 1]], axis=1)
 
 
 def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
-    """Yield parts of `nodes` (ni, nj, 2) with the index of their first column; `more` columns overlap."""
+    """Yield parts of `nodes` (ni, nj, 2), each with the index of its first column.
+
+    Parts overlap by `more` columns.
+    """
     for i in range(0, max(len(nodes) - more, 0), ROWS):
         yield i, nodes[i : i + ROWS + more]
 

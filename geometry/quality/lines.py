@@ -28,11 +28,11 @@ from meshonet.kernels import _native
 
 @dataclass(frozen=True)
 class Lines:
-    """Growth and bend at the nodes of grid lines, the greatest at (block, i, j); None if there are none.
+    """Growth and bend at the nodes of grid lines, with the place of the largest; None if there are none.
 
-    `growth` is that along each direction of the blocks; across a side it counts for the direction that ends
-    there. `leaving` is the growth along the lines that start at walls, through all blocks that they cross,
-    and `by_wall` the same for each wall, by name.
+    `growth` is the growth along each direction of the blocks; across a side it counts for the direction
+    normal to the side. `leaving` is the growth along the lines that start at walls, through all blocks that
+    they cross, and `by_wall` the same for each wall, by name.
     """
 
     growth: Growth
@@ -98,7 +98,12 @@ def _of(tallies: Iterable[Tally], *, kept: bool) -> Extreme | None:
 def part_of_values(
     place: tuple[int, ...], axis: int, inside: bool, values: Iterable[Floats], *, kept: bool = True
 ) -> BlockLines:
-    """Return growth and bend (m, n[, l]) of nodes, the first at `place`, (block, i, j[, k]), as a part."""
+    """Return the growth and bend of an array of nodes as a part.
+
+    `values` are growth and bend (m, n[, l]) of nodes, the first of which is at `place`, (block, i, j[, k]).
+    `axis` is the direction of the lines, `inside` whether the nodes are inside a block. `kept` keeps values
+    for percentiles.
+    """
     tallies = Tally(kept=kept), Tally(kept=kept)
     for tally, each in zip(tallies, values, strict=True):
         tally.add(place, each, DIRECTIONS[axis])

@@ -150,7 +150,10 @@ def _run(grid: Grid, kept: slice) -> CellRun:
 
 
 def angles(nodes: Floats) -> tuple[float, float]:
-    """Return the maximum and the mean of the cells' largest included angles, in degrees; 360 when folded."""
+    """Return the maximum and the mean of the largest included angle of each cell, in degrees.
+
+    360 if folded.
+    """
     if count_folded(nodes):
         return 360.0, 360.0
     table, _ = _angle_table(nodes)
@@ -171,7 +174,10 @@ def _angle_table(nodes: Floats) -> tuple[Floats, NDArray[np.int64]]:
 
 
 def per_cell(grid: Grid, name: str) -> Floats:
-    """Return the metric `name` of every cell, (ni-1, nj-1); raise InputError for an unknown metric."""
+    """Return the values (ni-1, nj-1) of the metric `name` in all cells of a grid of one block.
+
+    Raises InputError: a metric that these cells do not have.
+    """
     metric = metric_of(grid, name)
     if metric.cells:
         return metric.cells(grid.nodes)
@@ -182,7 +188,7 @@ def per_cell(grid: Grid, name: str) -> Floats:
 
 
 def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
-    """Return for each block the metric `name` of every cell, (ni-1, nj-1) or (ni-1, nj-1, nk-1).
+    """Return for each block the values (ni-1, nj-1[, nk-1]) of the metric `name` in all cells.
 
     Raises InputError: a metric that these cells do not have.
     """

@@ -17,7 +17,7 @@ from meshonet.geometry.quality.surfaces import areas, quad_metrics
 from meshonet.geometry.summary import Quality
 
 _TINY, _LARGE = 1e-300, 1e30
-"""A cell without area has a neighbour of ratio `_LARGE`, as in the compiled metrics."""
+"""Ratio of areas that is reported next to a cell without area, as in the compiled metrics."""
 
 
 def measure_blocks(grid: Grid, folded: int, *, percentiles: bool = False) -> Quality:

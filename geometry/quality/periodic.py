@@ -18,25 +18,27 @@ from meshonet.geometry.blocks.screw import Screw, screw_of
 from meshonet.geometry.elementary import arctan2
 
 _ALIKE = 1e-9
-"""Relative difference of motions, and of a number of periods in a turn, that is rounding."""
+"""Relative difference that counts as rounding: of two motions, or of a whole turn and a number of periods."""
 
 
 @dataclass(frozen=True)
 class Period:
-    """A turn or a shift by which periodic sides differ."""
+    """The rotation or translation between periodic sides."""
 
     angle: float
-    """In degrees, 0 for a shift."""
+    """Angle of the rotation in degrees, 0 for a translation."""
     shift: float
-    """Length of the shift, 0 for a turn."""
+    """Length of the translation, 0 for a rotation."""
     mismatch: float
-    """Largest distance of nodes after it, over their distance from the axis or over the shift."""
+    """Largest distance of corresponding nodes after the motion, divided by their radius or by the length of
+    the shift.
+    """
     along: tuple[float, ...] = ()
-    """Unit vector (x, y, z) of a shift, empty for a turn."""
+    """Unit vector (x, y, z) of the translation, empty for a rotation."""
 
 
 def periods(grid: Grid) -> tuple[Period, ...]:
-    """Return the periods of a grid, each once."""
+    """Return the different periods of a grid."""
     found: list[tuple[Motion, list[tuple[Floats, Floats]]]] = []
     for each in grid.connections:
         if each.transform is None:

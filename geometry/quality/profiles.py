@@ -49,10 +49,10 @@ class Check:
 
 @dataclass(frozen=True)
 class CheckResult:
-    """The outcome of a check: the figure (None if this grid has none) and the verdict.
+    """The outcome of a check: the figure (None if the grid has no such figure) and the verdict.
 
-    `profile` is the profile that the check belongs to, `centre` (2 or 3) that of the cell of the figure;
-    `gated`: a user's gates replace its limits.
+    `profile` is the name of the profile to which the check belongs, `centre` (2,) or (3,) the centre of the
+    cell with this figure, and `gated` whether a user's gates replace the limits.
     """
 
     check: Check
@@ -80,13 +80,13 @@ class CheckResult:
 
     @property
     def worst(self) -> Limit | None:
-        """The limit that the figure exceeds; of several, one that fails it."""
+        """The limit that the figure exceeds; if there are several, one that makes the check fail."""
         limits = self.check.limits if self.figure else ()
         broken = [x for x in limits if self.figure and beyond(self.figure.value, x.compare, x.value)]
         return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":
-        """Return the outcome with the limits of those `gates` that judge the same figure."""
+        """Return the outcome with the limits of the `gates` that judge the same figure, if there are any."""
         compare = self.check.limits[0].compare
         own = [gate for gate in gates if gate.replaces(self.check.figure, compare)]
         limits = tuple(Limit("fail", gate.compare, gate.limit) for gate in own)
@@ -126,7 +126,7 @@ class ProfileReport:
         ]
 
     def beyond(self) -> list[str]:
-        """Return in short the limits that are exceeded, warnings included: ``face_skewness 5.2 > 4``."""
+        """Return a short text for each exceeded limit, warnings included: ``face_skewness 5.2 > 4``."""
         return [
             in_short(result.check.figure, result.figure, limit.compare, limit.value)
             for result in self.results

@@ -1,4 +1,4 @@
-"""All that is measured of a grid: metrics, walls, profiles, and the distance from a reference grid."""
+"""The quality report of a grid: metrics, walls, profiles, and the distance from a reference grid."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -25,9 +25,9 @@ from meshonet.geometry.summary import Quality
 COMPARED = (
     "relative_l2", "near_wall", "max", "boundary", "folded_other", "max_angle_ratio", "mean_angle_ratio",
 )  # fmt: skip
-"""Figures of a comparison; gates may name them."""
+"""Names of the figures of a comparison, which gates may use."""
 Y_PLUS = "y_plus"
-"""Greatest y+ of all walls, where a flow is given; gates may name it."""
+"""Name of the largest y+ at all walls, which gates may use if a flow is given."""
 Gates: TypeAlias = str | Sequence[str | Gate]
 """Gates, or their texts as in `parse_gate`."""
 
@@ -38,7 +38,7 @@ class Comparison:
 
     difference: Difference
     folded: int
-    """Folded cells of the reference."""
+    """Number of folded cells of the reference."""
     max_angle_ratio: float
     mean_angle_ratio: float
 
@@ -87,7 +87,7 @@ class QualityReport:
 
     @cached_property
     def y_plus(self) -> dict[str, YPlus]:
-        """Y+ at each wall, by name; none without a flow."""
+        """The y+ at each wall, by name; empty if no flow is given."""
         return y_plus_at(self.grid, self.figures.walls, self.flow) if self.flow else {}
 
     @cached_property
@@ -206,7 +206,7 @@ def quality_report(
 
     With a `flow` the report has y+ of the walls.
 
-    Raises InputError: no such profile, a reference of another size.
+    Raises InputError: an unknown profile; a reference with other numbers of nodes.
     """
     profiles = (profile,) if isinstance(profile, str) else profile
     quality = measure(grid, percentiles=True)

@@ -1,7 +1,7 @@
 """The wording of verdicts, in JSON and in tables."""
 
 VERDICTS = ("pass", "warn", "fail", "error")
-"""From best to worst; an error means that there is no grid to judge."""
+"""Verdicts from best to worst; ``error``: there is no grid to judge."""
 
 
 def verdict_word(verdict: str) -> str:

@@ -27,7 +27,7 @@ from meshonet.kernels import _native
 CORNERS, BEZIER = 0, 1
 """Tests for folded cells, by corner Jacobians or Bezier coefficients."""
 _MOST = 1 << 16
-"""Largest number of folded cells among which the worst are sought."""
+"""Largest number of folded cells that are searched for the worst."""
 
 
 def count_folded_solids(nodes: Floats, test: int = CORNERS) -> int:
@@ -123,9 +123,9 @@ def _metric(grid: Grid, volumes: Sequence[Floats], k: int) -> list[Floats]:
 
 
 def padded_volumes(grid: Grid) -> list[Floats]:
-    """Return for each block the cell volumes (ni+1, nj+1, nk+1), with one layer of cells added around it.
+    """Return for each block its cell volumes, with one layer of cells added around it: (ni+1, nj+1, nk+1).
 
-    The layer has the volumes of the cells across connections, and elsewhere repeats those of the block.
+    In the layer are the volumes of the cells across connections, and elsewhere those of the nearest cells.
     """
     padded = over_blocks(_padded, grid.blocks, _nodes_of(grid))
 

@@ -21,7 +21,10 @@ from meshonet.geometry.spacing.y_plus import first_cell
 
 @dataclass(frozen=True)
 class Flow:
-    """The flow for which y+ is computed: a turbulent boundary layer on a flat plate, at half its length.
+    """The flow for which y+ is computed.
+
+    The wall shear stress is that of a turbulent boundary layer on a flat plate of the reference length, at
+    half of this length.
 
     Parameters
     ----------
@@ -47,7 +50,7 @@ class Flow:
 
     @cached_property
     def height(self) -> float:
-        """The height at which y+ is 1."""
+        """Distance from the wall at which y+ is 1, in the unit of the grid."""
         return self.length * first_cell(1.0, self.reynolds)
 
 
@@ -61,7 +64,7 @@ class YPlus:
 
 
 def y_plus_at(grid: Grid, walls: Sequence[Patch], flow: Flow) -> dict[str, YPlus]:
-    """Return y+ of the first nodes off each of the `walls` in a flow, by name of the wall."""
+    """Return y+ of the first nodes above each of the `walls`, by the name of the wall."""
     values: dict[str, list[Floats]] = {}
     for wall in walls:
         rows = rows_at(grid, wall, 2)

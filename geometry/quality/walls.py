@@ -14,7 +14,7 @@ from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.quality.growth import Extreme
 
 DEPTH = 33
-"""Number of nodes along a line that are examined."""
+"""Number of nodes along a line that are examined for equal cells."""
 
 NO_GROWTH: Mapping[str, Extreme] = MappingProxyType({})
 
@@ -24,13 +24,13 @@ SAME = 0.01
 
 @dataclass(frozen=True)
 class Spread:
-    """Minimum, mean and maximum of a quantity, and possibly its 95th percentile."""
+    """Minimum, mean and maximum of a quantity, and in multi-block grids the 95th percentile."""
 
     min: float
     mean: float
     max: float
     p95: float | None = None
-    """95th percentile, in a grid of many blocks."""
+    """95th percentile; None in a grid of one block."""
 
 
 @dataclass(frozen=True)
@@ -45,13 +45,15 @@ class WallRow:
     off_square: Spread
     """Deviation from 90 degrees of the two angles of every cell at the wall.
 
-    In volumes the angle between the edge that leaves a wall's cell at each corner and the cell's normal
-    there.
+    In volumes: the angle between the edge that leaves the wall at each corner of a wall face and the normal
+    of this face.
     """
     equal_cells: int
-    """Cells from the wall on as high as the first, within 1 %, where they are fewest; 32 at the most."""
+    """Smallest number of successive cells, from the wall, whose heights equal the first within 1 %; at most
+    32.
+    """
     growth: Extreme | None = None
-    """In multi-block grids, growth along the lines that start at the wall, through all blocks."""
+    """In multi-block grids: growth along the lines that start at the wall, through all blocks."""
 
 
 def wall_row(grid: Grid, patch: Patch) -> WallRow:

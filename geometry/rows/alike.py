@@ -15,11 +15,13 @@ from meshonet.geometry.polygon.corners import SHARP
 from meshonet.geometry.rows.profile import BladeProfile
 
 BASE_TURN = 0.7
-"""Of all turns at an edge, from which on the two largest are the corners of a base."""
+"""The two points with the largest turns at an edge are the corners of a base if their turns are at least this
+fraction of all turns at the edge.
+"""
 
 
 def alike(profiles: Sequence[BladeProfile]) -> list[BladeProfile]:
-    """Return profiles with the same numbers of corners at each edge, and these at the same places."""
+    """Return the profiles with equal numbers of corners at each edge, and equal places u of these corners."""
     counts = np.array([profile.corner_counts for profile in profiles])
     if not (counts == counts[0]).all():
         same = [_count(profiles, counts[:, k], bool(k)) for k in (0, 1)]
@@ -37,7 +39,10 @@ def _count(profiles: Sequence[BladeProfile], counts: Floats, trailing: bool) -> 
 
 
 def common_corners(profiles: Sequence[BladeProfile]) -> Floats:
-    """Return places u (c,), from -0.25 on, of the corners that profiles have if all have as many."""
+    """Return the median places u (c,), from -0.25 to 0.75, of the corners of profiles.
+
+    Empty if the profiles have no corners, or different numbers of corners.
+    """
     places = [profile.corner_places() for profile in profiles]
     if len({len(each) for each in places}) != 1 or not len(places[0]):
         return np.empty(0)

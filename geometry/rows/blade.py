@@ -20,32 +20,33 @@ from meshonet.geometry.rows.turns import whole_pitches
 from meshonet.kernels._native import spline_crossings
 
 MOST_EXTENDED = 0.2
-"""Part of the span by which a blade is made longer, at the most, to reach hub and casing."""
+"""Largest part of the span by which a blade is continued straight to hub or casing."""
 _NOTED = 0.01
-"""The same from which on a note says so."""
+"""Part of the span from which on a note mentions the continuation."""
 _CHECKED = 400  # places around the blade at which profiles are compared
 _FARTHEST = 90.0  # degrees around the axis from one profile to the next: no blade leans as much
 _ORDER = "give profiles from hub to casing, all of one blade: splitters are not made"
 _SAME_HEIGHT = 1e-9
-"""Difference of heights, in spans, that is rounding."""
+"""Difference of heights, in spans, that counts as rounding."""
 _HALF_TURN = np.pi
 
 
 class BladeSurface:
-    """Maps (u, h) to (s, theta): u around the blade (`BladeProfile`), h as of the channel.
+    """Surface of a blade: maps the place u around it and the height h to (s, theta).
 
-    Between profiles lines of equal u are cubic splines; beyond the first and the last they go on straight.
+    For u see `BladeProfile`, for s and h `Channel`. Between profiles, lines of equal u are cubic splines;
+    beyond the first and the last profile they are continued straight.
 
     Parameters
     ----------
-    profiles : two or more, (n, 3) x, y, z, in order from hub to casing; the opposite order is reversed, which
-        `notes` say.
-    channel : that the blade stands in.
-    blades : how many there are; profiles that lie whole pitches beside the others are turned back, which
-        `notes` say.
+    profiles : two or more arrays (n, 3) of x, y, z, in order from hub to casing or from casing to hub.
+    channel : the channel in which the blade stands.
+    blades : number of blades. Profiles that are whole pitches away from the others are rotated to them.
 
-    Raises InputError: profiles that are not in this order, that cross or do not reach far enough, or as
-    `BladeProfile`; with the number of the profile, from 1.
+    Attribute `notes` says what was changed.
+
+    Raises InputError, with the number of the profile from 1: profiles in another order, that cross or do not
+    reach far enough towards hub and casing; the errors of `BladeProfile`.
     """
 
     def __init__(self, profiles: Sequence[Floats], channel: Channel, blades: int) -> None:
@@ -156,17 +157,23 @@ class BladeSurface:
         return np.asarray(turned - mean - away * self.pitch)
 
     def lines(self, u: Floats) -> CubicTable:
-        """Return the lines (s, theta, h) at places u (m,) through the profiles, by their mean heights."""
+        """Return the splines s, theta, h along the span at places u (m,).
+
+        Their parameter is the mean height of each profile.
+        """
         values = np.stack([profile.at(u) for profile in self.profiles])
         values[..., 1] += self._turns[:, None]
         return CubicTable(values, self.knots)
 
     def at(self, u: Floats, h: Floats) -> Floats:
-        """Return s, theta (p, m, 2) at places u (m,), or (p, m), and heights h (p, m)."""
+        """Return s and theta (p, m, 2) of the surface at places u (m,) or (p, m), and heights h (p, m)."""
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
-        """Return s, theta (..., 2) where `lines` (m) are at heights h (...), `levels` times m of them."""
+        """Return s and theta (..., 2) of the points at which `lines` along the span reach heights `h` (...).
+
+        There are `levels` heights for each line: the heights of all lines at the first level come first.
+        """
         out = np.empty((*h.shape, 2))
         spline_crossings(
             lines.values,
@@ -178,12 +185,12 @@ class BladeSurface:
         return out
 
     def section(self, h: float, u: Floats) -> Floats:
-        """Return s, theta (m, 2) of the section at a height, at places u (m,)."""
+        """Return s and theta (m, 2) of the section at the height `h`, at places `u` (m,)."""
         return self.crossings(self.lines(u), np.full(len(u), h))
 
     @property
     def edges(self) -> str:
-        """What leading and trailing edges are, for reports."""
+        """Return as text the forms of leading and trailing edge, such as round, for reports."""
         words = [dict.fromkeys(each.edge(trailing) for each in self.profiles) for trailing in (False, True)]
         leading, trailing = (" or ".join(each) for each in words)
         return f"leading edge {leading}; trailing edge {trailing}"
@@ -195,7 +202,10 @@ class BladeSurface:
 
 
 def clustered(count: int) -> Floats:
-    """Return `count` places u (count,) around a blade, close to each other at both edges; `count` is even."""
+    """Return `count` places u (count,) around a blade, closer to each other at both edges.
+
+    `count` must be even.
+    """
     half = count // 2
     side = 0.25 * (1.0 - cos(_HALF_TURN * np.arange(half) / half))
     return np.concatenate([side, 0.5 + side])

@@ -34,36 +34,39 @@ from meshonet.kernels._native import (
 )
 
 _PIECES = 512
-"""Pieces of the tables of hub and casing."""
+"""Number of pieces of the tables of hub and casing."""
 _COLUMNS = 8
-"""Of the kernel's table (``channel.h``): hub, way to the casing, parts of it at up to four heights."""
+"""Columns of the kernel's table (``channel.h``): hub, vector to the casing, fractions of it at up to four
+heights.
+"""
 _NEWTON = 12
 _LEAST_GAP = 1e-6
-"""Narrowest gap over the span: cells of narrower ones vanish in the rounding of radii."""
+"""Narrowest gap, divided by the span: in narrower gaps, cell heights would vanish in the rounding of radii.
+"""
 _FOOT_STEPS = 6
 _SAME = 1e-13  # of the distance to a wall, relative to the gap
 
 
 @dataclass(frozen=True, eq=False)
 class MeridionalMap:
-    """m' of a surface of revolution, with dm' = dm / r: (m', theta) is conformal to the surface.
+    """The coordinate m' of a surface of revolution, with dm' = dm / r: the map from (m', theta) is conformal.
 
     Wu, NACA TN 2604 (1952).
     """
 
     forward: CubicTable
-    """m' at s."""
+    """Function from s (n,) to m' (n,)."""
     back: CubicTable
-    """s at m'."""
+    """Function from m' (n,) to s (n,)."""
 
     @property
     def length(self) -> float:
-        """M' of the outlet; that of the inlet is 0."""
+        """The coordinate m' of the outlet; at the inlet m' is 0."""
         return float(self.forward.values[-1])
 
 
 class Channel:
-    """Maps (s, h) to (x, r).
+    """The channel between hub and casing: maps (s, h) to (x, r).
 
     Parameters
     ----------
@@ -120,7 +123,7 @@ class Channel:
         return self._parts[k](s)
 
     def at(self, s: Floats, h: Floats) -> Floats:
-        """Return x, r (..., 2) at s and h, arrays of one shape."""
+        """Return x and r (..., 2) at `s` and `h`, arrays of one shape (...)."""
         out = np.empty((s.size, 2))
         channel_points(
             self._tables, np.ascontiguousarray(s).reshape(-1), np.ascontiguousarray(h).reshape(-1), out
@@ -128,31 +131,39 @@ class Channel:
         return out.reshape(*s.shape, 2)
 
     def in_space(self, values: Floats) -> Floats:
-        """Return x, y, z (..., 3) of s, theta, h (..., 3); theta is atan2(y, z)."""
+        """Return x, y, z (..., 3) of points with s, theta, h (..., 3); theta is atan2(y, z)."""
         out = np.empty(values.shape)
         channel_space(self._tables, np.ascontiguousarray(values).reshape(-1, 3), out.reshape(-1, 3))
         return out
 
     def store(self, values: Floats, ids: Indices, space: Floats) -> None:
-        """Set nodes `ids` (m,) in each level of `space` (levels, n, 3) to s, theta, h (levels, m, 3)."""
+        """Write the positions x, y, z of points s, theta, h `values` (levels, m, 3) into `space`.
+
+        `space` is (levels, n, 3); the points become the nodes `ids` (m,) of each level.
+        """
         channel_nodes(self._tables, values, ids, space)
 
     def lengthen(self, begin: Floats, end: Floats, sizes: Floats) -> None:
-        """Move the ends (..., 3) of lines from `begin`, s, theta, h, to the lengths `sizes` (...)."""
+        """Move the ends of lines so that their lengths in space are `sizes` (...), in place.
+
+        `begin` and `end` (..., 3) are s, theta, h of both ends.
+        """
         lengthen_cells(self._tables, begin.reshape(-1, 3), sizes.reshape(-1), end.reshape(-1, 3))
 
     def put_on_blade(self, columns: Floats, wall: Floats, first: float) -> None:
-        """Move columns (..., rows, 3) of s, theta, h: they begin at `wall` (..., 2), with cells `first` high.
+        """Move columns of nodes in place: they begin on the blade, with first cells of height `first`.
 
-        Other nodes move by less and less, the last ones not at all.
+        `columns` (..., rows, 3) are s, theta, h; `wall` (..., 2) is s and theta. The displacement decreases
+        along a column to 0 at its last node.
         """
         flat = columns.reshape(-1, *columns.shape[-2:])
         columns_on_blade(self._tables, wall.reshape(-1, 2), first, flat)
 
     def places(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return s and h (...) of points x, r (..., 2); outside of the channel h is below 0 or above 1.
+        """Return s and h (...) of points x, r (..., 2).
 
-        s outside of 0 to 1 is that of points before the inlet or behind the outlet.
+        h is below 0 or above 1 outside of hub and casing; s is below 0 before the inlet and above 1 behind
+        the outlet.
         """
         p = points.reshape(-1, 2)
         s = self._nearest_line(p)
@@ -208,7 +219,7 @@ class Channel:
 
     @cached_property
     def levels(self) -> tuple[float, ...]:
-        """Heights that divide the channel: hub, where there are gaps foot and tip, casing."""
+        """Heights h that divide the channel, ascending: hub, casing, and those of gaps between."""
         return tuple(self._levels)
 
 

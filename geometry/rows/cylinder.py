@@ -16,16 +16,17 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 def on_cylinder(
     section: Section, about: tuple[float, float], stagger: float, x: float, theta: float
 ) -> tuple[Floats, tuple[str, ...]]:
-    """Return the points (n, 3) of a section on the cylinder whose radius is the section's z, and notes.
+    """Return the points (n, 3) of a section on a cylinder, and notes.
 
-    Trailing edges are made round (`meshonet.geometry.rows.edges`).
+    The radius of the cylinder is the z of the section. Trailing edges are rounded
+    (`meshonet.geometry.rows.edges`).
 
     Parameters
     ----------
-    section : its chord and outline.
+    section : the airfoil with its chord; its z is the radius.
     about : the point, in chords from the leading edge, that lies at `x` and `theta`.
     stagger : angle of the chord from the axis, towards growing theta, in radians.
-    x, theta : where that point is, theta = atan2(y, z) in radians.
+    x, theta : position of this point; theta = atan2(y, z) in radians.
     """
     origin, length = section.frame
     shape, notes = section.shape, section.shape.notes

@@ -1,4 +1,4 @@
-"""Dimensions of a row of blades by which a reader recognises it, and those that are hardly meant."""
+"""Dimensions of a row of blades for reports, and notes on dimensions that are probably wrong."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from meshonet.geometry.rows.frame import UNITS, axis_name
 from meshonet.geometry.rows.row import Row
 
 USUAL_GAPS = 0.0002, 0.1
-"""Gaps over the span. Compressors and turbines have 0.005 to 0.03, small impellers up to 0.1."""
+"""Usual range of gaps over the span. Compressors and turbines have 0.005 to 0.03, small impellers up to 0.1.
+"""
 USUAL_SOLIDITIES = 0.3, 4.0
-"""Chords over distances of blades: compressors have 0.4 to 2.2 (NASA SP-36), inducers up to 3.5."""
+"""Usual range of the solidity: compressors have 0.4 to 2.2 (NASA SP-36), inducers up to 3.5."""
 USUAL_RADII = 0.001, 10.0
-"""Radii of casings in metres, from micro gas turbines to the largest water turbines."""
+"""Usual range of casing radii in metres, from micro gas turbines to the largest water turbines."""
 _AXIAL = 0.2
-"""Change of the radius along a blade, over its mean, up to which its solidity is that of an axial row."""
+"""Largest relative change of the radius along a blade of an axial row, for which the solidity is judged."""
 
 
 @dataclass(frozen=True)
@@ -32,13 +33,13 @@ class RowDimensions:
     pitch : angle in degrees from a blade to the next.
     unit : name of the unit; empty if none was given.
     axis : name of the axis from inlet to outlet, such as ``x`` or ``-z``; ``axis`` for another direction.
-    chord : distance of leading and trailing edge halfway from hub to tip.
-    longest_chord : of all profiles, to which first cells and Reynolds numbers refer.
-    solidity : chord over the distance of neighbouring blades, both halfway from hub to tip.
-    span : distance of hub and shroud at the blade, the mean of leading and trailing edge.
+    chord : distance from leading to trailing edge halfway from hub to tip.
+    longest_chord : longest chord of all profiles, the unit of first-cell heights and Reynolds numbers.
+    solidity : chord divided by the distance of neighbouring blades, both halfway from hub to tip.
+    span : distance from hub to shroud at the blade, mean of the values at leading and trailing edge.
     tip_gap, hub_gap : widths of the gaps.
-    leading_edge, trailing_edge : positions x, r along and off the axis by ``hub`` and ``shroud``, the end
-        of the blade there.
+    leading_edge, trailing_edge : positions (x, r) of the edge at the two ends of the blade, by ``hub`` and
+        ``shroud``.
     """
 
     blades: int
@@ -58,7 +59,7 @@ class RowDimensions:
 
     @property
     def lines(self) -> dict[str, str]:
-        """Lines of text by their headings."""
+        """The report: lines of text, by their headings."""
         unit = f" {self.unit}" if self.unit else ""
         gaps = "".join(
             f", {name} gap {gap:.4g}{unit} ({100.0 * gap / self.span:.3g} %)"
@@ -105,7 +106,7 @@ def row_dimensions(row: Row) -> RowDimensions:
 
 
 def doubts(dimensions: RowDimensions) -> tuple[str, ...]:
-    """Return notes on dimensions that are hardly meant: gaps, the number of blades, the unit."""
+    """Return notes on dimensions that are probably wrong: gaps, the number of blades, the unit."""
     notes, unit = [], dimensions.unit or "the unit of the profiles"
     for name in ("tip_gap", "hub_gap"):
         part = getattr(dimensions, name) / dimensions.span

@@ -7,7 +7,7 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.trailing_edge import opened_base
 
 LEAST_EDGE = 0.01
-"""Thickness of trailing edges, in chords, to which thinner ones are opened: layers go around them."""
+"""Thickness in chords to which thinner trailing edges are opened, so that layers can go around them."""
 
 
 def round_edged(airfoil: Airfoil) -> tuple[Airfoil, tuple[str, ...]]:

@@ -14,13 +14,16 @@ from meshonet.geometry.blocks.connection import Motion
 
 _ALONG = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 AXES = _ALONG | {f"-{name}": (-x, -y, -z) for name, (x, y, z) in _ALONG.items()}
-"""Directions by name."""
+"""Unit vectors of the axes by name."""
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
-"""Units of files, in metres."""
+"""Lengths of the units of files, in metres."""
 
 
 def axis_along(direction: Sequence[float]) -> Motion:
-    """Return the rotation that carries a `direction` (3,), not 0, to x, and directions of axes to axes."""
+    """Return a rotation that takes `direction` (3,), which must not be 0, to the x axis.
+
+    If `direction` is along a coordinate axis, the rotation takes all axes to axes.
+    """
     way = np.array(direction)
     way = way / np.abs(way).max()
     way = way / norms(way)
@@ -33,6 +36,6 @@ def axis_along(direction: Sequence[float]) -> Motion:
 
 
 def axis_name(frame: Motion | None) -> str:
-    """Return the name of the axis that a rotation carries to x, ``x`` or ``-z``, or else ``axis``."""
+    """Return the name of the axis that a rotation takes to x: ``x``, ``-z`` and so on, else ``axis``."""
     direction = AXES["x"] if frame is None else frame.turn[0]
     return next((name for name, each in AXES.items() if each == direction), "axis")

@@ -28,7 +28,7 @@ _ENDS = np.array([0.0, 0.5, 1.0])  # places of the edges
 _LONGER = "use longer curves of hub and casing, inlet and outlet away from the blade, and one unit for all"
 _SEAM = 4  # points that are taken along beyond the first and the last
 _ONE_POINT = np.radians(90.0)
-"""Turn at one point of a round edge from which on it may have been meant as a pointed one."""
+"""Turn in radians at one point of a round edge from which on the edge may have been meant as pointed."""
 _OTHER_UNIT = 1.5  # factor between radii of blade and channel from which on their units must differ
 
 
@@ -37,11 +37,12 @@ class BladeProfile:
 
     Parameters
     ----------
-    points : (n, 3) x, y, z around the profile in either direction, the axis along x; points may be repeated.
-    channel : that it stands in.
+    points : (n, 3) x, y, z around the profile in either direction, with the axis along x; points may be
+        repeated.
+    channel : the channel in which the profile stands.
 
-    Raises InputError: too few points, points that are no closed curve around an area, or that are not in the
-    channel's range.
+    Raises InputError: too few points; points that do not enclose an area; points outside the range of the
+    channel.
     """
 
     def __init__(self, points: Floats, channel: Channel) -> None:
@@ -75,9 +76,11 @@ class BladeProfile:
         self._stops = _ENDS, np.array([0.0, self._sides[0], curve.length])
 
     def cornered(self, counts: Sequence[int]) -> BladeProfile:
-        """Return the profile with 0, 1 or 2 corners at the leading and the trailing edge.
+        """Return the profile with prescribed numbers of corners at its two edges.
 
-        They are where it turns most; a single one is the edge itself.
+        `counts` are the two numbers, of the leading and of the trailing edge, each 0, 1 or 2. The corners are
+        the points with the largest turns near the edge; a single corner becomes the edge itself, where u is 0
+        or 0.5.
         """
         edges, curve = (self.leading, self.trailing), self.curve
         bend = np.abs(turning(curve.points, closed=True))
@@ -94,7 +97,11 @@ class BladeProfile:
         return made
 
     def aligned(self, places: Floats) -> BladeProfile:
-        """Return the profile with its corners at `places` u (c,), each near its own; in between u is even."""
+        """Return the profile with the places of its corners changed to `places` u (c,).
+
+        Each new place must be near the place of the corner. Between corners, u is proportional to the arc
+        length.
+        """
         made, own = copy(self), self.corner_places()
         u = np.concatenate([_ENDS, places])
         way = np.concatenate([self._stops[1], np.interp(own, *self._stops)])
@@ -113,7 +120,7 @@ class BladeProfile:
         return np.asarray(np.mod(arcs - edge + 0.5 * length, length) - 0.5 * length)
 
     def reshaped(self, plane: Floats, heights: Floats) -> BladeProfile:
-        """Return the profile with other points (n, 2) m' and theta, and their heights (n,)."""
+        """Return the profile with other points: m' and theta `plane` (n, 2), and `heights` (n,)."""
         made = copy(self)
         made.__dict__ = {k: v for k, v in vars(self).items() if k not in ("thickness", "_heights")}
         made.heights = heights
@@ -122,7 +129,7 @@ class BladeProfile:
 
     @property
     def corner_counts(self) -> tuple[int, int]:
-        """How many corners are at the leading and at the trailing edge."""
+        """Number of corners at the leading and at the trailing edge."""
         one, two = (
             int((np.abs(self._off(self.curve.corners, edge)) < self._reach).sum())
             for edge in (self.leading, self.trailing)
@@ -130,7 +137,7 @@ class BladeProfile:
         return one, two
 
     def edge(self, trailing: bool) -> str:
-        """Return what the leading or trailing edge is, in a word, or more where points may be missing."""
+        """Return as text the form of the leading or trailing edge, with a hint if points may be missing."""
         count = self.corner_counts[trailing]
         if count:
             return {1: "pointed", 2: "blunt"}.get(count, "polygonal")
@@ -142,7 +149,7 @@ class BladeProfile:
         )
 
     def sharpness(self, trailing: bool) -> tuple[float, float]:
-        """Return the largest turn at an edge in radians, and what the largest two are of all turns there."""
+        """Return the largest turn at an edge in radians, and the fraction of all turns in the two largest."""
         bend = np.abs(turning(self.curve.points, closed=True))
         edge = self.trailing if trailing else self.leading
         own = np.sort(bend[np.abs(self._off(self.curve.knots, edge)) < self._reach])
@@ -189,7 +196,7 @@ class BladeProfile:
 
     @cached_property
     def thickness(self) -> float:
-        """Largest angle in radians between the sides at one m', about."""
+        """Approximate largest angle theta in radians between the two sides at equal m'."""
         u = np.linspace(0.0, 0.5, _SAMPLES // 2)
         sides = [self.curve.at(self.arcs(places)).T for places in (u, 1.0 - u)]
         at = np.linspace(sides[0][0][0], sides[0][0][-1], _SAMPLES // 2)
@@ -197,17 +204,20 @@ class BladeProfile:
         return float(np.abs(first - second).max())
 
     def arcs(self, u: Floats) -> Floats:
-        """Return arc lengths (n,) of places u (n,), 0 to 1."""
+        """Return the arc lengths (n,) in the plane (m', theta) of places u (n,), 0 to 1."""
         return np.asarray(np.mod(self.leading + np.interp(u, *self._stops), self.curve.length))
 
     def corner_places(self) -> Floats:
-        """Return u (c,) of the corners, from -0.25 on, those of the leading edge first."""
+        """Return the places u (c,) of all corners, from -0.25 to 0.75, ascending.
+
+        The corners of the leading edge, near 0, come before those of the trailing edge, near 0.5.
+        """
         u, way = self._stops
         at = np.interp(np.mod(self.curve.corners - self.leading, self.curve.length), way, u)
         return np.sort(wrapped(at, -0.25))
 
     def at(self, u: Floats) -> Floats:
-        """Return s, theta, h (n, 3) at places u (n,)."""
+        """Return s, theta and h (n, 3) at places u (n,)."""
         arcs = self.arcs(u)
         m, theta = self.curve.at(arcs).T
         return np.stack([self._map.back(m), theta, self._heights(arcs)], axis=1)

@@ -12,17 +12,20 @@ from meshonet.geometry.polygon.self_intersection import find_crossing
 
 LEAST_POINTS = 12
 _SAME = 1e-9
-"""Distance, over the size of the profile, at which consecutive points repeat each other."""
+"""Consecutive points nearer than this fraction of the size of the profile count as one."""
 _THIN = 1e-5
-"""Least area of a profile over the square of its size; that of a flat plate 1e-5 chords thick."""
+"""Smallest area of a profile, divided by the square of its size: that of a plate 1e-5 chords thick."""
 _OPEN = 0.1
-"""Widest base of a trailing edge between the first and the last point, over the size of the profile."""
+"""Widest base of a trailing edge between the first and the last point, divided by the size of the profile."""
 _STEPS = 3.0
-"""The same in longest steps, for profiles of few points."""
+"""The same, divided by the longest distance of neighbouring points, for profiles of few points."""
 
 
 def as_points(values: ArrayLike, columns: int) -> Floats:
-    """Return values as an array (n, columns) of numbers. Raises InputError: they are none."""
+    """Return `values` as an array of numbers (n, columns).
+
+    Raises InputError: another shape, or no numbers.
+    """
     try:
         points = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
@@ -35,7 +38,10 @@ def as_points(values: ArrayLike, columns: int) -> Floats:
 
 
 def apart(points: Floats, *, closed: bool) -> Floats:
-    """Return points (n, d) without those that the next repeats, for the last one the first if `closed`."""
+    """Return points (n, d) without those that equal the next point.
+
+    In a `closed` curve the next point of the last one is the first.
+    """
     steps = norms(points - np.roll(points, -1, axis=0))
     kept = steps > _SAME * np.ptp(points, axis=0).max(initial=0.0)
     kept[-1:] |= not closed
@@ -45,7 +51,7 @@ def apart(points: Floats, *, closed: bool) -> Floats:
 def distinct_points(points: Floats) -> Floats:
     """Return points (n, 3) around a profile without repeated ones.
 
-    Raises InputError: fewer than `LEAST_POINTS` are left.
+    Raises InputError: too few points are left.
     """
     p = np.asarray(points, dtype=np.float64)
     count = len(p)
@@ -57,7 +63,10 @@ def distinct_points(points: Floats) -> Floats:
 
 
 def check_profile(plane: Floats, points: Floats) -> None:
-    """Raise InputError unless points (n, 3) are around a blade; `plane` (n, 2) are their m' and theta."""
+    """Raise InputError unless `points` (n, 3) go around a blade.
+
+    `plane` (n, 2) is m' and theta of the points.
+    """
     size = float(norms(np.ptp(plane, axis=0)))
     steps = norms(plane - np.roll(plane, 1, axis=0))
     if steps[0] > max(_OPEN * size, _STEPS * steps[1:].max()):

@@ -19,7 +19,7 @@ from meshonet.geometry.rows.frame import UNITS
 from meshonet.geometry.rows.profile_points import as_points
 
 FEWEST, MOST = 2, 1000
-"""Blades of a row."""
+"""Smallest and largest number of blades of a row."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +115,7 @@ class Row:
 
     @property
     def changes(self) -> tuple[str, ...]:
-        """Notes on what was changed of the profiles, `notes` first."""
+        """Notes on changes of the profiles: `notes`, then those of the surface of the blade."""
         return (*self.notes, *self.surface.notes)
 
     @property

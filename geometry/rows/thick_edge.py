@@ -17,11 +17,13 @@ from meshonet.geometry.rows.edges import LEAST_EDGE
 from meshonet.geometry.rows.profile import BladeProfile
 
 _CAP = np.linspace(0.0, 1.0, 33)[1:-1, None]
-"""Places of points on the round end."""
+"""Fractions of the rounded end at which it has points."""
 _BEFORE = 0.02
-"""Chords before the edge from which the directions of the sides there are taken."""
+"""Length before the edge, in chords, over which the directions of the two sides are measured."""
 _POINTED = 2.7
-"""Least turn in radians at a point, of a wedge of 25 degrees; at a base the two corners share half a turn."""
+"""Smallest turn in radians at a pointed edge: a wedge of 25 degrees. At a base, two corners share half a
+turn.
+"""
 _SAME = 1e-9
 _SIGNS = 1.0, -1.0  # of the sides' distances from the chord: profiles are clockwise
 
@@ -32,7 +34,7 @@ def pointed(profile: BladeProfile, trailing: bool) -> bool:
 
 
 def thick_edged(profile: BladeProfile, trailing: bool) -> BladeProfile:
-    """Return a profile, one edge of which is a point, with a round one, `LEAST_EDGE` chords thick."""
+    """Return a profile with its pointed leading or trailing edge made round, 0.01 chords thick."""
     curve, length = profile.curve, profile.curve.length
     begin, edge = profile.leading, profile.trailing
     if not trailing:

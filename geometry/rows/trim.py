@@ -13,15 +13,17 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
 
 Plane: TypeAlias = float | tuple[tuple[float, float], tuple[float, float]]
-"""A place along the axis, or the points x, r on hub and casing between which the plane is."""
+"""A position along the axis, or two points (x, r), on hub and on casing, through which the plane goes."""
 _PLACES = "inlet", "outlet"
 _SAMPLES = 4001
 _HALVINGS = 60
 _NEAR = 0.02  # of a curve's length, from it, at which a point is on it
 _MOST_CONTINUED = 1.0
-"""Part of a curve's length by which it is continued at the most: more is a mistake in the unit."""
+"""Largest continuation of a curve, divided by its length: a longer one is a mistake in the unit."""
 _LEAST_AXIAL = 0.5
-"""Least cosine between the end of a curve and the axis where it is continued to a place along the axis."""
+"""Smallest cosine of the angle between the end of a curve and the axis for a continuation to a position on
+the axis.
+"""
 _BEYOND = 1.001  # of the way to a plane, to which a curve is continued before it is cut there
 _MOST_STEPS = 100
 _SAME = 1e-9  # of a curve's length
@@ -33,8 +35,8 @@ class WallPlanes:
 
     Parameters
     ----------
-    inlet, outlet : where they are; None is the end of the curves.
-    axis, unit : of their numbers, for messages.
+    inlet, outlet : positions of the planes; None: the end of the curves.
+    axis, unit : names of the axis and of the unit of these positions, for messages.
     """
 
     inlet: Plane | None = None
@@ -43,7 +45,9 @@ class WallPlanes:
     unit: str = "m"
 
     def trimmed(self, points: Floats, wall: int) -> tuple[Floats, tuple[str, ...]]:
-        """Return the part of a curve x, r (n, 2) of hub (`wall` 0) or casing (1) between them, and notes.
+        """Return the part of a wall between the two planes, and notes.
+
+        `points` (n, 2) are x and r of hub (`wall` 0) or casing (`wall` 1).
 
         Raises InputError: a plane that the curve does not reach; an outlet before the inlet.
         """

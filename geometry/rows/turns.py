@@ -7,19 +7,21 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 
 _WHOLE = 0.2
-"""Part of the pitch by which a displacement may differ from whole pitches: more is lean of the blade."""
+"""Largest difference, in pitches, between a displacement and whole pitches; a larger one is lean of the
+blade.
+"""
 
 
 def whole_pitches(angles: Floats, heights: Floats, pitch: float) -> Floats:
-    """Return how many pitches (p,) profiles lie away from the blade that most of them are of.
+    """Return by how many whole pitches (p,) each profile is away from the blade of most profiles.
 
-    A step from one profile to the next is a displacement if it exceeds the lean between other profiles by
-    whole pitches, since blades may lean by more than a pitch.
+    Blades may lean by more than a pitch. A step from one profile to the next therefore counts as a
+    displacement only if it exceeds the lean between other profiles by whole pitches.
 
     Parameters
     ----------
-    angles : (p,) theta of the profiles in radians, on average.
-    heights : (p,) their places along the span, ascending.
+    angles : (p,) mean theta of each profile in radians.
+    heights : (p,) positions of the profiles along the span, ascending.
     pitch : angle from blade to blade.
     """
     steps, rises = np.diff(angles), np.diff(heights)

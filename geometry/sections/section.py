@@ -24,7 +24,7 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.outline import Outline
 
 QUARTER = (0.25, 0.0)
-"""Chords from the leading edge to the place that sections are twisted about."""
+"""Default centre of the twist, in chords from the leading edge."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,10 +70,12 @@ class Section:
 
     @property
     def frame(self) -> tuple[Floats, float]:
-        """Leading edge (2,) and length of the shape as given; scaling takes them to the origin and 1.
+        """Leading edge (2,) and chord of the given shape.
 
-        A section given with its leading edge at about 0 and length about 1, like most airfoil files, is not
-        scaled. Sections are never rotated here.
+        The section is moved and scaled so that they become 0 and 1.
+
+        A shape with its leading edge at about 0 and a chord of about 1, as in most airfoil files, is not
+        scaled. Shapes are not rotated.
         """
         if isinstance(self.shape, Airfoil):
             nose, length = self.shape.leading_edge, self.shape.unit
@@ -85,12 +87,15 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """Chord, twist in radians, x, y and both of `about` as (6,), which are interpolated in z."""
+        """Chord, twist in radians, x, y and the two numbers of `about`, as (6,).
+
+        These are interpolated in z.
+        """
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 
 class Fade(NamedTuple):
-    """Weight (n,) of twist and scale at nodes: 1 is full, 0 means no twist, and scale by `chord`."""
+    """Weights (n,) of the placement at nodes: 1 is full twist and scale, 0 no twist and scale by `chord`."""
 
     weight: Floats
     chord: float

@@ -112,15 +112,15 @@ class Stack:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was changed of the points of its sections, or left out of their files."""
+        """Notes on changes of the points of the sections, and on lines of their files that were left out."""
         return tuple(dict.fromkeys(note for section in self.sections for note in section.shape.notes))
 
     def lofted(self, unit: Floats, z: Floats, weight: Floats | None = None) -> Floats:
-        """Return nodes (m, n, 3) at the heights `z` (m,), from those of the sections, (sections, n, 2).
+        """Return nodes (m, n, 3) of the sections at the heights `z` (m,).
 
-        Shape, chord, twist and position are interpolated separately, so that a section between two sections
-        of different twist keeps its length. Nodes with `weight` (n,) 0 are not twisted, and are scaled by the
-        greatest chord.
+        `unit` (sections, n, 2) are the nodes of the given sections, scaled to unit chord. Shape, chord, twist
+        and position are interpolated separately, so that a section between two sections of different twist
+        keeps its length. Nodes with `weight` (n,) 0 are not twisted, and scaled by the longest chord.
         """
         fade = None if weight is None else Fade(weight, self.chord)
         placements = np.stack([section.placement for section in self.sections])

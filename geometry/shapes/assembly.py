@@ -30,17 +30,18 @@ from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 
 CIRCLE = 256
-"""Points of a far field, through which a spline runs."""
+"""Number of points of the spline of a far field."""
 FARFIELD = "farfield"
 
 
 def assembled(
     shapes: Sequence[Shape], names: Sequence[str], sampling: Sampling, name: str = ""
 ) -> DomainShape:
-    """Return the domain that shapes form together, with a name for each.
+    """Return the domain that `shapes` form together; `names` has a name for each.
 
-    Airfoils keep their smooth curve, other shapes become polygons. Unless one shape encloses all others, the
-    far field is a circle with the radius of `sampling`, in units of their common extent.
+    Airfoils keep their smooth curves; other shapes become polygons. If one shape encloses all others, it is
+    the outer boundary. Otherwise the outer boundary is a circle; its radius is that of `sampling`, in units
+    of the extent of all shapes together.
 
     Raises InputError: shapes that are not closed curves; a far field that does not apply.
     """

@@ -27,7 +27,7 @@ from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 
 FAR = 2.0
-"""Distance of a hole from a smooth loop around it, in extents of the hole, from which it is a far field."""
+"""Smallest distance between a hole and a smooth loop around it, in extents of the hole, for a far field."""
 _SAMPLES = 512  # points of each loop for which distances are computed
 
 
@@ -38,11 +38,11 @@ class DomainShape:
     Parameters
     ----------
     domain : loops and their names.
-    many : whether to make several blocks of it unless a single block is asked for.
-    one : returns its shape as a single block, and can be pickled; None if there is none.
+    many : whether the domain becomes several blocks unless a single block is requested.
+    one : picklable function that returns the shape of the domain as a single block; None if there is none.
     unit : reference length of Reynolds numbers: the extent of its bodies, or the chord of an airfoil.
     far_field : whether a far field was added around bodies.
-    layout : its blocks, if the input has them.
+    layout : blocks of the domain, if the input contains them.
     assembled : whether it was assembled of several shapes.
     given : the multi-block grid that the domain was taken from, if the input is a grid.
     """
@@ -77,7 +77,7 @@ class DomainShape:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the four edges of the domain as a single block.
 
-        Raises InputError: it cannot be a single block, or the error of its shape as one.
+        Raises InputError: a domain that cannot be a single block; the errors of its shape.
         """
         if self.domain.periodic:
             remedy = "make many blocks of it with infer or solve-pde"
@@ -89,7 +89,7 @@ class DomainShape:
 
 
 def itself(shape: Shape) -> Shape:
-    """Return the shape; unlike a lambda, a partial of this function can be sent to another process."""
+    """Return the shape unchanged; unlike a lambda, a `partial` of this function can be pickled."""
     return shape
 
 
@@ -125,7 +125,7 @@ def convex_corners(loop: Loop) -> list[int]:
 
 
 def in_far_field(domain: Domain) -> bool:
-    """Return whether a domain is one hole in a smooth loop at least `FAR` away from it."""
+    """Return whether a domain is a single hole in a smooth outer loop that is far away."""
     if len(domain.loops) != 2 or (domain.loops[0].corner_cells != 2).any():
         return False
     every = (loop.curve.points for loop in domain.loops)

@@ -21,11 +21,13 @@ from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.polygon_shape import PolygonRing, polygon_shape
 
 _JOIN = 1e-6
-"""How far apart, in extents, the ends of two edges may lie and still meet."""
+"""Largest distance between the ends of two edges that meet, divided by the extent."""
 _PARTS = 16
-"""Straight pieces in place of the curve between two points, where names are looked for."""
+"""Number of straight pieces per interval of a curve that are searched for names."""
 _STRAIGHT = 0.5
-"""A curve whose ends are farther apart than this part of its length is a wall, not an outline left open."""
+"""A curve whose ends are farther apart than this fraction of its length is a wall; otherwise a closed
+outline.
+"""
 
 
 class DrawnEdge(NamedTuple):
@@ -41,17 +43,18 @@ class DrawnEdge(NamedTuple):
 
     @property
     def is_wall(self) -> bool:
-        """Whether its ends differ, as those of a channel's wall do."""
+        """Whether the side is an open curve, such as the wall of a channel."""
         length = float(np.hypot(*np.diff(self.points, axis=0).T).sum())
         return float(np.hypot(*(self.points[-1] - self.points[0]))) > _STRAIGHT * length
 
 
 def channel(walls: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()) -> DomainShape | Outline:
-    """Return the domain between two walls, the first being south; straight lines join their ends.
+    """Return the domain between two walls, whose ends are joined by straight lines; the first wall is south.
 
-    Both are of the kind "wall" unless their names suggest another one. Without a name they are called
-    ``wall``; the lines at their first and last points are ``inlet`` and ``outlet``.
-    Raises InputError: walls that cross, equal neighbouring points.
+    Walls are of the kind ``wall`` unless their names suggest another kind; walls without a name are called
+    ``wall``. The line at the first points is ``inlet``, the line at the last points ``outlet``.
+
+    Raises InputError: walls that cross; equal neighbouring points.
     """
     south, north = (_checked(wall)._replace(name=wall.name or "wall") for wall in walls)
     a, b, c, d = south.points[0], south.points[-1], north.points[0], north.points[-1]
@@ -68,7 +71,8 @@ def four_edges(
 ) -> Boundary | DomainShape | Outline:
     """Return the domain of four edges, chained end to end from the first, which is south.
 
-    If opposite edges have equal counts, and none is of two points, their points are the nodes.
+    If opposite edges have equal numbers of points, at least three, the points become the nodes.
+
     Raises InputError: edges that do not meet, or that cross; equal neighbouring points.
     """
     chain = _directed(_chained([_checked(edge) for edge in edges]))

@@ -13,7 +13,10 @@ from meshonet.geometry.errors import InputError
 
 
 def far_circle(centre: Floats, radius: float, n: int, start: float) -> Floats:
-    """Return nodes (n, 2) clockwise on a circle from angle `start` (radians), the first repeated bitwise."""
+    """Return nodes (n, 2) clockwise on a circle from the angle `start` (radians).
+
+    The last node is bitwise the first.
+    """
     angle = start - np.linspace(0.0, 2 * np.pi, n)
     nodes = centre + radius * np.stack([cos(angle), sin(angle)], axis=1)
     nodes[-1] = nodes[0]
@@ -21,7 +24,7 @@ def far_circle(centre: Floats, radius: float, n: int, start: float) -> Floats:
 
 
 def straight(a: Floats, b: Floats, n: int) -> Floats:
-    """Return n equally spaced nodes (n, 2) from a (2,) to b (2,), both ends bitwise."""
+    """Return n equally spaced nodes (n, 2) from `a` (2,) to `b` (2,); the ends are bitwise `a` and `b`."""
     t = np.linspace(0.0, 1.0, n)[:, None]
     nodes = (1 - t) * a + t * b
     nodes[0], nodes[-1] = a, b
@@ -29,7 +32,7 @@ def straight(a: Floats, b: Floats, n: int) -> Floats:
 
 
 TURNED = 10.0
-"""A turn of the far field's start, in degrees, that is worth a note."""
+"""Turn of the first far-field node, in degrees, from which on a note mentions it."""
 
 
 def _start(wall: Floats, behind: float) -> tuple[float, str]:
@@ -60,11 +63,12 @@ def o_boundary(
 ) -> Boundary:
     """Return the O boundary of a closed wall (ni, 2), clockwise, first node repeated, within a circle.
 
-    Far-field nodes run clockwise at equal angles. The first is where the body's conformal map takes
-    `wall[0]`, so that the grid is not sheared; for a symmetric body that is straight behind it. Unless
-    `turned`, for marching methods with a far field of their own, it is in the direction of `wall[0]`. West
-    and east are the straight cut from there to the wall. `curve`, `name`, `chord` and `notes` are those of
-    `Boundary`; a rotation of more than `TURNED` is noted.
+    `wall` (ni, 2) runs clockwise and repeats its first node at the end. Far-field nodes run clockwise at
+    equal angles. The first of them is where the conformal map of the body takes `wall[0]`, so that the grid
+    is not sheared; behind a symmetric body this is straight downstream. If not `turned`, it is in the
+    direction of `wall[0]`: marching methods make a far field of their own. West and east are the straight cut
+    between the two first nodes. `curve`, `name`, `chord` and `notes` are passed to `Boundary`; a large
+    rotation of the far field is noted.
     """
     middle = np.asarray(centre, dtype=np.float64)
     start, note = math.atan2(wall[0, 1] - middle[1], wall[0, 0] - middle[0]), ""

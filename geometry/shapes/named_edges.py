@@ -16,9 +16,10 @@ _BLOCK = 1 << 22  # distances computed at a time
 
 
 class Labelled:
-    """A shape of straight `edges` (n, 2, 2) with names (n,), from which the names of patches follow.
+    """A shape with straight `edges` (n, 2, 2) and their names (n,), which become the names of patches.
 
-    An edge without a name has an empty one. `walls` are names of walls, unless they suggest another kind.
+    An edge without a name has the name "". Edges with names in `walls` are walls unless the name suggests
+    another kind.
     """
 
     def __init__(self, shape: Shape, edges: Floats, names: Sequence[str], walls: Sequence[str] = ()) -> None:
@@ -65,7 +66,7 @@ class Labelled:
 def runs(side: Side, names: Sequence[str], walls: Sequence[str] = ()) -> list[Patch]:
     """Return the patches of a side whose cells have these `names`; a cell without one takes that of the side.
 
-    Those named in `walls` are walls, unless their names suggest another kind.
+    Patches with names in `walls` are walls unless the name suggests another kind.
 
     >>> runs("south", ["wall", "wall", "slot"])
     [Patch(name='wall', side='south', start=0, stop=2), Patch(name='slot', side='south', start=2, stop=3)]

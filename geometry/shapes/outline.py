@@ -27,23 +27,24 @@ from meshonet.geometry.spacing.along_curve import stretch_arcs
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
 _DEPARTURE = 5e-3
-"""Distance in extents beyond which a side is another one than the lines between its points."""
+"""Largest distance of a smooth side from the lines between its points, in extents, without a note."""
 
 
 class Outline:
     """A closed curve through points.
 
-    The `points` (n, 2), at least 3, are in any unit and of either orientation; the first may be repeated at
-    the end. `corners` are the four of a quad domain, if given, south-west first. `places` (n,) are the places
-    of the points in their source, for messages.
+    The `points` (n, 2), at least 3, are in any unit and of either orientation; the first point may be
+    repeated at the end. `corners` are the indices of the four corners of a quad domain, south-west first, if
+    they are given. `places` (n,) are the positions of the points in the input, for messages.
 
-    Raises InputError: too few points, repeated ones, an outline that crosses itself or has no area.
+    Raises InputError: too few points; equal neighbouring points; an outline that crosses itself or has no
+    area.
     """
 
     far_field_unit = "extents of the body"
     """Unit of the far-field distance."""
     notes: tuple[str, ...] = ()
-    """What a reader passed over in its file, for those who sample it."""
+    """Notes on parts of the file that the reader left out."""
 
     def __init__(
         self,
@@ -67,7 +68,7 @@ class Outline:
 
     @property
     def topology(self) -> Topology:
-        """Topology that ``auto`` stands for: ``quad`` with four or more convex corners, else ``o``."""
+        """The topology for ``auto``: ``quad`` with four or more convex corners, else ``o``."""
         return "quad" if self.corners is not None or len(self._sharp()) >= 4 else "o"
 
     def boundary(self, sampling: Sampling) -> Boundary:

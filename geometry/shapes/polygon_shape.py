@@ -31,7 +31,10 @@ from meshonet.geometry.shapes.shape import Shape
 
 @dataclass(frozen=True)
 class PolygonRing:
-    """A closed polygon of a file: points (n, 2), corners (None: detected), names (empty: default), places."""
+    """A closed polygon of a file: points (n, 2), corners, names, and positions of the points in the file.
+
+    Corners None: detected; names empty: the default names.
+    """
 
     points: Floats
     corners: Sequence[int] | None = None
@@ -45,8 +48,10 @@ def polygon_shape(
 ) -> DomainShape:  # fmt: skip
     """Return the domain inside the first of the `rings` and outside of the others.
 
-    `periodic` are pairs of names of periodic sides. Raises InputError: as `ring_loop`; with several rings,
-    its place says which; as `with_periodic_sides`.
+    `periodic` are pairs of names of periodic sides.
+
+    Raises InputError: the errors of `ring_loop`, with the number of the ring if there are several; the errors
+    of `with_periodic_sides`.
     """
     loops = []
     for number, ring in enumerate(rings):
@@ -70,7 +75,7 @@ def polygon_shape(
 
 
 def domain_or_body(shape: Outline | Airfoil) -> Shape:
-    """Return a closed curve unchanged, or the domain inside it if it has corners, but not four."""
+    """Return a closed curve unchanged; if it has corners, but not four, the domain inside it."""
     if isinstance(shape, Airfoil) or shape.topology != "quad":
         return shape
     points = shape.curve.points

@@ -44,13 +44,13 @@ class SpatialShape:
         return all(len(block.counts) == 2 for block in self.grid.blocks)
 
     def boundary(self, sampling: Sampling) -> Boundary:  # noqa: ARG002 - as all shapes have it
-        """Raise InputError: a three-dimensional shape has no four edges."""
+        """Raise InputError: a three-dimensional shape does not have the four edges of a plane domain."""
         problem = "its nodes have three coordinates and the boundary of a plane grid is asked for"
         raise InputError(problem, "use a command that makes volumes: tfi, solve-pde or infer")
 
 
 def edges_of(shape: Shape, sampling: Sampling) -> Boundary:
-    """Return the boundary of `shape`, checked before any grid is made, with the notes of both.
+    """Return the boundary of `shape`, checked for crossing edges, with the notes of the shape.
 
     Raises InputError: the errors of `shape`; edges that cross or touch; a body outside its far field.
     """

@@ -44,8 +44,9 @@ def cells_of_wake(
 ) -> int:
     """Return the cells of the wake of a C grid with `ni` nodes along xi, both sides of the wake included.
 
-    `nodes_wanted` include the trailing edge; with None, cells grow from `first` by 13 %, and are 20 to 23 %
-    of all cells, and about a multiple of the first of `steps` that is at most a quarter of them.
+    `nodes_wanted` is the number of nodes of the wake, with the trailing edge. If it is None, cells grow from
+    `first` by 13 % over the `length` of the wake, but are 20 to 23 % of all cells, and nearly a multiple of
+    the first of `steps` that is at most a quarter of the wake's cells.
 
     Raises InputError: too few nodes are left for the wall.
     """
@@ -65,7 +66,7 @@ def cells_of_wake(
 
 
 def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
-    """Return the unit direction (2,) in which a wake ends: x, or the chord if that is too steep."""
+    """Return the unit vector (2,) along which a wake ends: along x, or along the chord if it is too steep."""
     chord = np.asarray(trailing_edge - leading_edge)
     if abs(chord[1]) <= abs(chord[0]):
         return np.array([math.copysign(1.0, chord[0]), 0.0])
@@ -85,10 +86,10 @@ class WakeLine:
     axis: Floats
     """(2,) unit direction of the far end."""
     slope: float
-    """tan(b)"""
+    """Slope tan(b) of the bisector of the trailing edge, relative to the axis."""
     relaxation: float
     length: float
-    """Of the wake along the axis."""
+    """Length of the wake along the axis."""
 
     @classmethod
     def behind(cls, wall: Floats, axis: Floats, chord: float, length: float) -> WakeLine:
@@ -100,7 +101,10 @@ class WakeLine:
         return cls(wall[0], axis, slope, chord, length)
 
     def nodes(self, first: float, cells: int) -> Floats:
-        """Return nodes (cells + 1, 2) from the trailing edge on; the first cell is `first` (`growing`)."""
+        """Return nodes (cells + 1, 2) of the wake, from the trailing edge.
+
+        The first cell has the length `first`.
+        """
         x = growing(first / math.hypot(1.0, self.slope), self.length, cells)
         x *= self.length / x[-1]
         y = -self.slope * self.relaxation * expm1(-x / self.relaxation)
@@ -147,9 +151,9 @@ def c_boundary(
 ) -> Boundary:
     """Return the C boundary of a closed wall (n, 2) and the wake (m, 2) from its edge to the outlet.
 
-    The wall runs clockwise from the sharp trailing edge, which is repeated at the end. `centre` and `radius`
-    are those of the half circle in front; `axis` (2,) is the unit direction in which the wake ends. For
-    `curve`, `name`, `chord` and `notes` see `Boundary`.
+    The wall runs clockwise from the sharp trailing edge, which is repeated at the end. The far field in front
+    is a half circle with this `centre` and `radius`; `axis` (2,) is the unit vector along which the wake
+    ends. `curve`, `name`, `chord` and `notes` are passed to `Boundary`.
 
     Raises InputError: the wake leaves the far field, or crosses the wall.
     """

@@ -12,7 +12,9 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.laws import LAWS, Spacing
 
 MANY = 64
-"""More corners than this, and than a quarter of the cells, are facets of a drawn curve: they get no nodes."""
+"""If there are more corners than this, and than a quarter of the cells, they are facets of a drawn curve, and
+need not be nodes.
+"""
 
 
 def stretch_arcs(
@@ -25,11 +27,12 @@ def stretch_arcs(
     forward: bool = True,
     step: int = 1,
 ) -> Floats:
-    """Return arc lengths (cells + 1,) on a closed curve from `begin` to `end`, all the way round when equal.
+    """Return arc lengths (cells + 1,) of nodes on a closed curve from `begin` to `end`.
 
-    They run in the direction of the curve, or against it unless `forward`. ``tanh`` has end cells of a
-    quarter of the mean; spacings that depend on more than the curve become equal steps. Corners are on
-    multiples of `step` nodes if there are enough.
+    If `begin` and `end` are equal, the nodes go once around the curve. They run in the direction of the
+    curve, or against it if not `forward`. With the spacing ``tanh``, the cells at the ends are a quarter of
+    the mean cell; spacings that depend on more than the curve become equal steps. Corners get nodes whose
+    index is a multiple of `step`, if there are enough of these.
     """
     sign = 1.0 if forward else -1.0
     length = (sign * (end - begin)) % curve.length or curve.length
@@ -53,10 +56,10 @@ def stretch_arcs(
 
 
 def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = (), step: int = 1) -> Floats:
-    """Return increasing distances (n,), shifted so that every corner (m,) is one of them.
+    """Return the distances (n,), changed so that every one of the `corners` (m,) is one of them.
 
-    Each corner gets the nearest node, of every `step`-th one if these suffice. The first, the last and the
-    `fixed` nodes stay; the others are shifted proportionally.
+    Each corner gets the nearest node, among every `step`-th node if these suffice. The first, the last and
+    the `fixed` nodes do not move; nodes between corners move in proportion.
 
     Raises InputError: more corners than nodes.
     """

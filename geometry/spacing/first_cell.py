@@ -10,7 +10,7 @@ from typing import TypeAlias
 from meshonet.geometry.errors import InputError
 
 AtWalls: TypeAlias = float | Mapping[str, float]
-"""One value for all walls, or a value for each wall with layers, by name."""
+"""A value for all walls, or a dict with a value for each wall with layers, by name."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,9 +76,10 @@ class FirstCell:
             self.heights()  # raises for values out of range
 
     def heights(self, unit: float = 1.0) -> AtWalls | None:
-        """Return the first-cell height, or one for each wall by name.
+        """Return the first-cell height in the unit of the request, or a dict of heights by wall.
 
-        `unit` is the reference length of the Reynolds number unless the request has one.
+        None if no first cell is requested. `unit` is the reference length of the Reynolds number if `length`
+        is None.
         """
         given = self.first_cell if self.y_plus is None else self.y_plus
         if isinstance(given, Mapping):
@@ -86,9 +87,12 @@ class FirstCell:
         return None if given is None else self._height(given, unit)
 
     def height(self, unit: float = 1.0) -> float | None:
-        """Return the first-cell height, as `heights`.
+        """Return the first-cell height in the unit of the request; None if no first cell is requested.
 
-        Raises InputError: heights for single walls, which this kind of grid does not have.
+        `unit` is the reference length of the Reynolds number if `length` is None.
+
+        Raises InputError: different heights for different walls, which only multi-block grids accept; a value
+        out of range.
         """
         height = self.heights(unit)
         if isinstance(height, Mapping):

@@ -78,7 +78,8 @@ def growing_steps(first: float, length: float, cells: int, constant: int = 1) ->
 def growth_rate(place: Floats, first: float, length: float, rate: float) -> float:
     """Return g for which cells of sizes first exp(g place), with `place` (n,) rising from 0, fill `length`.
 
-    By Newton's method from a `rate` above g: their sum is convex in g.
+    Newton's method starts from a `rate` that must not be below g; it converges because the sum of the sizes
+    is convex in g.
     """
     for _ in range(100):
         sizes = first * exp(rate * place)

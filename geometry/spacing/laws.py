@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.arrays import Floats
 
 Spacing: TypeAlias = str
-"""Name of a law, a key of `LAWS`."""
+"""Name of a spacing, a key of `LAWS`."""
 
 
 @dataclass(frozen=True)
@@ -23,9 +23,11 @@ class Law:
     """A spacing."""
 
     place: Callable[[Floats], Floats] | None = None
-    """s(q), both 0 to 1; None for a law that depends on the curve or on the cells at its ends."""
+    """The function s(q), with s and q from 0 to 1; None for a spacing that depends on the curve or on its end
+    cells.
+    """
     sets_ends: bool = False
-    """The cells at the two ends of a stretch can be chosen."""
+    """Whether the cells at the two ends of a stretch can be prescribed."""
 
 
 def _cosine(q: Floats) -> Floats:

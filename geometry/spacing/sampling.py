@@ -15,8 +15,9 @@ DEFAULT_NI = 200  # default node counts
 DEFAULT_NJ = 100  # half as many as along xi
 DEFAULT_FAR_FIELD = 15.0  # in chords
 MULTIPLES = (8, 4, 2, 1)
-"""Steps of nodes one of which corners of airfoils stand on, the largest that cells suffice for and that
-divides them, so that grids can be coarsened by it."""
+"""Corners of airfoils are placed on every 8th, 4th or 2nd node, so that grids can be coarsened: the largest
+of these steps that divides the number of cells, and for which there are enough cells.
+"""
 MOST_NODES = 100_000  # per direction: more is taken for a typing error
 
 
@@ -131,7 +132,9 @@ class Sampling:
             raise InputError(problem, "give four point indices")
 
     def corner_steps(self, cells: int) -> tuple[int, ...]:
-        """Return steps of node indices, best first; corners lie on multiples of one of them.
+        """Return the possible steps of the node indices of corners, best first.
+
+        Corners lie on multiples of one of them.
 
         >>> Sampling().corner_steps(404), Sampling().corner_steps(398), Sampling(refined=8).corner_steps(400)
         ((4, 2, 1), (2, 1), (8,))
@@ -144,7 +147,7 @@ class Sampling:
     def radius(self) -> float:
         """Radius of the far field in chords.
 
-        Raises InputError: it does not enclose a body with a chord of 1.
+        Raises InputError: a radius that does not enclose a body with a chord of 1.
         """
         radius = DEFAULT_FAR_FIELD if self.far_field is None else self.far_field
         if not 1.0 < radius <= 1e6:

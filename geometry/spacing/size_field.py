@@ -11,9 +11,11 @@ from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.elementary import arctan2, exp, expm1, geomspace, log, product
 
 GROWTH = math.log(1.10)
-"""Largest growth of cells along the wall: 10 % from one to the next."""
+"""Largest growth of cells along the wall: 10 % from one cell to the next."""
 HURRY = 1.3
-"""Factor on the growth where nodes are few, before only curvature and nose are resolved more coarsely."""
+"""Factor on the growth if nodes are few; only if this is not enough, curvature and nose are resolved more
+coarsely.
+"""
 _SCARCE = 5.0  # coarsening of curvature and nose beyond which growth is increased again
 _RAMP = 3.0  # cells over which growth sets in behind a trailing edge with a prescribed size
 _EDGE = 0.025  # fraction of the wall at either end where curvature asks for no cell below the edge's size

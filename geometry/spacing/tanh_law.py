@@ -26,7 +26,7 @@ class TanhLaw:
 
     @property
     def stretch(self) -> float:
-        """The d above: positive if tanh applies, negative if tan does, 0 for equal steps."""
+        """The parameter d of the formula: positive for tanh, negative for tan, 0 for equal steps."""
         b = 1.0 / math.sqrt(self.start * self.end)
         if abs(b - 1.0) < 1e-9:
             return 0.0
@@ -51,10 +51,12 @@ class TanhLaw:
 
     @classmethod
     def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> TanhLaw:
-        """Return the law with first step `first` and last step `last` of `cells` cells, to a relative 1e-6.
+        """Return the law with first step `first` and last step `last` of `cells` cells.
 
-        `cells` need not be an integer if the last one extends beyond 1, with `last_part` (1 or 0.5) of it
-        before 1.
+        The steps are met to a relative error of 1e-6.
+
+        The last cell may extend beyond 1; `last_part` (1 or 0.5) is the fraction of it that lies before 1.
+        `cells` is then no integer.
 
         Raises InputError: the steps are too large together, or there are too few cells between them.
         """
@@ -105,5 +107,5 @@ def _inverse_sinc(b: float) -> float:
 
 
 def spacing_tanh(n: int, first: float, last: float) -> Floats:
-    """Return n values from 0 to 1 whose first step is `first` and whose last is `last` (`TanhLaw`)."""
+    """Return n values from 0 to 1 with first step `first` and last step `last` (`TanhLaw`)."""
     return TanhLaw.fitted(n - 1, first, last)(np.linspace(0.0, 1.0, n))

@@ -24,13 +24,15 @@ from meshonet.geometry.surface.merge import TOLERANCE, merged
 from meshonet.geometry.surface.planes import FLAT, planes_of
 
 _THICK = 0.1
-"""Largest thickness of an open trailing edge over the length of the patches in front of it."""
+"""Largest thickness of an open trailing edge, divided by the length of the patches in front of it."""
 _ALIKE = 0.5
-"""Least cosine of the angle between the two sides of a trailing edge."""
+"""Smallest cosine of the angle between the two sides of a trailing edge."""
 _THIN = 0.02
-"""Thickness of a trailing edge over its length up to which a plane at an end of the surface may hold it."""
+"""Largest thickness, divided by the length, of a trailing edge that may lie in a plane at an end of the
+surface.
+"""
 _CELLS = (2, 16)
-"""Least and largest number of cells across a base whose ends are not given."""
+"""Smallest and largest number of cells across a base whose ends are not given."""
 _TURNS = {"west": 1, "north": 2, "east": -1, "south": 0}
 
 
@@ -61,9 +63,12 @@ class _Edge(NamedTuple):
 
 
 def with_bases(patches: Sequence[Floats]) -> tuple[list[Floats], list[int], tuple[str, ...]]:
-    """Return `patches` (ni, nj, 3) and bases of open trailing edges, the patch above each base, and notes.
+    """Return the patches with bases added at open trailing edges, a patch number for each base, and notes.
 
-    Raises InputError: the ends of a trailing edge are closed by patches of different numbers of cells.
+    `patches` are (ni, nj, 3). The number of a base is that of the patch on its upper side.
+
+    Raises InputError: the patches that close the two ends of a trailing edge have different numbers of cells
+    there.
     """
     nodes, lattices = merged(patches)
     sides = _open_sides(patches, nodes, lattices)

@@ -9,16 +9,16 @@ from meshonet.geometry.surface.half_edges import ends_of
 from meshonet.geometry.surface.merge import SLANT, near_pairs
 
 _GAP = 0.2
-"""Part of the shorter edge beside it within which another open side is a gap, not another place."""
+"""Open nodes nearer than this fraction of the shorter adjacent edge, but not coincident, are a gap."""
 
 _ON = 0.05
-"""Distance of a node from an edge, over the length of the edge, within which it lies on the edge."""
+"""A node nearer to an edge than this fraction of the edge's length lies on the edge."""
 
 _SIDES = ("west", "east", "south", "north")
 
 
 def place_of(nodes: Floats, lattices: tuple[Indices, ...], node: int) -> str:
-    """Return the place of a node as text: the first patch that has it, i, j, x, y, z."""
+    """Return as text the position of a node: the first patch that contains it, i, j, x, y, z."""
     for number, lattice in enumerate(lattices):
         at = np.argwhere(lattice == node)
         if len(at):
@@ -28,7 +28,7 @@ def place_of(nodes: Floats, lattices: tuple[Indices, ...], node: int) -> str:
 
 
 def check_quads(nodes: Floats, lattices: tuple[Indices, ...], quads: Indices) -> None:
-    """Raise InputError if an edge of a patch has no length, or a quadrilateral is folded onto itself."""
+    """Raise InputError if an edge of a patch has length zero, or if a quadrilateral is folded onto itself."""
     for number, k in enumerate(lattices):
         for side, line in zip(_SIDES, (k[0], k[-1], k[:, 0], k[:, -1]), strict=True):
             if (line == line[0]).all():
@@ -78,7 +78,10 @@ def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> 
 
 
 def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if nodes of open `edges` (k, 2) lie in the middle of others: sides of other nodes."""
+    """Raise InputError if nodes of open `edges` (k, 2) lie inside other open edges.
+
+    Two sides then meet with different nodes.
+    """
     ends = nodes[edges]
     along = ends[:, 1] - ends[:, 0]
     length = norms(along)

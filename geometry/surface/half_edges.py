@@ -20,7 +20,7 @@ def ends_of(quads: Indices) -> tuple[Indices, Indices]:
 
 
 def open_sides(quads: Indices, twin: Indices) -> Indices:
-    """Return the corners (k, 4) of the quadrilaterals at open edges, starting with the ends of the edge."""
+    """Return the corners (k, 4) of the quadrilaterals at open edges, beginning with the ends of the edge."""
     opened = np.flatnonzero(twin < 0)
     around = (opened[:, None] % 4 + np.arange(4)) % 4
     return np.asarray(quads[opened[:, None] // 4, around])
@@ -29,7 +29,7 @@ def open_sides(quads: Indices, twin: Indices) -> Indices:
 def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
     """Return the twin (4 m,) of each half-edge, -1 at open edges, and the surplus half-edges.
 
-    `nodes` is the number of nodes. Of an edge with more than two half-edges, the third and all others are
+    `nodes` is the number of nodes. If an edge has more than two half-edges, all but the first two are
     surplus.
     """
     first, last = ends_of(quads)
@@ -45,10 +45,11 @@ def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
 
 
 def rings(quads: Indices, twin: Indices, nodes: int) -> tuple[Indices, Indices]:
-    """Return the neighbours (n, w) in order around each node, padded with -1, and their number (n,).
+    """Return the neighbours (n, w) of each node in order around it, padded with -1, and their number (n,).
 
-    All quadrilaterals are oriented alike. At an open edge the neighbours begin and end with those along open
-    edges, one more than there are quadrilaterals; elsewhere they form a closed ring.
+    All quadrilaterals must be oriented alike. Inside the surface the neighbours form a closed ring. At a node
+    on an open edge they begin and end with the neighbours along open edges: there is one more than there are
+    quadrilaterals.
     """
     first, last = ends_of(quads)
     edges = np.arange(len(first))

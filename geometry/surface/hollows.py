@@ -12,12 +12,13 @@ from meshonet.geometry.surface.half_edges import ends_of
 from meshonet.geometry.surface.surface import Surface
 
 CONCAVE_DEG = 30.0
-"""Turn of the normal at an edge from which a surface is concave there: walls at 150 degrees."""
+"""Smallest turn of the normal at a concave edge, in degrees: walls that meet at 150 degrees."""
 _LEAST = 0.01
-"""Length of all concave edges over the size of the surface up to which they are dents, not junctions."""
+"""Concave edges that are together shorter than this fraction of the surface's size are dents, not junctions.
+"""
 
 _BESIDE = 0.1
-"""Distance from a concave edge, over the size of the surface, up to which cells fold because of it."""
+"""Largest distance from a concave edge, divided by the surface's size, at which cells fold because of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,10 +27,10 @@ class Hollows:
 
     Parameters
     ----------
-    edges : (k, 2) the nodes of each.
-    angles : (k,) of the space between their faces, in degrees, at most 180 - `CONCAVE_DEG`.
-    distance : (n,) of each node from the next concave edge, along edges, and the width of the cells there on
-        top of it, so that it is nowhere 0; infinite where no edge is concave.
+    edges : (k, 2) the two nodes of each edge.
+    angles : (k,) angle of the space between the two faces, in degrees, at most 150.
+    distance : (n,) distance of each node from the nearest concave edge, measured along edges, plus the width
+        of the cells at this edge, so that it is nowhere 0; infinite if no edge is concave.
     """
 
     edges: Indices
@@ -37,13 +38,13 @@ class Hollows:
     distance: Floats
 
     def sharpest(self) -> tuple[float, int] | None:
-        """Return the least angle and a node of its edge, None where no edge is concave."""
+        """Return the smallest angle in degrees and a node of its edge; None if no edge is concave."""
         return self._at(int(self.angles.argmin())) if len(self.edges) else None
 
     def nearest(self, surface: Surface, numbers: Indices) -> tuple[float, int] | None:
-        """Return angle and node of the edge nearest to nodes with these numbers (n,).
+        """Return the angle in degrees and a node of the concave edge nearest to the nodes `numbers` (n,).
 
-        None if it is farther away than a tenth of the surface's size.
+        None if the nearest edge is farther away than a tenth of the surface's size.
         """
         if not len(self.edges):
             return None
@@ -57,7 +58,7 @@ class Hollows:
 
 
 def hollows_of(surface: Surface) -> Hollows:
-    """Return the concave edges of a surface, none where all together are shorter than 1 % of its size."""
+    """Return the concave edges of a surface; none if their total length is below 1 % of its size."""
     quads, twin = surface.quads, surface.twin
     x = surface.nodes[quads]
     normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])

@@ -9,10 +9,12 @@ from meshonet.geometry.blocks.shared_nodes import joined_labels
 from meshonet.geometry.elementary import product
 
 TOLERANCE = 1e-8
-"""Distance, over the size of a surface, within which edge nodes are one node."""
+"""Edge nodes nearer than this fraction of the surface's size are one node."""
 
 SLANT = np.array([0.5257311, 0.6513887, 0.5470973])
-"""Direction along no axis, diagonal or face of a regular solid: distant points seldom coincide along it."""
+"""Direction along which points are sorted. It is oblique, so that distant points seldom have equal positions
+along it.
+"""
 
 
 def near_pairs(points: Floats, distance: float) -> Indices:
@@ -36,10 +38,10 @@ def near_pairs(points: Floats, distance: float) -> Indices:
 
 
 def merged(patches: Sequence[Floats]) -> tuple[Floats, tuple[Indices, ...]]:
-    """Return the nodes (n, 3) of `patches` (ni, nj, 3), and each patch's node numbers (ni, nj) in them.
+    """Return all nodes (n, 3) of `patches` (ni, nj, 3), and the node numbers (ni, nj) of each patch.
 
-    Edge nodes within `TOLERANCE` times the size of the surface are one node, with the coordinates of the
-    first. Numbers ascend in the order in which nodes first appear.
+    Edge nodes nearer than `TOLERANCE` times the size of the surface become one node, with the coordinates of
+    the first. Numbers ascend in the order in which nodes first appear.
     """
     points = np.concatenate([np.ascontiguousarray(patch).reshape(-1, 3) for patch in patches])
     edges = [

@@ -9,10 +9,10 @@ from meshonet.geometry.arrays import Floats, Indices, distinct, extent_of
 from meshonet.geometry.surface.planes import FLAT, Plane, edges_in
 
 NEARLY_CLOSED = 0.3
-"""Vector area over area up to which a surface with holes still counts as one that encloses something."""
+"""Largest ratio of the vector area to the area of a surface with holes that counts as enclosing a volume."""
 
 _HOLE = 0.1
-"""Extent of open edges, over that of the surface, up to which they are the rim of a hole."""
+"""Largest extent of open edges that are the rim of a hole, divided by the extent of the surface."""
 
 
 def turned_alike(
@@ -20,9 +20,10 @@ def turned_alike(
 ) -> tuple[list[int], list[int], tuple[int, int] | None]:
     """Return the component of each of `count` patches, its sign (1 or -1), and a pair of patches or None.
 
-    `patch` (4 m,) is the patch of each half-edge, `half_edges` are its first and last nodes. Reversing the
-    patches with sign -1 makes all patches of a component consistent. The pair, if any, is one between which
-    that fails: the surface is not orientable.
+    `patch` (4 m,) is the number of the patch of each half-edge, `half_edges` are the first and the last nodes
+    of the half-edges. If the patches with sign -1 are reversed, all patches of a component are consistent. If
+    this is impossible, because the surface is not orientable, the third result is a pair of patches that
+    contradict each other.
     """
     first, _ = half_edges
     edges = np.flatnonzero(twin > np.arange(len(twin)))
@@ -53,9 +54,11 @@ def turned_alike(
 
 
 def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list[int]:
-    """Return the axes of the planes that close a surface, whose faces at open edges are `sides` (k, 4).
+    """Return the axes of the planes of symmetry that close a surface.
 
-    One alone where all other open edges are a small hole, as at the end of half a fuselage.
+    `sides` (k, 4) are the faces at open edges, beginning with the nodes of the edge. If all open edges
+    outside one plane are the rim of a small hole, as at the end of half a fuselage, only this plane closes
+    the surface.
     """
     axes = sorted({plane.axis for plane in planes})
     slack = FLAT * extent_of(nodes)
@@ -70,9 +73,9 @@ def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list
 def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | None:
     """Return 1 if consistently oriented `quads` (m, 4) face outwards, -1 if they face inwards.
 
-    Open edges in planes normal to an axis of `flat` are closed by these planes. None if the surface does not
-    enclose a volume: more than `NEARLY_CLOSED` of its area faces one way, or only planes normal to two axes
-    would close it, as they do both the inside and the outside of a box corner.
+    Planes normal to the axes `flat` close the surface at open edges that lie in them. None if the surface
+    does not enclose a volume: too much of its area faces one way; or planes normal to two axes are needed to
+    close it, because these would close the inside as well as the outside of the corner of a box.
     """
     if len(flat) > 1:
         return None

@@ -8,12 +8,12 @@ from meshonet.geometry.arrays import Floats, Indices, extent_of, norms
 from meshonet.geometry.elementary import arctan2
 
 FLAT = 1e-6
-"""Part of the size of a surface by which nodes may be off a plane of symmetry."""
+"""Largest distance of nodes from a plane of symmetry, divided by the size of the surface."""
 FEWEST = 3
-"""Least number of open edges in a plane of symmetry."""
+"""Smallest number of open edges in a plane of symmetry."""
 
 SLANT_DEG = 5.0
-"""Largest angle off the normal of a plane of symmetry at which a surface that encloses nothing may end in it.
+"""Largest deviation, in degrees, from the normal of a plane of symmetry of a surface that encloses no volume.
 
 The mirror image of such a surface continues it smoothly. That of half a body may have an edge in the plane.
 """
@@ -31,11 +31,11 @@ class Plane:
 
 
 def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
-    """Return the planes normal to an axis that contain open edges, with the whole surface on one side.
+    """Return the planes across a coordinate axis with open edges, and the whole surface on one side.
 
-    `sides` (k, 4) are the faces at open edges, starting with the edge's nodes. At least `FEWEST` edges of a
-    plane are in no plane with more edges: the blunt edge at a wing root is straight, but only the root is a
-    plane.
+    `sides` (k, 4) are the faces at open edges, beginning with the nodes of the edge. A plane must have enough
+    open edges that are in no plane with more edges: the blunt edge at a wing root is straight too, but only
+    the root is in a plane.
     """
     if not len(sides):
         return ()
@@ -57,15 +57,18 @@ def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
 
 
 def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:
-    """Return which (k,) edges of `sides` (k, 4) lie in a plane, to `slack`, while their faces do not."""
+    """Return the numbers of the edges of `sides` (k, 4) that lie in a plane, while their faces do not.
+
+    Nodes lie in the plane if their distance is at most `slack`.
+    """
     near = np.abs(nodes[sides, plane.axis] - plane.value) <= slack
     return np.asarray(near[:, :2].all(axis=1) & ~near[:, 2:].all(axis=1))
 
 
 def slant(nodes: Floats, sides: Indices, plane: Plane) -> float:
-    """Return the mean angle, in degrees, of the faces at open edges in a plane off the plane's normal.
+    """Return the mean angle in degrees between faces at open edges in a plane and the plane's normal.
 
-    `sides` are those of `planes_of`.
+    `sides` are as in `planes_of`.
     """
     mine = sides[edges_in(nodes, sides, plane, FLAT * extent_of(nodes))]
     a, b, c, d = (nodes[mine[:, k]] for k in range(4))

@@ -24,27 +24,31 @@ from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.elementary import arctan2, power
 
 _SIZE = 0.35
-"""Half the width of a core, over the arc length from the pole to the column `at`."""
+"""Half the width of a core, divided by the arc length from the pole to the column `at`."""
 _ROUNDING = 0.5
 """Exponent of the map from the square to the core: 0 keeps the square's corners, 1 makes a disc's rim."""
 _EVEN = 0.25
 """Share a of the map x sqrt(1 - a y^2), y sqrt(1 - a x^2) from the square to an even core: with 0 it is the
 square, with 1/2 a disc, whose corners are flat. Here they have 127 degrees, as with `_ROUNDING`."""
 _NOSE = 0.65
-"""Least width of a column over its distance from the pole, relative to the largest: no nose is beyond it."""
+"""Smallest ratio of the width of a column to its distance from the pole, relative to the largest: behind it
+ends the nose.
+"""
 _FEWEST = 3
-"""Least number of rows between a core and the column `at`, and of columns that they replace."""
+"""Smallest number of rows between a core and the column `at`, and smallest number of columns that they
+replace.
+"""
 
 
 @dataclass(frozen=True)
 class PoleCore:
-    """What takes the place of the first columns of a fan.
+    """A core and rows of cells that replace the first columns of a fan.
 
     Parameters
     ----------
-    nodes : (b + 1, a + 1, 3), of the same orientation as the fan.
-    rows : (r, m + 1, 3) from the outer nodes of the core to the fan's column `at`.
-    at : first column of the fan (m + 1, n, 3) that is kept.
+    nodes : (b + 1, a + 1, 3) nodes of the core, with the orientation of the fan.
+    rows : (r, m + 1, 3) rows of nodes from the edge of the core to the column `at` of the fan.
+    at : index of the first column of the fan (m + 1, n, 3) that is kept.
     """
 
     nodes: Floats
@@ -53,13 +57,15 @@ class PoleCore:
 
 
 def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> PoleCore:
-    """Return the core of a `fan` (m + 1, n, 3) of curves out of a pole at j = 0.
+    """Return the core of a `fan` (m + 1, n, 3) of curves that leave a pole at j = 0.
 
-    Rings around the pole are as round as the core, which a march from the surface needs there. Those of an
-    `even` core are square, and its lines have no kinks, across which cells differ by a factor up to 2.
+    By default the core is rounded, and so are the rings of cells around it, as a march from the surface needs
+    it. An `even` core is square: its lines have no kinks, across which cell sizes would differ by a factor of
+    up to 2.
 
-    `quarters` is the angle of the fan in right angles; a closed one repeats its first curve, and has an even
-    number m of cells. At most `most` columns are replaced, up to the first where cells are as long as wide.
+    `quarters` is the angle of the fan in right angles. A closed fan repeats its first curve, and has an even
+    number m of cells. At most `most` columns are replaced, up to the first column whose cells are as long as
+    wide.
     """
     m = len(fan) - 1
     steps = norms(np.diff(fan, axis=1)).mean(axis=0)

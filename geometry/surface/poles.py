@@ -13,9 +13,9 @@ from meshonet.geometry.surface.merge import TOLERANCE
 from meshonet.geometry.surface.pole_core import core_of
 
 _TURNS = {"west": 1, "north": 2, "east": -1, "south": 0}
-"""Quarter turns of a patch's indices (`numpy.rot90`) that bring a side to the south, j = 0."""
+"""Number of quarter turns of a patch's indices (`numpy.rot90`) that make a side the south side, j = 0."""
 _LEAST = {1: 2, 2: 4, 4: 8}
-"""Least number of cells around a pole, by the angle of its patches in right angles."""
+"""Smallest number of cells around a pole, by the angle of its patches in right angles."""
 
 
 @dataclass(frozen=True)
@@ -41,10 +41,12 @@ class _FanPatch:
 def without_poles(
     patches: Sequence[Floats], *, replace: bool = True
 ) -> tuple[list[Floats], list[int], tuple[str, ...]]:
-    """Return patches (ni, nj, 3) without poles, the patch that each one replaces or is, and notes.
+    """Return the patches without poles, for each of them the number of a given patch, and notes.
 
-    Patches keep their numbers and gain rows in place of their first columns; cores are appended. Where
-    several patches meet in a pole they get one core together. Without `replace` all stay as they are.
+    `patches` are (ni, nj, 3). Patches keep their numbers; rows of cells replace their first columns. Cores
+    are appended; the number of a core is that of a patch at its pole. Several patches that meet in one pole
+    get one core together. Without
+    `replace` all patches are returned unchanged.
 
     Raises InputError: too few cells around a pole, or an odd number of them.
     """

@@ -42,10 +42,11 @@ class Surface:
     Parameters
     ----------
     nodes : (n, 3) the table of nodes, in any unit of length.
-    lattices : the number (ni, nj) of each node of each patch; i x j points outwards.
-    names : of the patches, ``wall`` if a file has none.
-    twin : (4 m,) the half-edge across each half-edge of `quads`, -1 at open edges (`half_edges`).
-    ring, valence : (n, w) and (n,) neighbours in order around each node (`half_edges.rings`).
+    lattices : for each patch the numbers (ni, nj) of its nodes; i x j points outwards.
+    names : names of the patches, ``wall`` if the file has no names.
+    twin : (4 m,) half-edge on the other side of each half-edge of `quads`, -1 at open edges (`half_edges`).
+    ring, valence : (n, w) and (n,) neighbours in order around each node, and their number
+        (`half_edges.rings`).
     planes : planes normal to an axis that contain open edges, with the surface on one side of them.
     notes : sentences on what was changed or assumed.
     """
@@ -90,12 +91,14 @@ def surface_of(grid: Grid, *, poles: Literal["replace", "refuse"] = "replace") -
     A pole, a side that is a single point, becomes a core patch with a note, unless `poles` says otherwise.
     Open trailing edges are closed by base patches, with a note.
 
-    Patches that face the other way are reversed along i, with a note. A closed surface, or one that planes
-    normal to one axis close, faces outwards; any other faces the way that most of its area does.
+    Patches with the opposite orientation are reversed along i, with a note. A closed surface, or a surface
+    closed by planes normal to one axis, faces outwards; any other surface faces the way in which most of its
+    area faces.
 
-    Raises InputError with the place: blocks that are not patches; an edge of zero length, or of three
-    quadrilaterals; a node where two sheets touch; sides that nearly match or have other nodes where they
-    meet; an open trailing edge with other numbers of cells across its ends; a surface with one side only.
+    Raises InputError, with the place: blocks that are not patches; an edge of zero length, or shared by three
+    quadrilaterals; a node at which two sheets touch; sides that nearly match, or that meet with different
+    nodes; an open trailing edge with different numbers of cells across its two ends; a surface that cannot be
+    oriented.
     """
     if any(block.nodes.ndim != 3 or block.nodes.shape[-1] != 3 for block in grid.blocks):
         problem = "a surface is made of patches (ni, nj, 3), and a block of this grid is none"

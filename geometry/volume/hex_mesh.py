@@ -31,12 +31,14 @@ from meshonet.geometry.blocks.shared_nodes import joined_labels, node_table
 from meshonet.geometry.errors import InputError
 
 FaceValues: TypeAlias = Callable[[int, Side], NDArray[Any]]
-"""Gives a view (n, m) of values at a side of a block."""
+"""Function from the number of a block and a side to a view (n, m) of values at this side."""
 
 _MOST = 0.8
-"""Part of the cells of a left-handed block that are negative at least: others are folded."""
+"""Smallest fraction of cells with negative volume in a left-handed block; a block with fewer has folded
+cells.
+"""
 POLE = 1e-12
-"""Distance, over the size of the grid, within which the nodes of a line coincide."""
+"""Nodes of a line nearer than this fraction of the size of the grid coincide."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +49,7 @@ class HexMesh:
     ----------
     nodes : (n, 3) coordinates.
     blocks : right-handed arrays (ni, nj, nk) of node numbers.
-    connections : those of the grid that are not periodic.
+    connections : connections of the grid, without the periodic ones.
     """
 
     nodes: Floats
@@ -61,7 +63,7 @@ class HexMesh:
 
     @cached_property
     def outer(self) -> Bools:
-        """(n,) whether a node is on a side, or part of one, without a connection."""
+        """(n,) whether a node is on a part of a side without a connection."""
         outer = np.zeros(len(self.nodes), dtype=bool)
         for number, block in enumerate(self.blocks):
             for side in PLACES:
@@ -83,7 +85,10 @@ class HexMesh:
 
     @cached_property
     def beyond(self) -> tuple[Indices, ...]:
-        """The blocks with the nodes one step across connected sides added (ni+2, nj+2, nk+2); -1 for none."""
+        """The blocks with one layer of node numbers added around them: (ni+2, nj+2, nk+2).
+
+        The layer contains the nodes one step across connected sides, and -1 elsewhere.
+        """
         wider = tuple(np.pad(block, 1, constant_values=-1) for block in self.blocks)
 
         def outside(number: int, side: Side) -> Indices:
@@ -103,7 +108,7 @@ class HexMesh:
 
 
 def corners_of(values: AnyArray) -> Iterator[AnyArray]:
-    """Yield for each of the eight cell corners a view (ni-1, nj-1, nk-1) of `values` (ni, nj, nk) at it."""
+    """Yield for each of the eight corners of cells a view (ni-1, nj-1, nk-1) of `values` (ni, nj, nk)."""
     for corner in np.ndindex(2, 2, 2):
         yield values[tuple(slice(c, c + n - 1) for c, n in zip(corner, values.shape, strict=True))]  # type: ignore[misc]
 
@@ -118,7 +123,7 @@ def any_corner(nodes: Bools) -> Bools:
 
 
 def second_layer(values: AnyArray, side: Side) -> AnyArray:
-    """Return a view of `values` (ni, nj, nk) one step inside of a side."""
+    """Return a view of `values` (ni, nj, nk) in the layer of nodes next to a side."""
     axis, end = PLACES[side]
     return np.moveaxis(values, axis, 0)[1 if end == 0 else -2]
 
@@ -126,7 +131,7 @@ def second_layer(values: AnyArray, side: Side) -> AnyArray:
 def exchange(
     connections: Sequence[Connection], outside: FaceValues, inside: FaceValues
 ) -> None:  # fmt: skip
-    """Copy the values `inside` of each side of the connections to those `outside` of the other side."""
+    """Copy the values `inside` of each side of the connections to the layer `outside` of the other side."""
     for each in connections:
         own_out, donor_out = each.nodes(lambda block, side: outside(block, side)[..., None])
         own_in, donor_in = each.nodes(lambda block, side: inside(block, side)[..., None])
@@ -188,5 +193,5 @@ def _poles(face: Indices, nodes: Floats, near: float) -> list[tuple[Indices, Ind
 
 
 def with_nodes(grid: Grid, mesh: HexMesh) -> Grid:
-    """Return `grid` with the nodes of a mesh made from it; those of connected sides are bitwise equal."""
+    """Return `grid` with the nodes of `mesh`, which was made from it; connected sides are bitwise equal."""
     return replace(grid, blocks=tuple(Block(mesh.nodes[block]) for block in mesh.blocks))

@@ -40,7 +40,7 @@ _WIDEST_WEDGE = 50.0  # degrees; a C grid by default needs surfaces that meet at
 
 
 class CrossingError(InputError):
-    """The polygon of the wall nodes crosses itself: they are too few where the section is thin."""
+    """Error if the polygon of the wall nodes crosses itself; too few nodes where the section is thin."""
 
 
 class Airfoil:
@@ -54,9 +54,9 @@ class Airfoil:
                '-------------------'''      upper side. The leading edge is the point of the curve that
                   lower  ---->              is farthest from the trailing edge.
 
-    The `points` (n, 2) are in any unit, of either orientation, with any start (`clean_section`). `places`
-    (n,) are their places in the source, such as ``line 12``, for messages; `notes` say how they were changed
-    before.
+    The `points` (n, 2) are in any unit and of either orientation, and begin anywhere (`clean_section`).
+    `places` (n,) are the positions of the points in the input, such as ``line 12``, for messages; `notes` say
+    how the points were changed before.
 
     Raises InputError, with the place: the points are no airfoil.
     """
@@ -64,23 +64,27 @@ class Airfoil:
     chord: float
     """Distance from the leading to the trailing edge."""
     leading_edge: Floats
-    """(2,)"""
+    """(2,) the point farthest from the trailing edge."""
     trailing_edge: Floats
-    """(2,) the middle of the base when blunt."""
+    """(2,) the trailing edge; if it is blunt, the middle of the base."""
     crossing: InputError | None
-    """Why there is no `curve`: the surfaces of `points_curve` cross, as noisy ones do until `smoothed`."""
+    """The reason if there is no `curve`: the surfaces cross, for example because the points are noisy (see
+    `smoothed`).
+    """
     gap: float
-    """Distance between the ends of the two surfaces."""
+    """Distance between the ends of the upper and the lower surface."""
     nose_radius: float
-    """Radius of the leading edge: of a parabola as thick as the section at 2 % of the chord."""
+    """Radius of the leading edge: that of a parabola which is as thick as the section at 2 % of the chord."""
     blunt: bool
-    """The trailing edge is a straight base; a gap below `SHARP_GAP` chords has been closed at its middle."""
+    """Whether the trailing edge is a straight base; a gap below 2e-4 chords counts as sharp, and is closed at
+    its middle.
+    """
 
     far_field_unit = "chords"
     """Unit of the far-field distance."""
 
     notes: tuple[str, ...]
-    """What was changed of the given points: one sentence each."""
+    """Sentences on changes of the given points."""
 
     def __init__(
         self, points: Floats, name: str = "", places: Sequence[str] = (), notes: tuple[str, ...] = ()
@@ -107,7 +111,10 @@ class Airfoil:
 
     @property
     def curve(self) -> Curve:
-        """Through the points; see the drawing. Raises InputError, with the place: the surfaces cross."""
+        """The curve through the points (see the drawing).
+
+        Raises InputError, with the place: the surfaces cross.
+        """
         if self.crossing:
             raise self.crossing
         return self.points_curve
@@ -116,8 +123,8 @@ class Airfoil:
     def unit(self) -> float:
         """Unit of wall cell sizes: the chord, or 1 if that is the nominal chord.
 
-        The distance from the trailing edge to the farthest point of a cambered section exceeds its nominal
-        chord, by 8e-5 for NACA 2412. A chord within 1 % of 1 is taken as nominally 1.
+        In a cambered section the distance from the trailing edge to the farthest point exceeds the nominal
+        chord, for NACA 2412 by 8e-5. A chord within 1 % of 1 is taken as nominally 1.
         """
         return 1.0 if abs(self.chord - 1.0) < 0.01 else self.chord
 
@@ -137,7 +144,7 @@ class Airfoil:
 
     @property
     def stations(self) -> Stations:
-        """Arc lengths of the ends of its base and of its nose."""
+        """Arc lengths at the corners of the base and at the nose."""
         from meshonet.geometry.shapes.airfoil.wall_nodes import Stations
 
         return Stations(self.curve, *self._arcs, self.chord, self.nose_radius, self._round)
@@ -159,7 +166,7 @@ class Airfoil:
         return body
 
     def prepared(self, sampling: Sampling) -> Airfoil:
-        """Return the airfoil smoothed, normalised and opened as `sampling` has it."""
+        """Return the airfoil smoothed, normalised and with an opened trailing edge, as in `sampling`."""
         body = self.smoothed(sampling.smooth) if sampling.smooth else self
         body = body.normalised() if sampling.normalise else body
         return body.opened(sampling.base) if sampling.base else body
@@ -178,7 +185,7 @@ class Airfoil:
         return body
 
     def moved_apart(self) -> Airfoil:
-        """Return the airfoil with its surfaces at least 9e-5 chords apart where they nearly touch."""
+        """Return the airfoil with its surfaces moved apart to 9e-5 chords where they nearly touch."""
         section = self._section.moved_apart()
         return Airfoil(section.points, self.name, notes=(*self.notes, moved_note(self._section, section)))
 
@@ -214,10 +221,10 @@ class Airfoil:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return this wall in a far field: a circle (O grid), or a half circle and a wake (C grid).
 
-        ``auto`` topology is ``o``, except for thin wall cells at a sharp edge with surfaces at most 50
-        degrees apart (after the change that `Sampling.te` asks for), where it is ``c``.
+        Topology ``auto`` becomes ``c`` if cells at the wall will be thin, and if the trailing edge, after the
+        change by `Sampling.te`, is sharp and its surfaces meet at 50 degrees at most; otherwise ``o``.
 
-        Raises InputError: four-sided topology; a C boundary with a blunt edge; too few nodes.
+        Raises InputError: the topology ``quad``; a C boundary with a blunt trailing edge; too few nodes.
         """
         if sampling.topology == "quad":
             raise InputError("topology quad is not made from an airfoil", "use o or c")

@@ -39,7 +39,8 @@ GROWTH = 1.2  # growth ratio along wake and base unless given
 _WITHIN = 0.92  # fraction of the growth beyond 1 used along wake and base: the lines bend, which adds growth
 _STEEPEST = math.radians(85.0)  # largest angle between a wake line at its corner and the axis of the wake
 _LEAST_ANGLE = math.radians(60.0)
-"""Angle between base and wake line below which the line is turned off its surface at the corner."""
+"""Smallest angle between base and wake line at a corner: below it, the line is turned away from its surface.
+"""
 _MOST_TURNED = math.radians(40.0)
 """Largest such turn. Measured on 90 bases of .02 to .25 chords, half of them with flanks rounded by up to 85
 degrees: largest angles are at most 134 degrees, with 30 degrees 144, with 50 degrees 143."""
@@ -185,7 +186,10 @@ def _fewest(width: float, first: float, ratio: float) -> int:
 
 
 def end_fractions(ends: Floats, cells: int) -> Floats:
-    """Return nodes (m, cells + 1) from 0 to 1 with first and last steps `ends` (m,), at most 1/cells."""
+    """Return m rows of numbers (m, cells + 1) from 0 to 1, with first and last steps `ends` (m,).
+
+    `ends` must be at most 1/cells.
+    """
     out = np.zeros((len(ends), cells + 1))
     steps = np.empty(cells)
     for row, end in zip(out, ends.tolist(), strict=True):
@@ -215,9 +219,9 @@ def _wake_cells(
 
 
 def corner_cell(cells: float, first: float, chord: float) -> float:
-    """Return the length of cells beside a base, `first` unless the `cells` of the wall are few for it.
+    """Return the length of the wall cells beside a base: `first`, or more if the `cells` of the wall are few.
 
-    From these lengths they grow to the mean by `_STEEP` over half of each side.
+    From this length, cells must grow to the mean length within half of each side.
     """
     side = 0.5 * cells
     return max(first, chord / side * math.pow(_STEEP, -0.5 * side))

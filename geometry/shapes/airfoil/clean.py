@@ -16,13 +16,15 @@ from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import find_corners, turning
 
 SHARP_GAP = 2e-4
-"""Gap in chords below which a trailing edge counts as sharp: with less, grids of more real files fold."""
+"""Gap in chords below which a trailing edge counts as sharp: with a smaller limit, more grids of real files
+fold.
+"""
 SAME_POINT = 1e-5
-"""Points closer than this, in extents, are one: their direction is noise of the last digit."""
+"""Points nearer than this fraction of the extent count as one: their direction is noise of the last digit."""
 ON_BASE = 5e-5
 """Distance, in chords, from the straight base up to which a point is dropped as lying on it."""
 MOST_CORNERS = 12
-"""More corners than this, the trailing edge's among them, are noise of the points and count as none."""
+"""If there are more corners than this, those of the trailing edge included, they are noise: none is kept."""
 _CORNER = np.radians(35.0)  # least turn of a corner of the trailing edge
 _STRAIGHT = np.radians(5.0)  # largest turn of the middle of a base
 _EDGE = np.radians(120.0)  # least turn of a single corner that is a sharp edge
@@ -44,9 +46,9 @@ class CleanSection:
     gap: float
     """Distance between the two ends of the surfaces, before a sharp edge was closed."""
     corners: Indices
-    """Indices of points where the tangent jumps, those of the trailing edge included."""
+    """Indices of the points at which the tangent jumps, including those of the trailing edge."""
     swapped: tuple[int, ...] = ()
-    """Given points that stood in the wrong order among their neighbours."""
+    """Indices of the given points that were in the wrong order among their neighbours."""
 
     def moved_apart(self) -> CleanSection:
         """Return the section with nearly touching surfaces moved apart (`separate_surfaces`)."""
@@ -59,8 +61,9 @@ class CleanSection:
 def clean_section(points: Floats) -> CleanSection:
     """Return the section described by `points` (n, 2), of either orientation.
 
-    They are assumed to start at the trailing edge unless the other end is clearly sharper. Repeated points
-    and points on a straight base are dropped; neighbours in the wrong order are swapped.
+    The points are assumed to start at the trailing edge, unless the other end of the section is clearly
+    sharper. Repeated points and points on a straight base are dropped; neighbours in the wrong order are
+    swapped.
 
     Raises InputError: fewer than 4 distinct points, no area, ends too far apart to be a trailing edge.
     """

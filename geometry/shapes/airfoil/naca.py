@@ -24,10 +24,10 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 POINTS = 161
-"""Points a surface: the spline through them is then within 2e-6 chord of the formula."""
+"""Default number of points per surface: the spline through them is within 2e-6 chords of the formula."""
 
 THICK = 40
-"""Thickness in percent of the chord from which on it is noted; those of the reports are 6 to 25."""
+"""Thickness in percent of the chord from which on a note mentions it; the reports have 6 to 25."""
 
 _SIMPLE = {
     1: (0.0580, 361.400), 2: (0.1260, 51.640), 3: (0.2025, 15.957), 4: (0.2900, 6.643), 5: (0.3910, 3.230),

@@ -22,16 +22,18 @@ if TYPE_CHECKING:
     from meshonet.geometry.spacing.sampling import TrailingEdge
 
 _CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31 / 32])
-"""Where an interval of the curve is cut into straight pieces to be searched for crossings."""
+"""Parameters at which an interval of the curve is divided into straight pieces, to search for crossings."""
 DEPARTURE, FAR_OFF = 1e-3, 5e-3
 """Distance in chords beyond which the curve counts as another wall than the lines between its points."""
 RIPPLES = 10
-"""Least number of sign changes of the curvature of a section that ripples; designed ones have at most six."""
+"""Smallest number of sign changes of the curvature of a section that ripples; designed sections have at most
+six.
+"""
 _FLAT = 0.1  # curvature times chord below which its sign is ignored
 OBLIQUE = 30.0  # least angle in degrees between a base and the normal of the chord to be called oblique
 MOST_BASE = 0.25  # chords; a longer last segment of a surface is no base
 UNLIKE = 1.5
-"""Ratio of the two wall cells at a corner of the base beyond which it is noted."""
+"""Largest ratio of the two wall cells at a corner of the base without a note."""
 _PARTS = 128  # parts of a stretch in the search for the point farthest from the trailing edge
 
 
@@ -45,10 +47,11 @@ def swapped_note(section: CleanSection, places: Sequence[str]) -> tuple[str, ...
 def section_curve(
     section: CleanSection, places: Sequence[str]
 ) -> tuple[Curve, tuple[str, ...], InputError | None]:
-    """Return the curve through a section's points, notes, and an error if its surfaces cross all the same.
+    """Return the curve through the points of a section, notes, and an error if its surfaces cross.
 
-    It is straight where it would cross itself. Surfaces that touch or cross because of rounding are moved
-    apart first (`meshonet.geometry.shapes.airfoil.separate_surfaces`).
+    Surfaces that touch or cross because of rounding are moved apart first
+    (`meshonet.geometry.shapes.airfoil.separate_surfaces`). Intervals in which the curve would cross itself
+    are made straight. If the surfaces still cross, the error is returned, not raised.
     """
     notes: list[str] = []
     crossed = None
@@ -93,7 +96,7 @@ def moved_note(before: CleanSection, section: CleanSection) -> str:
 
 
 def sign_changes(curve: Curve, chord: float) -> int:
-    """Return how often the curvature of the curve of a section changes sign, corners left out."""
+    """Return how often the curvature of a section's curve changes its sign; corners do not count."""
     points = curve.points
     steps = norms(np.concatenate([points[1:], points[:1]]) - points)
     bend = turning(points, closed=True) * (2.0 * chord) / (steps + np.concatenate([steps[-1:], steps[:-1]]))
@@ -180,7 +183,7 @@ def opened_note(height: float, thickness: float) -> str:
 
 
 def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, asked: TrailingEdge) -> tuple[str, ...]:
-    """Return a note on how `te` changed a base, or that there is none although a change was `asked` for."""
+    """Return a note on how `te` changed the base, or a note that there is no base to change as `asked`."""
     base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"
     if before.blunt and te == "wedge":
         length = float(np.hypot(*(after.trailing_edge - before.trailing_edge))) / before.chord

@@ -19,8 +19,9 @@ _WEDGE = 0.02  # near an edge the least thickness is this fraction of the distan
 def moved_apart(ring: Floats, nose: int) -> Floats:
     """Return a closed polygon (n, 2) with its surfaces moved apart, each by at most `MOST` chords.
 
-    They are then 2 `MOST` chords apart, or less if this limit does not allow that. The polygon runs clockwise
-    from the trailing edge; that point and the leading edge, `nose`, are not moved.
+    The surfaces are then 2 `MOST` chords apart, or less where points would have to move farther than `MOST`.
+    The polygon runs clockwise from the trailing edge. The trailing edge and the leading edge, point `nose`,
+    do not move.
     """
     chord = float(np.hypot(*(ring[nose] - ring[0])))
 
@@ -31,9 +32,10 @@ def moved_apart(ring: Floats, nose: int) -> Floats:
 
 
 def wedged_apart(ring: Floats, nose: int, thin: float) -> Floats:
-    """Return a closed polygon (n, 2) that near its trailing edge is as thick as a wedge, or thicker.
+    """Return a closed polygon (n, 2) that is nowhere thinner than a wedge near its trailing edge.
 
-    The wedge begins at the edge, with the base if there is one, and ends where the surfaces are `thin` apart.
+    The wedge begins at the trailing edge, as thick as the base if there is one, and ends where its thickness
+    is `thin`.
     """
 
     def least(places: Floats, thickness: Floats) -> Floats:

@@ -37,8 +37,8 @@ _HEAVIER = 2.0  # factor of the weight of an outlier in each round
 def smooth_ring(section: CleanSection, nose_radius: float, limit: float) -> tuple[Floats, float]:
     """Return the points (n, 2) of a section moved to splines within `limit`, and the largest displacement.
 
-    Corners are kept, but a base that is narrower than `limit` is closed at its middle, and so is one whose
-    ends noise has swapped. Where noise could close the section, it stays as thick as a wedge.
+    Corners are kept. A base that is narrower than `limit`, or whose two ends are swapped by noise, is closed
+    at its middle. Where noise could close the section, the section stays as thick as a wedge.
 
     Raises InputError: SciPy is not installed.
     """
@@ -59,7 +59,7 @@ def smooth_ring(section: CleanSection, nose_radius: float, limit: float) -> tupl
 
 
 def smoothing_notes(before: Airfoil, after: Airfoil, most: float) -> tuple[str, ...]:
-    """Return what smoothing changed, points by `most` at most."""
+    """Return notes on what smoothing changed; `most` is the largest displacement of a point."""
     chord = before.chord
     old, new = (sign_changes(each.points_curve, each.chord) for each in (before, after))
     moved = f"the outline is changed: smoothed by up to {most / chord:.2g} chords"

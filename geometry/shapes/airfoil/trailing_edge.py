@@ -35,13 +35,18 @@ _CAP = 5e-3  # upper limit of the length that a fillet takes of the base, in cho
 _PULL = 0.6  # position of the fillet's control points between its ends (0) and the corner (1)
 _POINTS = 24  # points on a fillet
 _TURN = 0.5
-"""Nodes of half a base that turns by 90 degrees that follow its turning, for each that follows its length."""
+"""On half a base that turns by 90 degrees: number of nodes placed by turning, for each node placed by length.
+"""
 _MORE = 1.3  # factor up to which cells are added so that neither half has too few
 _NEAR = 0.1  # chords from the corner within which the surface gets new points, taken from the curve
 REACH = 4.0
-"""Largest length of the wedge in widths of the base: 14 degrees at the tip between parallel surfaces."""
+"""Largest length of the wedge in widths of the base: between parallel surfaces the tip has an angle of 14
+degrees.
+"""
 LEAST = 1.0
-"""Least length in the same unit: surfaces that would meet before are bent outwards, with a corner each."""
+"""Smallest length of the wedge in widths of the base: surfaces that would meet before are bent outwards, with
+corners.
+"""
 _WEDGE_POINTS = 9  # on each side of a wedge
 
 
@@ -70,12 +75,14 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
 
 
 def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
-    """Return distances (n + 1,) from the middle of a rounded base to its lower end, and to its upper end.
+    """Return the distances (n + 1,) of the nodes on each half of a rounded base from its middle.
 
-    The node density follows length and turning angle. The latter is averaged over two cells on each side,
-    since the cells where the base turns most are the most skewed of the grid. An oblique base turns more at
-    one end, which gets more cells. `curve` and `end` are those of `rounded_base`; `cells`, at least 3, is the
-    number for a half that turns by 90 degrees.
+    The first array is the lower half, the second the upper half.
+
+    The node density follows length and turning angle. The turning angle is averaged over two cells on each
+    side, because the cells at the largest turns are the most skewed ones of the grid. An oblique base turns
+    more at one end, which gets more cells. `curve` and `end` are results of `rounded_base`; `cells`, at least
+    3, is the number of cells of a half that turns by 90 degrees.
     """
     per_cell = 64
     n = per_cell * cells  # on either half; index n is the middle
@@ -137,7 +144,10 @@ def wedged_base(points: Floats, tangents: tuple[Floats, Floats]) -> Floats:
 
 
 def opened_base(airfoil: Airfoil, gap: float) -> Floats:
-    """Return points (n, 2) with sides moved apart in proportion to the distance from the nose, to `gap`."""
+    """Return the points (n, 2) of an airfoil with a trailing edge opened to the thickness `gap`.
+
+    Points move in proportion to the distance from the nose.
+    """
     curve = airfoil.curve
     _, nose, _ = airfoil._arcs
     lower = curve.points[(curve.knots > 0.0) & (curve.knots < nose)]

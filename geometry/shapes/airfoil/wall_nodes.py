@@ -27,14 +27,19 @@ _EDGE_STEP = 20.0
 """Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O
 grids: with smaller cells they are less orthogonal, with larger ones more of them fold at the edge."""
 _EDGE_PART = 0.24
-"""The same cell, in mean cells, where spacing follows curvature, the law of marched grids."""
+"""Length of the same cell for spacing by curvature, the default of marched grids, in mean cells."""
 _BASE_GROWTH = 1.06
-"""Ratio of neighbouring cells on a base up to which it needs no more of them: a base of 8 % of the chord has
-46 cells of 400 then, which its wake is resolved by."""
+"""Largest ratio of neighbouring cells on a base. With it a base of 8 % of the chord has 46 of 400 cells,
+which also resolve its wake.
+"""
 _MANY = 192
-"""Cells from which on half a base has at least four: a grid coarsened by four then has the base's corners."""
+"""Smallest number of cells of a side for which half a base has at least four, so that a grid coarsened by
+four keeps the corners of the base.
+"""
 _BASE_JUMP = 4.0
-"""Largest ratio of a fixed step beside a base to those on it: at 16 cells fold at its corners."""
+"""Largest ratio of a prescribed cell beside a base to the cells on the base: at 16, cells at the corners
+fold.
+"""
 _ROUND_CELLS = 14  # fewest cells on half a rounded base, if there are 16 times as many in total
 _BASE_SHARE = 0.35  # largest fraction of all cells on the base
 _LEAN = math.radians(0.8)
@@ -47,22 +52,22 @@ _SMALLER = 64.0  # largest factor by which cells beside a base are smaller for t
 
 @dataclass(frozen=True)
 class Stations:
-    """What the node distribution depends on: arc lengths on an airfoil's curve, chord and nose radius."""
+    """Data of an airfoil from which its nodes are placed: arc lengths on its curve, chord and nose radius."""
 
     curve: Curve
     half_base: float
-    """Where the lower side begins; 0 when the trailing edge is sharp."""
+    """Arc length at which the lower side begins; 0 if the trailing edge is sharp."""
     nose: float
     upper: float
     chord: float
     nose_radius: float
     rounded: bool = False
-    """The base has no corners."""
+    """Whether the base is rounded, without corners."""
 
 
 @dataclass(frozen=True)
 class WallCells:
-    """Number of cells on half the base and on a side, and the cell sizes at trailing and leading edge."""
+    """Numbers of cells on half the base and on a side, and the cell sizes at trailing and leading edge."""
 
     half: int
     cells: float
@@ -70,7 +75,7 @@ class WallCells:
     te: float
     le: float
     base: tuple[Floats, Floats] | None = None
-    """Distances from the middle of a rounded base to its lower and its upper end."""
+    """Distances of the nodes on a rounded base from its middle, on the lower and on the upper half."""
 
 
 def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
@@ -141,8 +146,8 @@ def _planned_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
 def arcs_to_corners(stations: Stations, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
     """Return arc lengths (cells + 1,) from the lower to the upper corner of a base, by curvature.
 
-    Cells at the corners have length `first`, unless `te_spacing` is given, and grow by at most `ratio`. Other
-    corners are on nodes.
+    Cells at the two corners have the length `first`, unless `te_spacing` is given, and grow by at most
+    `ratio`. Other corners of the curve are nodes.
     """
     from meshonet.geometry.spacing.along_curve import on_corners
     from meshonet.geometry.spacing.size_field import arcs_by_curvature
