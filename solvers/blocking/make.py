@@ -29,7 +29,7 @@ from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import Timings
 
 if TYPE_CHECKING:
-    from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
+    from meshonet.solvers.layers.layer_settings import LayerSettings
 
 METHOD = "blocks"
 GROWTH = 1.2
@@ -148,7 +148,7 @@ def _with_layers(
 
 def _settings(request: BlockRequest, height: AtWalls) -> LayerSettings:
     """Return the layers of a request whose first cells have a height, or one for each wall."""
-    from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
+    from meshonet.solvers.layers.layer_settings import LayerSettings
 
     heights = height if isinstance(height, Mapping) else {}
     first = min(heights.values()) if isinstance(height, Mapping) else height

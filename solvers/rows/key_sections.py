@@ -24,9 +24,9 @@ from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.threads import run_in_threads
-from meshonet.solvers.blocking.layers.layer_rows import layer_lines
 from meshonet.solvers.energy.quad_problem import Problem
 from meshonet.solvers.energy.quads import minimise, problem_of
+from meshonet.solvers.layers.layer_settings import layer_lines
 from meshonet.solvers.rows.columns import layer_columns, straight_near
 from meshonet.solvers.rows.harmonic import HarmonicMoves
 from meshonet.solvers.rows.middle_section import LOWER, TOLERANCE, UPPER, folded_section, middle_section

@@ -14,9 +14,9 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.cascade.cascade import scaled
 from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, attached_cells, counts_of
 from meshonet.solvers.blocking.cascade.passage_template import template
-from meshonet.solvers.blocking.layers.layer_rows import JOIN
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.layers.layer_law import layer_arcs
+from meshonet.solvers.layers.layer_settings import JOIN
 from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.refinement.refine import multiplied, refine
 from meshonet.solvers.refinement.size_metric import SizeMetric

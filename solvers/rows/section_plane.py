@@ -22,7 +22,7 @@ from meshonet.geometry.rows.blade import BladeSurface, clustered
 from meshonet.geometry.rows.channel import MeridionalMap
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.blocking.cascade.cascade import Cascade
-from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
+from meshonet.solvers.layers.layer_settings import LayerSettings
 
 _AROUND = 400
 """Points of a section."""

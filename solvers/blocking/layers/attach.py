@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, arc_lengths
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.solvers.algebraic.resample.lines import sampled
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,9 +85,3 @@ def beside(blocks: Sequence[Indices], position: Indices, count: int) -> list[Ind
             if (at >= 0).all() and ((at[1:] - at[:-1]) % count == 1).all():
                 along.append(at)
     return along
-
-
-def spaced(lines: Floats, law: Callable[[Floats], Floats]) -> Floats:
-    """Return lines (k, m, 2) with new nodes (k, n, 2) at arc lengths that `law` gives for their lengths."""
-    arc = arc_lengths(lines)
-    return sampled(lines, arc, law(arc[:, -1]))

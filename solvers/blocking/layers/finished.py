@@ -13,9 +13,9 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
 from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
-from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.blocking.layers.marched import AT_SHARP_EDGE
 from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.layers.layer_settings import LayerSettings
 
 FEW_ITERATIONS = 10  # after untangling: only nodes around folds move
 NEAR_FOLDS = 5

@@ -30,7 +30,7 @@ from meshonet.solvers.blocking.layers.attach import attach
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
 from meshonet.solvers.blocking.layers.finished import finished, unfolded
 from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
-from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, heights_inside, ring_rows
+from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
 from meshonet.solvers.blocking.layers.outside import found_outside, taken_outside
 from meshonet.solvers.blocking.layers.placed_rows import held_nodes, layers_of, with_layers
 from meshonet.solvers.blocking.layers.sheet import has_sharp_edge, wake_of
@@ -41,6 +41,7 @@ from meshonet.solvers.blocking.sizes.even_metric import metric_places
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.layers.even_line import EVEN, FEW_STEPS, evened_loops
+from meshonet.solvers.layers.layer_settings import LayerSettings
 from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.refinement.refine import multiplied, refine
 from meshonet.solvers.stages import Timings, stage

@@ -16,8 +16,8 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.spacing.growth import growing_steps
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
 from meshonet.solvers.blocking.layers.attach import Rows
-from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.layers.even_line import evened_steps
+from meshonet.solvers.layers.layer_settings import LayerSettings
 
 FAR = 4.0
 """Distance of an outer loop, relative to the circle around all bodies, above which it counts as distant."""

@@ -14,10 +14,9 @@ from meshonet.geometry.elementary import exp, log, power
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.algebraic.tfi import interpolate, parameters
-from meshonet.solvers.blocking.layers.attach import spaced
-from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, exact
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
 from meshonet.solvers.blocking.sizes.on_loops import on_loops
+from meshonet.solvers.layers.layer_settings import LayerSettings, exact, spaced
 
 GROWING_COLUMNS = 75
 """Percentage of the columns of a row that layers fill without growing too fast: thicker ones become thinner

@@ -13,10 +13,11 @@ from meshonet.geometry.domain.gap import gaps_in_front, wall_points
 from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.wall_turning import SAMPLES, sizes_by_bend
-from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, last_layers
+from meshonet.solvers.blocking.layers.layer_rows import last_layers
 from meshonet.solvers.blocking.layers.marched import GAP_PART, SLOPE, check_room
 from meshonet.solvers.blocking.layers.rings import COLUMNS, place
 from meshonet.solvers.blocking.layers.stretches import Stretch
+from meshonet.solvers.layers.layer_settings import LayerSettings
 from meshonet.solvers.refinement.size_metric import SizeMetric
 
 TURN = np.radians(3.5)

@@ -18,7 +18,7 @@ from meshonet.kernels._native import nearest_points
 from meshonet.solvers.blocking.decomposition.side_counts import nearer, suited
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
-from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
+from meshonet.solvers.blocking.layers.layer_rows import ring_metric
 from meshonet.solvers.blocking.layers.marched import GAP_PART
 from meshonet.solvers.blocking.layers.near_field import NearField
 from meshonet.solvers.blocking.layers.rings import (
@@ -34,6 +34,7 @@ from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
 from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
 from meshonet.solvers.layers.even_line import Measures
+from meshonet.solvers.layers.layer_settings import LayerSettings
 from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.refinement.size_metric import SizeMetric
 

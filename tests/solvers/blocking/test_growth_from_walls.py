@@ -12,9 +12,9 @@ from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.blocks import block_figures
 from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
-from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.blocking.layers.layered import layered
 from meshonet.solvers.blocking.layers.stretches import layered_walls
+from meshonet.solvers.layers.layer_settings import LayerSettings
 
 
 def circle(x, y, radius, name, way):

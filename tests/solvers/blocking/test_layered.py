@@ -9,10 +9,10 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.blocks import block_figures
-from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.blocking.layers.layered import layered
 from meshonet.solvers.blocking.layers.outside import found_outside
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
+from meshonet.solvers.layers.layer_settings import LayerSettings
 
 
 def cylinder(x, y, radius, points=80):

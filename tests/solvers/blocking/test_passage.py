@@ -15,7 +15,7 @@ from meshonet.solvers.blocking.cascade.cascade_layout import cascade_layout
 from meshonet.solvers.blocking.cascade.passage import Passage
 from meshonet.solvers.blocking.cascade.passage_flow import PassageFlow
 from meshonet.solvers.blocking.decomposition.collapse.score import deviations
-from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
+from meshonet.solvers.layers.layer_settings import LayerSettings
 
 CELLS = 4000
 

@@ -8,8 +8,8 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.shapes.airfoil.naca import naca_points
-from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.blocking.layers.wall_layers import rings_around
+from meshonet.solvers.layers.layer_settings import LayerSettings
 
 FAR = Loop(
     Curve(20.0 * np.exp(2j * np.pi * np.arange(64) / 64)[:, None].view(float), closed=True), (), ("far",)

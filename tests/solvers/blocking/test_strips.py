@@ -8,10 +8,10 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.to_grid import to_grid
-from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.blocking.layers.layered import layered
 from meshonet.solvers.blocking.layers.stretches import layered_walls
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
+from meshonet.solvers.layers.layer_settings import LayerSettings
 
 FIRST = 1e-3
 SIDES = {"south": (0, 1), "north": (-1, -2)}

@@ -9,7 +9,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.layers.finished import finished
-from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
+from meshonet.solvers.layers.layer_settings import LayerSettings
 
 GROWTH, ROWS = 1.2, 20
 
