@@ -7,6 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from meshonet.geometry.arrays import norms
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.notes import change_facts
@@ -22,6 +25,9 @@ if TYPE_CHECKING:
     from meshonet.solvers.progress import HistoryRow
     from meshonet.solvers.rows.request import RowRequest
     from meshonet.solvers.stacking.request import StackRequest
+
+JUMP = 5.0
+"""Ratio of neighbouring cells along a wall beyond which it is noted although no growth is asked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,8 +82,8 @@ def judged(
     """Return a solution with its quality; the time of the measurement is added to `seconds`.
 
     The grid's provenance has the changes of the shape. A note says where cells grow by more than the limit of
-    the solution. Raises NoValidGridError: folded cells, unless these are allowed; the error has the given
-    `remedy`.
+    the solution, or by more than `JUMP` along a wall if it has none. Raises NoValidGridError: folded cells,
+    unless these are allowed; the error has the given `remedy`.
     """
     with stage("quality", seconds):
         quality = measure(solution.grid, percentiles=request.percentiles)
@@ -95,4 +101,11 @@ def judged(
             run = lines_without_percentiles(solution.grid) if solution.grid.topology == "blocks" else None
             notes = (*solution.notes, *growth_note(solution.grid, solution.growth, run))
         solution = replace(solution, notes=notes)
+    elif (nodes := solution.grid.blocks[0].nodes).ndim == 3:
+        steps = norms(np.diff(nodes[:, [0, -1]], axis=0))
+        small, large = np.minimum(steps[1:], steps[:-1]), np.maximum(steps[1:], steps[:-1])
+        if len(solution.grid.blocks) > 1 or (large > JUMP * small).any():
+            from meshonet.solvers.pipeline.wall_facts import jump_note
+
+            solution = replace(solution, notes=(*solution.notes, *jump_note(solution.grid, JUMP)))
     return Result(solution, quality, seconds, solution.notes, history, run)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from meshonet.geometry.blocks.across import rows_at
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.vertices import vertices
-from meshonet.geometry.quality.growth import Extreme, Growth, growth, growth_off_walls, most_of
+from meshonet.geometry.quality.growth import Extreme, Growth, growth, growth_off_walls, most_of, ratios
 from meshonet.geometry.quality.lines import Lines, lines, solid_lines
 from meshonet.geometry.quality.walls import wall_rows
 from meshonet.geometry.summary import named
@@ -41,6 +44,22 @@ def growth_note(grid: Grid, limit: float, run: Lines | None = None) -> tuple[str
     if leaving and leaving.max < largest.max:
         beside = f"; along lines from walls by up to {leaving.max:.3f}"
     return (f"neighbouring cells differ by up to {largest.max:.3f} {where}{beside}",)
+
+
+def jump_note(grid: Grid, most: float) -> tuple[str, ...]:
+    """Return a note on the largest ratio of neighbouring cells along a wall, if it is above `most`."""
+    note: tuple[str, ...] = ()
+    for wall in grid.walls():
+        nodes = rows_at(grid, wall, 1)[0]
+        jumps = ratios(nodes) if len(nodes) > 2 else np.zeros(0)
+        if jumps.size and jumps.max() > most:
+            k = int(jumps.argmax()) + 1
+            most, (x, y) = float(jumps[k - 1]), nodes[k].tolist()
+            note = (
+                f"cells along {wall.name} jump in size by a factor of {most:.3g} at ({x:.6g}, {y:.6g}): see "
+                "whether its outline has a step or a short side there, or use more nodes",
+            )
+    return note
 
 
 def _growth(grid: Grid, run: Lines | None) -> tuple[Growth, Extreme | None]:

@@ -67,3 +67,21 @@ def test_growth_beyond_its_limit_is_in_the_report_and_no_other(
         assert float(value) == pytest.approx(float(figure[0][0]), abs=6e-4)
         assert place.endswith(f" along {figure[0][1]}")
         assert float(growth) == limit
+
+
+def test_a_jump_along_a_wall_is_noted_without_a_limit_of_growth(meshonet: Meshonet, inputs: Path) -> None:
+    corners = np.array([[1.0, 0.0], [1.0, 0.999], [0.999, 1.0], [0.0, 1.0], [0.0, 0.0]])
+    for cut, noted in (1.0, False), (1e3, True):
+        corners[2, 0] = corners[1, 1] = 1.0 - 0.2 / cut
+        np.savetxt(inputs / "plate.csv", np.concatenate([corners, corners[:1]]), delimiter=",")
+        made = meshonet("infer", "plate.csv", "--res", "161x41", "--topology", "o", "-o", "plate.cgns")
+        assert made.code == 0, made.err
+        note = re.search(r"cells along wall jump in size by a factor of (\S+) at \((\S+), (\S+)\)", made.err)
+        assert (note is not None) is noted
+        if note:
+            wall = read(inputs / "plate.cgns").nodes[:, 0]
+            steps = np.hypot(*np.diff(wall, axis=0).T)
+            ratios = np.maximum(steps[1:] / steps[:-1], steps[:-1] / steps[1:])
+            assert float(note[1]) == pytest.approx(ratios.max(), rel=0.01)
+            where = [float(x) for x in note.groups()[1:]]
+            assert where == pytest.approx(wall[1 + np.argmax(ratios)], rel=1e-5)

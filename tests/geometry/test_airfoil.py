@@ -164,3 +164,16 @@ def test_an_airfoil_prints_its_name_chord_and_edge():
     points = selig(0.12, 0.0, 0.002, STATIONS)
     assert repr(Airfoil(points, "a")).startswith("<Airfoil 'a': chord 1")
     assert "blunt trailing edge 0.002" in repr(Airfoil(points, "a"))
+
+
+@pytest.mark.parametrize("ratio", [0.02, 0.03, 0.04])
+def test_an_opened_base_leaves_the_nose_as_it_is(ratio):
+    """The place farthest from the trailing edge is next to a given point here, and is no second one."""
+    upper, lower = surfaces(ratio, x=np.delete(STATIONS, 1))
+    section = Airfoil(np.concatenate([upper[::-1], lower[1:] * [1, 0.12]]))
+    opened = section.opened(0.0022)
+    assert opened.gap == pytest.approx(0.0022, rel=1e-3)
+    assert len(opened.curve.corners) == 2
+    wall = opened.boundary(Sampling(301, 11, "o", spacing="curvature")).south
+    steps = np.hypot(*np.diff(wall, axis=0).T)
+    assert np.maximum(steps[1:] / steps[:-1], steps[:-1] / steps[1:]).max() < 1.2

@@ -35,6 +35,16 @@ def span(boundary: Boundary, name: str) -> tuple[int, int]:
     return patch.start, patch.stop
 
 
+def turn_of_wake(boundary: Boundary) -> float:
+    """Return the angle in degrees between the first wake cell and the bisector of the two last wall cells."""
+    first, last = span(boundary, "wall")
+    edge = boundary.south[first]
+    sides = [edge - boundary.south[k] for k in (first + 1, last - 1)]
+    bisector = sum(side / np.hypot(*side) for side in sides)
+    leaving = boundary.south[first - 1] - edge
+    return float(np.degrees(np.arctan2(*bisector[::-1]) - np.arctan2(*leaving[::-1])))
+
+
 def test_south_is_wake_wall_wake_and_the_wakes_coincide_bitwise() -> None:
     boundary = c()
     first, last = span(boundary, "wall")
@@ -53,13 +63,8 @@ def test_south_is_wake_wall_wake_and_the_wakes_coincide_bitwise() -> None:
 @pytest.mark.parametrize("airfoil", [SHARP, CAMBERED], ids=["symmetric", "cambered"])
 def test_the_wake_leaves_along_the_bisector_and_ends_along_x(airfoil: Airfoil) -> None:
     boundary = c(airfoil, ni=600)
-    first, last = span(boundary, "wall")
-    edge = boundary.south[first]
-    sides = [edge - boundary.south[k] for k in (first + 1, last - 1)]
-    bisector = sum(side / np.hypot(*side) for side in sides)
-    leaving = boundary.south[first - 1] - edge
-    turn = np.degrees(np.arctan2(*bisector[::-1]) - np.arctan2(*leaving[::-1]))
-    assert abs(turn) < 0.1
+    edge = boundary.south[span(boundary, "wall")[0]]
+    assert abs(turn_of_wake(boundary)) < 0.1
     ending = boundary.south[0] - boundary.south[1]
     assert abs(ending[1] / ending[0]) < 1e-5
     assert boundary.south[0, 0] == pytest.approx(edge[0] + 15.0, rel=1e-6)
@@ -209,3 +214,15 @@ def test_a_wake_of_too_few_nodes_says_what_to_change() -> None:
 def test_the_wake_ends_on_a_node_that_coarsening_keeps(ni: int, multiple: int) -> None:
     first, last = span(c(CAMBERED, ni=ni), "wall")
     assert first % multiple == last % multiple == 0
+
+
+@pytest.mark.parametrize("ratio", [0.12, 0.2, 0.3])
+@pytest.mark.parametrize("base", [2.1e-4, 2.4e-4, 2.8e-4])
+def test_a_wedge_finer_than_the_points_of_a_file_closes_the_base(ratio: float, base: float) -> None:
+    section = Airfoil(selig(ratio, 0.02, base))
+    closed = section.wedged()
+    assert not closed.blunt
+    assert len(closed.curve.points) > len(section.curve.points)
+    boundary = section.boundary(Sampling(301, 11, "c", far_field=50.0, te="wedge"))
+    assert growth(boundary.south).max() < 0.15
+    assert abs(turn_of_wake(boundary)) < 2.0

@@ -16,7 +16,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.self_intersection import find_crossing
-from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, clean_section
+from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, CleanSection, clean_section
 from meshonet.geometry.shapes.airfoil.section_curve import (
     base_note,
     edge_notes,
@@ -54,9 +54,9 @@ class Airfoil:
                '-------------------'''      upper side. The leading edge is the point of the curve that
                   lower  ---->              is farthest from the trailing edge.
 
-    The `points` (n, 2) are in any unit and of either orientation, and begin anywhere (`clean_section`).
-    `places` (n,) are the positions of the points in the input, such as ``line 12``, for messages; `notes` say
-    how the points were changed before.
+    The `points` (n, 2) are in any unit and of either orientation, begin anywhere, and are cleaned
+    (`clean_section`), unless they are a clean section. `places` (n,) are the positions of the points in the
+    input, such as ``line 12``, for messages; `notes` say how the points were changed before.
 
     Raises InputError, with the place: the points are no airfoil.
     """
@@ -87,10 +87,14 @@ class Airfoil:
     """Sentences on changes of the given points."""
 
     def __init__(
-        self, points: Floats, name: str = "", places: Sequence[str] = (), notes: tuple[str, ...] = ()
+        self,
+        points: Floats | CleanSection,
+        name: str = "",
+        places: Sequence[str] = (),
+        notes: tuple[str, ...] = (),
     ) -> None:
         self.name, self._round = name, False
-        self._section = section = clean_section(points)
+        self._section = section = points if isinstance(points, CleanSection) else clean_section(points)
         self.gap, self.blunt = section.gap, section.blunt
         curve, changes, self.crossing = section_curve(section, places)
         self.points_curve = curve
@@ -246,7 +250,8 @@ class Airfoil:
         step = 0.01 * self.chord
         a, b, c, d = self.curve.at(np.array([first, first + step, last - step, last]))
         ways = (a - b) / np.hypot(*(a - b)), (d - c) / np.hypot(*(d - c))
-        return Airfoil(wedged_base(self.curve.points[1:], ways), self.name, notes=self.notes)
+        section = wedged_base(replace(self._section, points=self.curve.points[1:]), ways)
+        return Airfoil(section, self.name, notes=self.notes)
 
     def opened(self, thickness: float) -> Airfoil:
         """Return the airfoil with a base at least `thickness` chords thick."""
@@ -255,9 +260,8 @@ class Airfoil:
             return self
         from meshonet.geometry.shapes.airfoil.trailing_edge import opened_base
 
-        body = Airfoil(opened_base(self, thickness * self.chord), self.name, notes=self.notes)
-        body.notes += (opened_note(height, thickness),)
-        return body
+        notes = (*self.notes, opened_note(height, thickness))
+        return Airfoil(opened_base(self, thickness * self.chord), self.name, notes=notes)
 
     def _around(self, sampling: Sampling) -> Boundary:
         topology, te = sampling.topology, sampling.te

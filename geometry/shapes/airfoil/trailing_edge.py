@@ -24,6 +24,8 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.elementary import arctan2, power, product
+from meshonet.geometry.polygon.corners import find_corners
+from meshonet.geometry.shapes.airfoil.clean import CleanSection
 from meshonet.geometry.spacing.size_field import GROWTH, limited_size
 
 if TYPE_CHECKING:
@@ -117,13 +119,13 @@ def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:
     return np.asarray(v * v * v * a + 3 * v * v * u * p + 3 * v * u * u * q + u * u * u * b)
 
 
-def wedged_base(points: Floats, tangents: tuple[Floats, Floats]) -> Floats:
-    """Return the closed polygon (m, 2) of a blunt section with a wedge added; it starts at the tip.
+def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> CleanSection:
+    """Return a blunt section with a wedge added; it starts at the tip.
 
-    The points (n, 2) run clockwise from the lower to the upper corner of the base; `tangents` are the unit
-    directions (2,) in which the lower and the upper surface end there.
+    `tangents` are the unit directions (2,) in which the lower and the upper surface end at the corners of
+    the base. The wedge of a narrow base is finer than the points of a file, and is not cleaned as they are.
     """
-    lower, upper = tangents
+    points, (lower, upper) = section.points, tangents
     gap = float(np.hypot(*(points[0] - points[-1])))
     along = (lower + upper) / np.hypot(*(lower + upper))
     cross = float(lower[1] * upper[0] - lower[0] * upper[1])
@@ -140,26 +142,30 @@ def wedged_base(points: Floats, tangents: tuple[Floats, Floats]) -> Floats:
             leaving = way / np.hypot(*way)
         bend = u * (1 - u) ** 2 * float(np.hypot(*way)) * leaving - u * u * (1 - u) * way
         sides.append(corner + u * u * (3 - 2 * u) * way + bend)
-    return np.concatenate([[tip], sides[0][-2::-1], points, sides[1][:-1]])
+    ring = np.concatenate([[tip], sides[0][-2::-1], points, sides[1][:-1]])
+    added = _WEDGE_POINTS - 2
+    corners = section.corners + added + 1
+    bent = np.ones(len(corners), dtype=bool)
+    bent[[0, -1]] = reach == LEAST and np.isin(corners[[0, -1]], find_corners(ring, closed=True, few=0))
+    index = np.concatenate([section.index[[0] * (added + 1)], section.index, section.index[[-1] * added]])
+    return CleanSection(ring, index, False, 0.0, np.append(0, corners[bent]))
 
 
-def opened_base(airfoil: Airfoil, gap: float) -> Floats:
-    """Return the points (n, 2) of an airfoil with a trailing edge opened to the thickness `gap`.
+def opened_base(airfoil: Airfoil, gap: float) -> CleanSection:
+    """Return the section of an airfoil with a trailing edge opened to the thickness `gap`.
 
     Points move in proportion to the distance from the nose.
     """
-    curve = airfoil.curve
-    _, nose, _ = airfoil._arcs
-    lower = curve.points[(curve.knots > 0.0) & (curve.knots < nose)]
-    upper = curve.points[curve.knots > nose]
-    ends = [curve.points[:1], curve.points[:1]]
+    curve, section = airfoil.curve, airfoil._section
+    points, knots, index, corners = curve.points, curve.knots, section.index, section.corners
     if airfoil.blunt:
-        ends = [lower[:0], upper[:0]]
+        points, knots = points[1:], knots[1:]
+    else:
+        last = len(points)
+        points, knots = np.append(points, points[:1], axis=0), np.append(knots, curve.length)
+        index, corners = np.append(index, index[0]), np.union1d(corners, [0, last])
     chord = airfoil.trailing_edge - airfoil.leading_edge
     normal = np.array([-chord[1], chord[0]]) / airfoil.chord
-    missing = 0.5 * (gap - airfoil.gap)
-    sides = []
-    for side, sign in ((np.concatenate([ends[0], lower]), -1.0), (np.concatenate([upper, ends[1]]), 1.0)):
-        along = product(side - airfoil.leading_edge, chord) / airfoil.chord**2
-        sides.append(side + sign * missing * np.clip(along, 0.0, None)[:, None] * normal)
-    return np.concatenate([sides[0], airfoil.leading_edge[None], sides[1]])
+    along = np.clip(product(points - airfoil.leading_edge, chord) / airfoil.chord**2, 0.0, None)
+    missing = np.where(knots < airfoil._arcs[1], -0.5, 0.5) * (gap - airfoil.gap)
+    return CleanSection(points + (missing * along)[:, None] * normal, index, True, gap, corners)
