@@ -1,8 +1,8 @@
 """The volume grid around an aircraft: levels from the body past the tip of the wing to the far field.
 
-On each level the section of the wing is a hole, around which lies a collar; beyond the tip it is filled. So
-the junction of wing and body is no concave edge of a march: lines leave the body along the wing. The other
-half is the mirror image.
+On each level the section of the wing is a hole with a collar around it; beyond the tip the hole is filled.
+Grid lines leave the body along the wing, so the junction of wing and body needs no march out of a concave
+edge. The other half of a whole aircraft is the mirror image.
 """
 
 from __future__ import annotations
@@ -41,29 +41,29 @@ from meshonet.solvers.rows.span_spacing import (
 )
 
 _UNBOUNDED = 1e9
-"""Length of the last cells of lines, which nothing limits but their growth."""
+"""Length of the last cells of lines: they are limited by the growth ratio only."""
 _FLAT = 1e-13
-"""Distance from the plane of symmetry in lengths of the body, within which nodes are in it."""
+"""Nodes nearer to the plane of symmetry than this fraction of the body's length lie in it."""
 _UNEVEN = 0.08
 """Error of the first cell of a line, over its height, above which the line is measured in all its nodes: at a
 pointed nose or tail distances from the body are no smooth function of zeta."""
 _MEASURED = 3
-"""Times these lines are measured: between their nodes the map is taken to be linear."""
+"""How often these lines are measured; between their nodes the map is taken as linear."""
 _FINE = 129
-"""Levels of the table by which lines beyond the tip are measured."""
+"""Number of levels of the table by which lines beyond the tip are measured."""
 
 
 def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, tuple[str, ...]]:
     """Return the grid of an aircraft or its half, and notes.
 
-    Raises InputError: as `planned_grid`.
+    Raises InputError: the errors of `planned_grid`.
     """
     grid, _, notes = planned_grid(aircraft, request)
     return grid, notes
 
 
 def planned_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, float, tuple[str, ...]]:
-    """Return the grid of an aircraft or its half, the growth it was planned with, and notes.
+    """Return the grid of an aircraft or of its half, the growth ratio with which it was planned, and notes.
 
     Raises InputError: a wing that does not begin inside the body or does not leave it; wings that are too
     close to each other.

@@ -15,18 +15,18 @@ from meshonet.solvers.aircraft.level_lines import Points, Side, lines_between, w
 from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
 
 _POLE_CELL = 0.5
-"""Cells at nose and tail over those beside the collar."""
+"""Ratio of the cells at nose and tail to the cells beside the collar."""
 
 
 @dataclass(frozen=True, eq=False)
 class BodyEnd:
-    """Nose or tail: what all levels have in common there.
+    """The part of the grid at nose or tail that is the same on all levels.
 
     Parameters
     ----------
-    theta : (n,) angles of the lines out of the pole.
-    core : what replaces the pole, in the plane of polar coordinates s, theta.
-    at, step : s where the core's rows end, and its last step there.
+    theta : (n,) angles of the lines that leave the pole.
+    core : core that replaces the pole, in the plane with the polar coordinates s, theta.
+    at, step : s at which the rows around the core end, and the last step of s there.
     cells : number of cells from there to the collar.
     """
 
@@ -38,7 +38,10 @@ class BodyEnd:
 
     @classmethod
     def of(cls, points: Points, sides: Sequence[Side]) -> BodyEnd:
-        """Return the end for the sides of columns on levels from the root on, s counted from the pole."""
+        """Return the end for the sides of the first column on some levels, beginning at the root.
+
+        s is counted from the pole.
+        """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))
         theta = np.linspace(0.0, np.pi, len(sides[0][1]))
@@ -63,9 +66,10 @@ class BodyEnd:
         return begin, side, np.full(len(side), self.step), last
 
     def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
-        """Return rows and core (., ., 3) from the pole to the `side` (n, 3) of a column, with `last` cells.
+        """Return rows and core, (., ., 3) each, between the pole and the `side` (n, 3) of a column.
 
-        Both are places whose s is counted from the pole, as it is in those of `points`.
+        `last` (n,) are the lengths of the cells at the side. All are places s, theta, zeta with s counted
+        from the pole; `points` takes such places to space.
         """
         begin, end, *sizes = self._lines(side, last)
         lines = lines_between(points, begin, end, (sizes[0], sizes[1]), self.cells)

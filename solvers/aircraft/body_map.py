@@ -28,18 +28,18 @@ from meshonet.kernels._native import lattice_values, nearest_points
 from meshonet.solvers.conformal.solve import solve
 
 _LINES, _LEVELS = 513, 97
-"""Nodes of the table along s and zeta."""
+"""Numbers of nodes of the table along s and zeta."""
 _AROUND = 385
-"""Nodes around the closed meridian of which the conformal grid is made."""
+"""Number of nodes around the closed meridian of the conformal grid."""
 _NEWTON = 12
 _STEP = 1e-5
-"""Step of differences in s / length and zeta."""
+"""Step of finite differences in s / length and in zeta."""
 _COARSE = 8
-"""Every so many lines and levels are compared for a first guess of places."""
+"""Every so many lines and levels of the table are searched for the first guess of a place."""
 
 
 class BodyMap:
-    """The map from (s, zeta) to (x, r) around a `body`, to a distance `far`."""
+    """The map from (s, zeta) to (x, r) around a `body`, up to the distance `far` of the far field."""
 
     def __init__(self, body: Body, far: float) -> None:
         self.body = body
@@ -63,7 +63,7 @@ class BodyMap:
         return np.stack([x, self.body.y - r * cos(theta), r * sin(theta)], axis=-1)
 
     def meridional(self, s: Floats, zeta: Floats) -> Floats:
-        """Return x and r (n, 2) at places s and zeta (n,)."""
+        """Return x and r (n, 2) at `s` (n,) and `zeta` (n,)."""
         along, across = s * ((_LINES - 1) / self.body.length), zeta * (_LEVELS - 1)
         at_body = self.body.meridional(self.arcs(s)) - _between(self.table[:, :4], along, np.zeros_like(s))
         away = 1.0 - zeta
@@ -75,18 +75,18 @@ class BodyMap:
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
     def around(self, places: Floats) -> Floats:
-        """Return the lengths in space (...) of a unit of theta at places (..., 3)."""
+        """Return the lengths in space (...) of a radian of theta at places (..., 3)."""
         points = self.points(places)
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angles (...) between z and the body's sections at places (..., 3) on it."""
+        """Return the angles (...) in radians between z and the body's section at places (..., 3)."""
         return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
-        """Return places (..., 3) of s, theta, zeta of points (..., 3), by Newton's method.
+        """Return the places (..., 3), s, theta, zeta, of points (..., 3), by Newton's method.
 
-        It starts from the places `near` (..., 3), or else from the nearest nodes of the table.
+        The iteration starts from the places `near` (..., 3); None: from the nearest nodes of the table.
         """
         y, z = points[..., 1] - self.body.y, points[..., 2]
         theta = arctan2(z, -y)

@@ -11,7 +11,8 @@
     theta = 0    +------+---------------+---------+--------+------+
     keel         s = 0                                    s = length
 
-All in (s, theta); collars are made in lengths in space, as units of s and theta have them at the section.
+All places are (s, theta). Collars are made in lengths in space, by the lengths of units of s and theta at the
+section.
 """
 
 from __future__ import annotations
@@ -31,18 +32,19 @@ from meshonet.solvers.aircraft.level_lines import Points, Side, lines_between, w
 from meshonet.solvers.rows.span_spacing import smooth_cells
 
 _EVEN = 1.6
-"""Largest cell beside a collar of those to keel and crown, over their mean, where there is a fin: as many
-lines pass beside it as beside wings, and many of them are far from it."""
+"""Beside a fin: largest ratio of the cells next to a collar to the mean cell towards keel and crown. As many
+lines pass beside a fin as beside wings, and many of them are far from it.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class LevelPlan:
-    """Counts that all levels share, and what nose and tail have in common on all of them.
+    """Numbers of cells that are the same on all levels, and the ends of the body.
 
     Parameters
     ----------
-    columns : of wings and fins, from nose to tail.
-    between : cells between neighbouring columns.
+    columns : plans of the columns with wings and fins, from nose to tail.
+    between : numbers of cells between neighbouring columns.
     ends : nose and tail.
     """
 
@@ -57,12 +59,12 @@ class LevelPlan:
 
     @property
     def collars(self) -> tuple[CollarPlan, ...]:
-        """Of each wing and fin."""
+        """The plans of the collars of all wings and fins."""
         return tuple(collar for column in self.columns for collar in column.collars)
 
     @property
     def collar_patches(self) -> tuple[int, ...]:
-        """Numbers of the patches that are collars, of each wing and fin."""
+        """For each wing and fin the number of the patch that is its collar."""
         out, begin = [], 0
         for column in self.columns:
             out += [begin, begin + column.patches - 1][: len(column.collars)]
@@ -73,7 +75,11 @@ class LevelPlan:
 def planned(
     space: BodyMap, holes: Sequence[Sequence[Sequence[Hole]]], first: float, growth: float
 ) -> LevelPlan:
-    """Return the counts for the holes in each column, from nose to tail, on some levels from the root on."""
+    """Return the numbers of cells for the holes of each column on some levels, beginning at the root.
+
+    Columns are in order from nose to tail. `first` is the height of first cells, `growth` the largest growth
+    ratio.
+    """
     plans, levels = zip(*(planned_column(each, first, growth) for each in holes), strict=True)
     columns = _with_equal_lines(plans)
     if any(column.fin for column in columns):
@@ -134,10 +140,10 @@ def _level_with_fin(columns: Sequence[ColumnPlan], plans: Sequence[ColumnPlan]) 
 
 
 def level_patches(space: BodyMap, plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floats]:
-    """Return patches (ni, nj, 3) of s, theta and zeta on a level around the holes of columns.
+    """Return the patches (ni, nj, 3) of one level around its holes, as places s, theta, zeta.
 
-    Those of columns, from nose to tail, then the patches between them, then rows and core of the nose, rows
-    and core of the tail.
+    First come the patches of the columns, from nose to tail; then the patches between columns; then rows and
+    core of the nose, and rows and core of the tail.
     """
     levels = _beside_fins([ColumnLevel.of(*each) for each in zip(plan.columns, holes, strict=True)])
     patches = [patch for level in levels for patch in level.patches()]

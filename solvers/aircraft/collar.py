@@ -30,36 +30,40 @@ from meshonet.solvers.rows.span_spacing import smooth_arcs
 from meshonet.solvers.stacking.tip import least_sine
 
 MARGIN = 0.28
-"""Least distance of a collar's outer rectangle from the section, in chords, where the body is long enough.
+"""Smallest distance of a collar's outer rectangle from the section, in chords, if the body is long enough.
 
-Where nose, tail, keel and crown are far away, near the tip, it is larger: fewer cells lead there from it.
+It is larger near the tip, where nose, tail, keel and crown are far away, so that fewer cells are needed
+between.
 """
 _SHARE = 0.5
-"""Part of the way from the section to nose, tail, keel or crown that a collar takes at most."""
+"""Largest fraction of the way from the section to nose, tail, keel or crown that a collar takes."""
 _SHORTEST = 0.35
-"""Least cells on the short sides of the rectangle, over the mean cell of a long side."""
+"""Smallest ratio of the cells on the short sides of the rectangle to the mean cell of a long side."""
 _SHIFT = 0.3
-"""Most that the middle of a short side is moved towards nose or edge, over half its length: cells at one
-corner have .4 of their length in the middle then."""
+"""Largest displacement of the middle of a short side towards nose or edge, divided by half its length. Cells
+at one corner then have 0.4 of the length of cells in the middle.
+"""
 _NORMAL = 0.05
-"""Part of a line's length over which it is turned to the root's normal."""
+"""Fraction of a line's length over which the line is turned to the normal of the root."""
 _BENT = 0.12
-"""Part of the length of a parabola over which it keeps the direction of the root's normal."""
+"""Fraction of the length of a parabola over which it keeps the direction of the normal."""
 _ON_ROWS = 0.65
-"""Share of the elliptic grid's rows in sizes in the middle of the collar; the rest is a line's own."""
+"""Weight of the rows of the elliptic grid in the cell sizes in the middle of the collar; the rest are a
+line's own sizes.
+"""
 _FINE = 33
-"""Nodes on the lines of the elliptic grid."""
+"""Number of nodes on the lines of the elliptic grid."""
 _MIRROR = np.array([1.0, -1.0])
-"""Of the plane of a boundary, which runs clockwise."""
+"""Reflection to the plane of a `Boundary`, which runs clockwise."""
 
 
 Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
-"""Least and largest s, and theta."""
+"""Smallest and largest s, smallest and largest theta."""
 
 
 @dataclass(frozen=True)
 class Rectangle:
-    """The rectangle around a root: low and high s, low and high t."""
+    """The rectangle around the section of a wing: smallest and largest s, smallest and largest t."""
 
     front: float
     back: float
@@ -68,9 +72,10 @@ class Rectangle:
 
 
 def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
-    """Return the rectangle around a section (n, 2) of s and theta, in lengths in space.
+    """Return the rectangle around a `section` (n, 2) of s and theta, in lengths in space.
 
-    It takes at most half of the way to the least and largest s and theta `within` which the section lies.
+    `within` are the limits of s and theta between which the section lies; the rectangle takes at most half of
+    the way to them. `scale` (2,) are the lengths in space of units of s and theta.
     """
     (front, low), (back, high) = (section * scale).min(axis=0), (section * scale).max(axis=0)
     (begin, end), (bottom, top) = (
@@ -84,10 +89,11 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return how many nodes from the middles of trailing edge and nose lines end at corners of the rectangle.
+    """Return the two numbers of nodes, from the middle of the trailing edge and of the nose, to the corners.
 
-    There the normals of the root point best at the corners, so that lines are bent least, among those with
-    which cells on neighbouring sides of the rectangle have similar lengths.
+    The lines of these nodes end at the corners of the rectangle. Their normals point best at the corners, so
+    that lines are bent least; only nodes are considered with which cells on neighbouring sides of the
+    rectangle have similar lengths. There are at least `fewest` nodes.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -108,16 +114,16 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return the lengths of cells on the sides of a rectangle behind the edge and before the nose."""
+    """Return the cell lengths on the sides of a rectangle behind the trailing edge and before the nose."""
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 
 
 def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats:
-    """Return the nodes (n, 2) on a rectangle where lines from the nodes of a root (n, 2) end.
+    """Return the nodes (n, 2) on a rectangle at which the lines from the nodes of a root (n, 2) end.
 
-    The root runs from the middle of the trailing edge over the side of high t first, and is closed; `corners`
-    are those of `corner_nodes`.
+    The root is a closed curve, which runs from the middle of the trailing edge first over the side of large
+    t. `corners` is the result of `corner_nodes`.
     """
     half = (len(root) - 1) // 2
     edge, nose = corners
@@ -156,11 +162,12 @@ def _shifted(places: Floats, box: Rectangle, towards: float) -> Floats:
 def collar(
     root: Floats, outer: Floats, rows: int, first: float, last: Floats, straight: float = 0.0
 ) -> tuple[Floats, float]:
-    """Return nodes (n, rows + 1, 2) between closed loops (n, 2), with first cells `first` and `last` (n,).
+    """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and an angle.
 
-    Lines are those of an elliptic grid, for `straight` = 1 parabolas along the normals, or between both. The
-    number is the least sine of an angle between these lines and those across them, before they are turned to
-    the normals and divided.
+    Cells have the height `first` at the root and `last` (n,) at the outer loop. For `straight` = 0 the lines
+    are those of an elliptic grid, for 1 parabolas along the normals of the root, and means of both between.
+    The second result is the smallest sine of an angle between these lines and the lines across them, before
+    nodes are placed on the lines.
     """
     arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)
@@ -198,7 +205,7 @@ def _rows(arcs: Floats, rows: int, first: float, last: Floats) -> Floats:
 
 
 def lengths(root: Floats, outer: Floats) -> Floats:
-    """Return the lengths (n,) of the lines of a collar."""
+    """Return the lengths (n,) of the lines of a collar between the loops `root` and `outer` (n, 2)."""
     return _lines(root, outer)[0][:, -1]
 
 

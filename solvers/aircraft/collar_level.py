@@ -25,24 +25,24 @@ from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
 from meshonet.solvers.stacking.tip import least_sine
 
 _CORNER = 4
-"""Least number of nodes from the middle of a nose or edge to the corners of the rectangle."""
+"""Smallest number of nodes from the middle of nose or trailing edge to a corner of the rectangle."""
 FEWEST = 6
-"""Least number of cells between a collar and the plane of symmetry."""
+"""Smallest number of cells between a collar and the plane of symmetry."""
 _AHEAD = 1.2
-"""Largest outermost cell of a collar, over that of cells which grow by a constant ratio."""
+"""Largest ratio of the outermost cell of a collar to the last of cells that grow by a constant ratio."""
 _EVEN = 1.15
 """Largest ratio of neighbouring outermost cells of a collar."""
 WIDEST = 1.25
 """Growth of cells from a collar to nose, tail, keel and crown."""
 _STRAIGHT = 0.0, 0.3, 0.6, 1.0
-"""Shares of straight lines in collars that are tried, until no angle has a sine below `_SINE` or `_LINES`;
-else the best.
+"""Weights of straight lines in collars that are tried in turn, until all angles are good enough; otherwise
+the best.
 
 Elliptic grids may fold at a thin trailing edge that lies far from the middle of the rectangle.
 """
 _SINE = 0.15
 _LINES = 0.05
-"""Least sine of an angle between the lines of a collar before they are turned to the normals (`collar`)."""
+"""Smallest sine of an angle between the lines of a collar before nodes are placed on them (`collar`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,12 +51,13 @@ class Hole:
 
     Parameters
     ----------
-    section : (n, 2) s and theta around it.
-    scale : (2,) lengths in space of units of s and theta there.
-    zeta : of the level beside it.
-    within : least and largest s and theta of its collar, if that took all of the way.
-    fin : whether it is that of a fin, whose middle is the crown: a half of its collar is one of the grid.
-    below : theta where the cells below its collar end.
+    section : (n, 2) s and theta of the nodes around the section.
+    scale : (2,) lengths in space of units of s and theta at the section.
+    zeta : mean zeta of the section, which the level has beside it.
+    within : limits of s and theta for the collar.
+    fin : whether this is the section of a fin. Its middle line is the crown, and only half of its collar is
+        in the grid.
+    below : theta at which the cells below the collar end.
     """
 
     section: Floats
@@ -68,17 +69,17 @@ class Hole:
 
     @cached_property
     def box(self) -> Rectangle:
-        """The rectangle around it, in lengths in space."""
+        """The rectangle around the section, in lengths in space."""
         return rectangle(self.section, self.within, self.scale)
 
     @property
     def plane(self) -> Floats:
-        """(n, 2) nodes around it, in lengths in space."""
+        """(n, 2) nodes around the section, in lengths in space."""
         return self.section * self.scale
 
     @property
     def bands(self) -> tuple[float, float]:
-        """Lengths in space from the rectangle to keel and crown, or to the next wing's part."""
+        """Lengths in space from the rectangle to keel and crown, or to the part of the next wing."""
         bottom, top = (theta * float(self.scale[1]) for theta in (self.below, self.within[1][1]))
         if self.fin:
             top = self.box.high + self.box.low - bottom
@@ -87,17 +88,18 @@ class Hole:
 
 @dataclass(frozen=True, eq=False)
 class CollarPlan:
-    """Counts of the collars of a wing, which all levels share.
+    """Numbers of cells of the collar of a wing, which are the same on all levels.
 
     Parameters
     ----------
     edge, nose : nodes from the middles of trailing edge and nose to the corners of a collar's rectangle.
     rows : cells across a collar.
-    low, top : cells from keel and crown to a collar; from a wing to the fin above it both have as many.
+    low, top : numbers of cells from the keel to a collar, and from the collar to the crown. Between a wing
+        and the fin above it both are the same.
     first : height of the cells at the wing.
-    straight : of the lines of collars (`collar`).
-    sine : the least of an angle in them.
-    widest : largest cell beside it of those above or below, over their mean.
+    straight : weight of straight lines in the collars (`collar`).
+    sine : smallest sine of an angle in the collars.
+    widest : largest ratio of a cell above or below the collar, next to it, to the mean of these cells.
     """
 
     edge: int
@@ -112,7 +114,10 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return the nodes from the middles of trailing edge and nose to the corners, a mean over `holes`."""
+    """Return the numbers of nodes from the middles of trailing edge and nose to the corners.
+
+    They are means over `holes`.
+    """
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
     return edge, nose
@@ -121,7 +126,11 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> tuple[CollarPlan, list[CollarLevel]]:
-    """Return the plan for some `holes` of a wing, from the root on, and their levels, with narrow bands."""
+    """Return the plan for the collars of a wing on some levels, and the collars.
+
+    `holes` are its sections on these levels, beginning at the root. Bands above and below are narrow at
+    first.
+    """
     edge, nose = corners
     plan = CollarPlan(edge, nose, 4, FEWEST, FEWEST, first)
     for hole in holes:
@@ -145,14 +154,14 @@ def planned_collar(
 
 @dataclass(frozen=True, eq=False)
 class CollarLevel:
-    """One level: its collar, and the sizes of cells around it.
+    """The collar of a wing on one level, and the sizes of cells around it.
 
     Parameters
     ----------
-    plan, hole : counts, the section.
-    ring : (n, rows + 1, 2) the collar, in lengths in space.
-    between : least sine of an angle between its lines before they are turned to the normals.
-    last : lengths in space of its outermost cells at the front, below, above and at the back.
+    plan, hole : numbers of cells, and the section.
+    ring : (n, rows + 1, 2) nodes of the collar, in lengths in space.
+    between : smallest sine of an angle between its lines before nodes are placed on them.
+    last : lengths in space of the outermost cells before, below, above and behind the section.
     """
 
     plan: CollarPlan
@@ -190,7 +199,7 @@ class CollarLevel:
 
     @property
     def sine(self) -> float:
-        """The least sine of an angle in the collar."""
+        """Smallest sine of an angle in the collar."""
         return least_sine(np.pad(self.ring[::-1], ((0, 0), (0, 0), (0, 1))))
 
     @property
@@ -203,7 +212,7 @@ class CollarLevel:
     def ends(self) -> tuple[float, float]:
         """Lengths in s of the cells before and behind the rectangle.
 
-        They lie between those of the collar and those of the bands above and below it.
+        They lie between the lengths of the cells of the collar and of the bands above and below it.
         """
         behind, before = outer_cells(self.hole.box, (self.plan.edge, self.plan.nose))
         unit = float(self.hole.scale[0])
@@ -214,7 +223,7 @@ class CollarLevel:
     def beside(self) -> tuple[float, float]:
         """Lengths in space of the first cells of the bands below and above the rectangle.
 
-        They lie between the outermost cells of the collar there and those beside its corners.
+        They lie between the lengths of the outermost cells of the collar and of the cells beside its corners.
         """
         outer, half = self.ring[:, -1, 1], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
@@ -230,7 +239,7 @@ class CollarLevel:
 
     @cached_property
     def low_and_top(self) -> tuple[Floats, Floats]:
-        """Theta of the lines from the keel to the rectangle, and from there to the crown."""
+        """Theta of the nodes from the keel to the rectangle, and from the rectangle to the crown."""
         out = []
         for cells, way, step in zip(
             (self.plan.low, self.plan.top), self.hole.bands, self.beside, strict=True
@@ -244,7 +253,7 @@ class CollarLevel:
 
     @property
     def across(self) -> tuple[Floats, Floats]:
-        """Theta of the lines before and behind the rectangle, from its low to its high side or the crown."""
+        """Theta of the nodes on the front and on the back side of the rectangle, from low to high."""
         outer, half, rho = self.ring[:, -1, 1], (len(self.ring) - 1) // 2, float(self.hole.scale[1])
         edge, nose = self.plan.edge, self.plan.nose
         front = outer[half + nose : half - nose - 1 : -1] / rho
@@ -263,7 +272,10 @@ class CollarLevel:
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]
 
     def collar(self) -> Floats:
-        """Return the collar (n, rows + 1, 2), of a fin the half up to the crown, from nose to edge."""
+        """Return the nodes (n, rows + 1, 2) of the collar.
+
+        Of a fin only the half up to the crown, from nose to edge.
+        """
         ring = self.ring / self.hole.scale
         if not self.hole.fin:
             return ring

@@ -37,19 +37,21 @@ from meshonet.solvers.aircraft.level_lines import Side
 from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
 
 _FOLLOWING = 0.7
-"""Share of the angles of lines beside a fin in those below it; the rest is of cells that change evenly."""
+"""Weight of the angles theta beside a fin in the angles below it; the rest come from cells that change
+evenly.
+"""
 _HALVINGS = 40
-"""Of the interval in which a factor of cells is sought."""
+"""Largest and smallest factor of cells that is tried."""
 
 
 @dataclass(frozen=True, eq=False)
 class ColumnPlan:
-    """Counts of a column, which all levels share.
+    """Numbers of cells of a column, which are the same on all levels.
 
     Parameters
     ----------
-    collars : of its wing, of its fin, or of both, the fin last.
-    fin : whether there is one.
+    collars : plans of the collars of its wing, of its fin, or of both; the fin is last.
+    fin : whether there is a fin.
     """
 
     collars: tuple[CollarPlan, ...]
@@ -62,7 +64,7 @@ class ColumnPlan:
 
     @property
     def bands(self) -> int:
-        """Cells from keel to crown above and below collars."""
+        """Number of cells from keel to crown above and below the collars."""
         return self.collars[0].low + (0 if self.fin_alone else self.collars[0].top)
 
     @property
@@ -72,13 +74,16 @@ class ColumnPlan:
 
     @property
     def beside(self) -> tuple[int, int]:
-        """Cells from keel to crown before and behind collars."""
+        """Numbers of cells from keel to crown before and behind the collars."""
         shares = [1 if self.fin and each is self.collars[-1] else 2 for each in self.collars]
         before = sum(n * each.nose for n, each in zip(shares, self.collars, strict=True))
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))
 
     def with_bands(self, cells: int, low: int | None = None) -> ColumnPlan:
-        """Return the plan with so many `bands`, in the same proportion or with `low` of them at the keel."""
+        """Return the plan with `cells` cells above and below collars, `low` of them below.
+
+        If `low` is None, the proportion above and below is kept.
+        """
         first, *others = self.collars
         if self.fin_alone:
             return replace(self, collars=(replace(first, low=cells, top=cells),))
@@ -88,14 +93,20 @@ class ColumnPlan:
         return replace(self, collars=(replace(first, low=low, top=top), *fins))
 
     def evened(self, widest: float) -> ColumnPlan:
-        """Return the plan with cells beside collars of at most `widest` times the mean to keel and crown."""
+        """Return the plan in which cells next to collars are at most `widest` times the mean cell.
+
+        The mean is over the cells from the collar to keel and crown.
+        """
         return replace(self, collars=tuple(replace(each, widest=widest) for each in self.collars))
 
 
 def planned_column(
     holes: Sequence[Sequence[Hole]], first: float, growth: float
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
-    """Return the plan for the holes of a wing, a fin, or both, on some levels from the root on, and these."""
+    """Return the plan for the column of a wing, a fin, or both, and the columns on some levels.
+
+    `holes` are the sections on these levels, beginning at the root.
+    """
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)
     plan = ColumnPlan(collars, holes[-1][0].fin)
@@ -113,10 +124,10 @@ class ColumnLevel:
 
     Parameters
     ----------
-    plan : counts.
-    levels : of the collars of its wing and fin.
-    below : theta of lines from the keel to the first collar, if these are not its own.
-    keel, crown : zeta there, if it is not that of the first collar.
+    plan : numbers of cells.
+    levels : collars of its wing and fin on this level.
+    below : theta of the nodes from the keel to the first collar, if they are prescribed.
+    keel, crown : zeta at keel and crown, if it differs from that of the first collar.
     """
 
     plan: ColumnPlan
@@ -127,12 +138,12 @@ class ColumnLevel:
 
     @classmethod
     def of(cls, plan: ColumnPlan, holes: Sequence[Hole]) -> ColumnLevel:
-        """Return the level of holes, that of a fin last."""
+        """Return the column around `holes`, of which that of a fin is last."""
         levels = (CollarLevel.of(*each) for each in zip(plan.collars, holes, strict=True))
         return cls(plan, tuple(levels))
 
     def with_counts(self, plan: ColumnPlan) -> ColumnLevel:
-        """Return the column with the counts of another plan, but those of collars."""
+        """Return the column with the numbers of cells of another plan, except those of its collars."""
         levels = (replace(each, plan=counts) for each, counts in zip(self.levels, plan.collars, strict=True))
         return replace(self, plan=plan, levels=tuple(levels))
 
@@ -142,14 +153,17 @@ class ColumnLevel:
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
-        """Return the column of a fin alone next to one of a wing, of whose `side` it nearly has the lines."""
+        """Return the column of a fin without a wing next to the column of a wing.
+
+        The nodes below the fin have nearly the theta of those on the `side` of the wing's column.
+        """
         own, others = self.low, side[0][: len(self.low), 1]
         keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
         return replace(self, below=_followed(own, others), keel=keel)
 
     @property
     def zeta(self) -> float:
-        """Zeta of the first collar."""
+        """The zeta of the first collar."""
         return self.levels[0].hole.zeta
 
     @property
@@ -158,7 +172,7 @@ class ColumnLevel:
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return the way in space from the wing's collar to that of the fin, and the cells there."""
+        """Return the length in space from the wing's collar to the fin's, and the cells at both ends."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])
@@ -186,7 +200,7 @@ class ColumnLevel:
 
     @property
     def sides(self) -> tuple[Side, Side]:
-        """Front and back."""
+        """The nodes on the front and on the back of the column, from keel to crown."""
         return self._side(0), self._side(1)
 
     def _side(self, which: int) -> Side:
@@ -223,7 +237,7 @@ class ColumnLevel:
         return self.zeta if self.crown is None else self.crown
 
     def patches(self) -> list[Floats]:
-        """Return patches (ni, nj, 3): a collar, those above and below it, the collar of a fin above."""
+        """Return the patches (ni, nj, 3): collar, patches above and below it, collar of a fin above."""
         below, above = self.levels[0].long_sides
         zeta = self.zeta
         patches = [_on(self.levels[0].collar(), zeta)]

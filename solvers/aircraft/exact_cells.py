@@ -9,17 +9,18 @@ from meshonet.geometry.elementary import exp, log
 from meshonet.solvers.aircraft.body_map import BodyMap
 
 _ROUNDS = 6
-"""Times a place is scaled along its line."""
+"""How often a place is scaled along its line."""
 _STILL = 1e-12
-"""Relative change of a distance below which it tells no power."""
+"""Smallest relative change of a distance from which the power is computed."""
 _INVERSES = 0.2, 5.0
-"""Range of one over the power."""
+"""Range of the reciprocal of the power."""
 
 
 def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Floats:
     """Return the places (..., 3) on the lines from `wall` to `beside` (..., 3) at the distance `first`.
 
-    Near the wall the distance is a power of the way, 1 but at a pointed nose or tail; two ways tell which.
+    Near the wall the distance from it is a power of the fraction of the way. The exponent is 1 except at a
+    pointed nose or tail; it is computed from two fractions.
     """
     away, foot = beside - wall, space.points(wall)
     scale = inverse = np.ones(away.shape[:-1])
@@ -36,9 +37,10 @@ def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Flo
 
 
 def between_walls(walls: tuple[Floats, Floats], beside: Floats, first: float) -> Floats:
-    """Return the points (n, 3) nearest to `beside` (n, 3) at the distance `first` from two points (n, 3).
+    """Return the points (n, 3) at the distance `first` from the points of both `walls`, (n, 3) each.
 
-    These are at most twice as far apart.
+    Of these the points nearest to `beside` (n, 3) are taken. The two points on the walls must be at most
+    twice `first` apart.
     """
     middle, half = 0.5 * (walls[0] + walls[1]), 0.5 * (walls[1] - walls[0])
     away, square = beside - middle, (half * half).sum(axis=-1)

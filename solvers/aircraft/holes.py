@@ -18,19 +18,20 @@ from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.rows.span_spacing import SAMPLES
 
 _CLEAR = 0.35
-"""Least way between neighbouring wings, over the shorter of their chords there."""
+"""Smallest distance between neighbouring wings, divided by the shorter of the two chords there."""
 _CLEAR_FIN = 0.9
-"""The same for a fin with a column of its own: levels lead steeply from a long wing to a fin close to it."""
+"""The same for a fin with a column of its own: levels are steep between a long wing and a fin close to it."""
 _PART = 2.0 / 3.0
-"""Part of this way within which a collar takes half."""
+"""A collar takes at most half of this fraction of the distance."""
 
 
 def columns_of(
     space: BodyMap, wings: Sequence[WingLines], sections: Sequence[Floats]
 ) -> tuple[tuple[int, ...], ...]:
-    """Return the numbers of wings in each column from nose to tail, given sections (k, n, 3) on key levels.
+    """Return the numbers of the wings in each column, from nose to tail.
 
-    A fin above a wing, or so near to it along the body that there is no room between them, is in its column.
+    `sections` (k, n, 3) are the sections of each wing on the key levels. A fin above a wing, or so near to it
+    along the body that there is no room between them, is in the column of the wing.
 
     Raises InputError: a fin above two wings.
     """
@@ -60,12 +61,12 @@ Each = TypeVar("Each")
 
 
 def ordered(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[Each]:
-    """Return the values of wings in the order of `columns`."""
+    """Return the `values` of wings, one per wing, in the order of `columns`."""
     return [values[k] for column in columns for k in column]
 
 
 def grouped(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[list[Each]]:
-    """Return the values of wings, already in the order of `columns`, column by column."""
+    """Return the `values` of wings, which are in the order of `columns`, as a list for each column."""
     rest = iter(values)
     return [list(islice(rest, len(column))) for column in columns]
 
@@ -99,7 +100,7 @@ def holes_of(
 ) -> tuple[tuple[tuple[Hole, ...], ...], ...]:
     """Return the holes of each wing in `columns` on the key levels, from nose to tail.
 
-    `sections` (k, n, 3) are those of each wing on these levels.
+    `sections` (k, n, 3) are the sections of each wing on these levels.
 
     Raises InputError: a section that meets the plane of symmetry; wings that are too close to each other.
     """

@@ -12,21 +12,23 @@ from meshonet.solvers.algebraic.resample.lines import sampled
 from meshonet.solvers.rows.span_spacing import smooth_arcs
 
 _FINE = 65
-"""Places on a line by which it is measured."""
+"""Number of places on a line at which its length is measured."""
 
 Points: TypeAlias = Callable[[Floats], Floats]
-"""Points (..., 3) in space at places (..., 3)."""
+"""Function from places (..., 3) to points (..., 3) in space."""
 
 Side: TypeAlias = tuple[Floats, Floats]
-"""Nodes (n, 3) s, theta, zeta on the front or back of a column, from the keel, and cells (n,) there in s."""
+"""Nodes (n, 3), s, theta, zeta, on the front or back of a column, from the keel, and the cell lengths (n,)
+there in s.
+"""
 
 
 def lines_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats], cells: int
 ) -> Floats:
-    """Return nodes (n, cells + 1, 3) on lines from places (n, 3) to others, s being the first.
+    """Return nodes (n, cells + 1, 3) on lines between places `begin` and `end` (n, 3), s, theta, zeta.
 
-    Their cells change evenly in space, between those that are `sizes` (n,) long in s at both ends.
+    Cell lengths in space change evenly; at both ends cells have the lengths `sizes` (n,) in s.
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
     nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))
@@ -37,7 +39,7 @@ def lines_between(
 def ways_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats]
 ) -> tuple[Floats, tuple[Floats, Floats]]:
-    """Return the lengths (n,) of these lines and of their first and last cells, in space."""
+    """Return the lengths (n,) in space of the lines of `lines_between`, and of their first and last cells."""
     _, arcs, ends = _measured(points, begin, end, sizes)
     return arcs[:, -1], ends
 

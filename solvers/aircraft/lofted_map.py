@@ -1,8 +1,8 @@
-"""The space around a body through cross-sections: that around a like body of revolution, moved.
+"""The space around a body given by cross-sections: the space around a similar body of revolution, displaced.
 
-On the body points are moved to its sections. Away from it the shape fades as one over the distance from the
-axis, so that lines leave an ellipse at right angles; that sections are higher or lower than others fades
-towards the far field.
+Points on the body of revolution are moved to the sections. Away from the body the displacement decreases as
+the inverse distance from the axis, so that lines leave an ellipse at right angles; the differences in height
+between sections decrease towards the far field.
 """
 
 from __future__ import annotations
@@ -18,19 +18,21 @@ from meshonet.solvers.aircraft.exact_cells import at_height
 
 _NEWTON = 16
 _STEP = 1e-5
-"""Step of differences in s / length, theta and zeta."""
+"""Step of finite differences in s / length, theta and zeta."""
 _FADING = 0.6
 """Largest decrease of the distance from the axis, by its fading, over that distance's increase."""
 _ABOVE = np.array([0.0, 0.0, 1e-3])
 """Step to the place by which the normal of a body of revolution is known."""
 _AROUND = 33
-"""Angles around a pole of which normals are taken."""
+"""Number of angles around a pole at which normals are computed."""
 _POLE = 1e-4
-"""Arc length over the body's, beside a nose or tail, where normals are those of the surface around it."""
+"""Distance from nose or tail, divided by the body's length, within which a normal is the mean of those around
+the pole.
+"""
 
 
 class LoftedMap(BodyMap):
-    """The map from (s, theta, zeta) to space around a lofted `body`, to a distance `far`."""
+    """The map from (s, theta, zeta) to the space around a lofted `body`, up to the distance `far`."""
 
     body: LoftedBody
 
@@ -83,7 +85,7 @@ class LoftedMap(BodyMap):
         return super().places(lowered)
 
     def around(self, places: Floats) -> Floats:
-        """Return the lengths in space (...) of a unit of theta at places (..., 3)."""
+        """Return the lengths in space (...) of a radian of theta at places (..., 3)."""
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:
@@ -97,9 +99,9 @@ class LoftedMap(BodyMap):
         return (self.points(places + step) - self.points(places - step)) / (2.0 * _STEP)
 
     def normals(self, foot: Floats) -> Floats:
-        """Return unit normals (n, 3) of the body at places (n, 3) on it.
+        """Return the unit normals (n, 3) of the body at places `foot` (n, 3), s, theta, zeta = 0.
 
-        At nose and tail, where meridians meet, they are the mean of the normals around.
+        At nose and tail, where meridians meet, the normal is the mean of the normals around the pole.
         """
         length, normals = self.body.length, self._normals(_off_poles(foot, self.body.length))
         theta = np.linspace(0.0, np.pi, _AROUND)
@@ -138,9 +140,10 @@ def map_around(body: Body, far: float) -> BodyMap:
 
 
 def points_above(space: BodyMap, foot: Floats, first: float) -> Floats:
-    """Return points (n, 3) on normals of the body at the height `first` above places (n, 3) on it.
+    """Return the points (n, 3) at the height `first` on the normals of the body.
 
-    Around a body of revolution lines of constant s and theta are its normals.
+    `foot` (n, 3) are the places s, theta, zeta = 0 of the feet of the normals. Around a body of revolution,
+    lines of constant s and theta are normals of the body.
     """
     if isinstance(space, LoftedMap):
         return np.asarray(space.points(foot) + first * space.normals(foot))

@@ -17,23 +17,25 @@ from meshonet.geometry.sections.stack import Stack
 from meshonet.solvers.stacking.section_nodes import Around
 
 _INWARDS = 0.0, 0.01, 0.02, 0.05, 0.1
-"""Lengths, in chords, by which the lines of a surface that ends on a body are tried to go on into it."""
+"""Lengths, in chords, by which lines of a surface that ends on a body are continued into the body, in order
+of attempts.
+"""
 
 
 class Loft(Protocol):
-    """Lines along the span."""
+    """Lines along the span of a wing, one for each node around its sections."""
 
     @property
     def begin(self) -> Floats:
-        """(n,) heights z where they begin, inside the body."""
+        """(n,) heights z at which the lines begin, inside the body."""
 
     @property
     def tip(self) -> float:
-        """Height where all end."""
+        """Height at which all lines end."""
 
     @property
     def remedy(self) -> str:
-        """What a user can do where they do not begin inside."""
+        """Text for a user whose lines do not begin inside the body."""
 
     def line(self, number: int, z: Floats) -> Floats:
         """Return points (m, 3) on a line at heights z (m,)."""
@@ -88,9 +90,9 @@ class SurfaceLoft:
 
     Parameters
     ----------
-    lines : each (stations, 3), from the upper corner of the base around the nose to the lower one.
-    begin : (n,) heights where lines begin, with those in the middle of the base.
-    tip : height where they end.
+    lines : (stations, 3) each, from the upper corner of the base around the nose to the lower corner.
+    begin : (n,) heights at which lines begin, including the lines in the middle of the base.
+    tip : height at which lines end.
     """
 
     lines: Sequence[Floats]
@@ -102,7 +104,7 @@ class SurfaceLoft:
     def of(cls, wing: SurfaceWing, body: Body, plan: Around) -> SurfaceLoft:
         """Return the lines of a wing on a body, distributed as in a `plan` with two cells on the base.
 
-        Lines that end on the body go on into it, straight and as far as they must.
+        Lines that end on the body are continued straight into it, as far as necessary.
         """
         base = float(np.median(wing.base(wing.z)))
         q = np.linspace(0.0, 1.0, plan.cells + 1)

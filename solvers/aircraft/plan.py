@@ -24,21 +24,26 @@ from meshonet.solvers.rows.span_spacing import SAMPLES, spaced_cells
 from meshonet.solvers.stacking.wing_surface import DEFAULT_AROUND, DEFAULT_SPAN
 
 GROWTHS = 1.2, 1.225, 1.25
-"""Growth of cells away from walls where none is given: the first, or the first with few enough cells."""
+"""Growth ratios away from walls if none is given: the first, or with a given number of cells the first that
+fits.
+"""
 _PLANNED = (0, 4, 8, 12, 16)
-"""Key levels from which counts are taken."""
+"""Number of key levels from which numbers of cells are derived."""
 _TRIED = 59, 97
-"""Nodes around a wing by which others are found. With fewer, cells around it would grow too much."""
+"""Smallest number of nodes around a wing from which others are derived. With fewer, cells would grow too
+much.
+"""
 _ALONG = (DEFAULT_SPAN - 1) / (DEFAULT_AROUND - 1)
-"""Largest cells along the span over those around, where only the number of all cells is given."""
+"""Largest ratio of cells along the span to cells around sections, if only the total number of cells is given.
+"""
 _ACUTE = math.radians(45.0)
-"""Angle of wing and body below which it is the reason why cells beside the root are folded."""
+"""Angle between wing and body below which it is given as the reason for folded cells beside the root."""
 _OBLIQUE = math.radians(40.0)
-"""Least angle between the surfaces of wing and body, across the root: below it cells are folded there."""
+"""Smallest angle between the surfaces of wing and body, across the root: below it cells fold."""
 _AHEAD = 1e-3
-"""Part of the span over which the direction of a wing at its root is taken."""
+"""Fraction of the span over which the direction of a wing at its root is measured."""
 _ENOUGH = 1.15
-"""Cells over those wanted above which a note says so."""
+"""Ratio of the number of cells to the requested number from which on a note says so."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,13 +52,14 @@ class AircraftPlan:
 
     Parameters
     ----------
-    wings : lines along the span of each wing, from nose to tail, that of a fin after the wing below it.
-    sections : of each wing, (SAMPLES, n, 3) s, theta and zeta around it on the key levels.
-    holes : of each wing, on the key levels, column by column.
-    levels : counts that levels share.
-    tips : of each wing, nodes (m, k, 3) of the ring and of the core that fill its last section.
-    span, beyond : cells from the body to the tips, and from there to the far field.
-    growth : of cells away from walls, at most.
+    wings : lines along the span of each wing, in order from nose to tail; a fin comes after the wing below
+        it.
+    sections : for each wing (SAMPLES, n, 3), s, theta and zeta of the nodes around it on the key levels.
+    holes : for each column, wing and key level the section of the wing.
+    levels : numbers of cells that are the same on all levels.
+    tips : for each wing the nodes (m, k, 3) of the ring and of the core that fill its last section.
+    span, beyond : numbers of cells from the body to the tips, and from the tips to the far field.
+    growth : largest growth ratio away from walls.
     halves : 2 if the grid has both halves of the aircraft, else 1.
     """
 
@@ -71,10 +77,10 @@ class AircraftPlan:
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> AircraftPlan:
         """Return the plan for `around` nodes around each wing.
 
-        Cells grow by the first of `GROWTHS` if the request has no growth ratio.
+        If the request has no growth ratio, the first of `GROWTHS` is used.
 
-        Raises InputError: if a wing does not begin inside the body or does not leave it, if wings are too
-        close to each other, or a root is too close to keel or crown.
+        Raises InputError: a wing that does not begin inside the body or does not leave it; wings that are too
+        close to each other; a root that is too close to keel or crown.
         """
         chord = aircraft.wing.chord
         first, growth = request.height() * chord, request.growth or GROWTHS[0]
@@ -104,12 +110,12 @@ class AircraftPlan:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was changed of the sections."""
+        """Notes on changes of the sections."""
         return tuple(dict.fromkeys(note for wing in self.wings for note in wing.notes))
 
     @property
     def cells(self) -> int:
-        """About how many cells there will be."""
+        """Approximate number of cells of the grid."""
         columns = sum(
             (each.shape[1] - 1) * made.rows
             for each, made in zip(self.sections, self.levels.collars, strict=True)
@@ -128,9 +134,9 @@ class AircraftPlan:
 def plan_of(
     aircraft: Aircraft, request: AircraftRequest, space: BodyMap
 ) -> tuple[AircraftPlan, tuple[str, ...]]:
-    """Return the plan of a grid with the cells or nodes that are wanted, and notes.
+    """Return the plan of a grid with the requested number of cells or of nodes around wings, and notes.
 
-    Raises InputError: as `AircraftPlan.of`.
+    Raises InputError: the errors of `AircraftPlan.of`.
     """
     if request.cells is None:
         plan = AircraftPlan.of(aircraft, request, space, request.surface.around)

@@ -10,7 +10,7 @@ from meshonet.solvers.keywords import refuse_given, request_from
 from meshonet.solvers.stacking.request import StackRequest
 
 _OTHERS = ("layers", "revolve", "axis", "copies")
-"""Options of other stacks."""
+"""Options of stacks that do not apply to an aircraft."""
 
 
 @dataclass(frozen=True)
@@ -21,10 +21,10 @@ class AircraftRequest(StackRequest):
 
 
 def aircraft_request(**parameters: Any) -> AircraftRequest:
-    """Return the request with the parameters, fields of `AircraftRequest`.
+    """Return the request with these fields of `AircraftRequest`.
 
-    Raises InputError: as `AircraftRequest`, a parameter that an aircraft has no use for, or both `cells` and
-    `around`.
+    Raises InputError: the errors of `AircraftRequest`; a parameter that does not apply to an aircraft; both
+    `cells` and `around`.
     """
     refuse_given("an aircraft", {name: name in parameters for name in _OTHERS})
     if "cells" in parameters and "around" in parameters:

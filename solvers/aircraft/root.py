@@ -10,13 +10,13 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.aircraft.lofts import Loft
 
 _PLACES = 65
-"""Heights at which a line is compared with the body at a time."""
+"""Number of heights at which a line is compared with the body in each step."""
 _PASSES = 6
-"""Times that the interval around a crossing is divided into `_PLACES` parts."""
+"""Number of steps; each divides the interval around a crossing."""
 
 
 def root_heights(loft: Loft, name: str, body: Body) -> Floats:
-    """Return the heights z (n,) at which lines along the span of a wing leave a body.
+    """Return the heights z (n,) at which the lines of a `loft` leave a body; `name` is that of the wing.
 
     Raises InputError: a line that begins outside of the body, or never leaves it.
     """

@@ -13,22 +13,25 @@ from meshonet.geometry.elementary import exp, log
 from meshonet.solvers.rows.columns import arcs_of
 
 _SHARE = 0.5
-"""Share of the logarithm of even cells over first ones by which cells far away are thicker: with all of it,
-levels beyond the tip would lean far."""
+"""Exponent of the ratio of even cells to first cells by which cells far away are thicker than first cells:
+with 1, levels beyond the tip would be very oblique.
+"""
 _WAY = 5.0
-"""Way from the tip to these cells, over the thickness that the layers of the tip would have of even cells."""
+"""Distance from the tip to these cells, divided by the thickness of layers up to the even cells."""
 
 _ROUNDS = 40
-"""Most steps of Newton's method for the growth of cells."""
+"""Largest number of steps of Newton's method for the growth ratio."""
 _STILL = 1e-13
-"""Change of its logarithm below which these end."""
+"""Change of the logarithm of the growth ratio below which the iteration ends."""
 
 
 def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
-    """Return arcs (n, cells + 1) on lines of `lengths` (n,) beyond the tip, with cells from `first` (n,) on.
+    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,) beyond the tip.
 
-    The fourth power of a size is that of cells that grow by a constant ratio from the least of all first
-    ones on, and what the fourth power of the line's own first one is more than that.
+    `first` (n,) are the sizes of the first cells.
+
+    Let h be the sizes of cells that grow by a constant ratio from the smallest of all first cells. Cells of a
+    line have the sizes (h^4 + c)^(1/4), where the constant c gives the first cell of this line.
     """
     least = float(first.min())
     more = (np.square(np.square(first / least)) - 1.0)[:, None]
@@ -48,9 +51,10 @@ def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
 
 
 def last_cells(points: Floats, section: Indices, even: Floats, first: float, growth: float) -> Floats:
-    """Return heights (p,) of cells at the level of the tip, of lines that pass it at `points` (p, 3).
+    """Return the cell heights (p,) at the level of the tip, for lines that cross it at `points` (p, 3).
 
-    They are `first` on the lines `section` along the wing, and far away between this and `even` (p,).
+    They are `first` on the lines with the numbers `section`, which lie on the wing; far away they are between
+    `first` and `even` (p,).
     """
     wing = points[section]
     away = np.array([norms(wing - point).min() for point in points])

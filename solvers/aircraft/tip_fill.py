@@ -9,9 +9,9 @@ from meshonet.solvers.rows.span_spacing import smooth_arcs
 from meshonet.solvers.stacking.tip import ROWS, Cap
 
 _GROWTH = 1.27
-"""Growth of the rows of the ring: the section is thin, and its edge is no place of boundary layers."""
+"""Growth ratio of the rows of the ring: the section is thin, and there is no boundary layer at its edge."""
 _LONGEST = 0.18, 0.05
-"""Outermost and innermost cells of many rows over the lengths of lines that are too short for both."""
+"""Outermost and innermost cells, divided by the length of a line that is too short for the wanted cells."""
 _MOST_ROWS = 200
 
 
@@ -36,9 +36,10 @@ def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
 
 
 def half_tip_patches(half: Floats, first: float) -> tuple[Floats, Floats]:
-    """Return half the patches inside the tip of a fin: that inside a `half` (n, 3) from nose to edge.
+    """Return half the patches inside the tip of a fin.
 
-    They are those of a wing, turned.
+    `half` (n, 3) are the nodes of half its section, from nose to edge. The patches are those of a wing,
+    rotated.
     """
     flat = half[:, [0, 2, 1]]
     loop = np.concatenate([flat[::-1], flat[1:] * [1.0, -1.0, 1.0]])

@@ -1,4 +1,4 @@
-"""Lines that leave body and wing at right angles, and come back to where they were away from the walls.
+"""Turns grid lines to the normals of body and wing near these walls; away from the walls lines do not change.
 
 ::
 
@@ -18,21 +18,22 @@ from meshonet.geometry.elementary import exp
 from meshonet.solvers.aircraft.wing_lines import WingLines
 
 _WAY = 0.6
-"""Length over which a line is moved, over its distance from another wall."""
+"""Length over which a line is displaced, divided by its distance from the other wall."""
 
 _TURN = 0.5
-"""Distance from another wall that stands for the chord of a tip, beside which there is none."""
+"""Length that takes the place of this distance beyond a tip, in chords of the tip."""
 
 
 _OBLIQUE = 0.4
-"""Largest cosine of the angle of a level at the edge of a tip and the middle of directions of lines there."""
+"""Largest cosine of the angle between the level at the edge of a tip and the mean direction of lines there.
+"""
 
 
 def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: float) -> Floats:
-    """Return points (k, p, 3) of lines from a body, row k = 0, whose first cells, `first` high, are normal.
+    """Return the points (k, p, 3) of lines, turned to the normals of the body, on which they begin at k = 0.
 
-    `normal` (p, 3) are points at the height `first` above the body, `rings` (n, m) the columns of collars
-    from each wing outwards.
+    `normal` (p, 3) are the points at the height `first` on the normals of the body; first cells get this
+    height. `rings` (n, m) are the column numbers of each collar, from the wing outwards.
     """
     turned = (normal - points[1]) / first
     turned[points[0, :, 2] == 0.0, 2] = 0.0
@@ -49,7 +50,10 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
 
 
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
-    """Return points (k, p, 3), with lines of the collar `ring` (n, m) at right angles to the wing's span."""
+    """Return the points (k, p, 3) with the lines of a collar turned to right angles to the span of its wing.
+
+    `ring` (n, m) are the column numbers of the collar, `first` is the height of its first cells.
+    """
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first
     span = np.gradient(wall, axis=0)
@@ -75,11 +79,12 @@ def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Fl
 def across_tip(
     low: Floats, high: Floats, ring: Indices, wing: WingLines, first: float
 ) -> tuple[Floats, Floats]:
-    """Return points (k, p, 3) below and beyond a tip, where its level is less oblique to lines at its edge.
+    """Return the points (k, p, 3) below and beyond a tip, with the level of the tip less oblique at its edge.
 
-    Lines come to the tip along the span and leave it at right angles to it. The collar `ring` (n, m) is
-    turned near the edge, towards right angles to the middle of both directions, where it is much nearer to
-    these; this fades along the lines, and where they begin and end. First cells stay `first` high.
+    Lines reach the tip along the span and leave it along the normal of the tip. Near the edge, the level of
+    the collar `ring` (n, m) is turned towards right angles to the mean of both directions, if it is too
+    oblique. The displacement decreases along the lines, to 0 at their ends. First cells keep the height
+    `first`.
     """
     level = high[0, ring]
     along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]
@@ -115,10 +120,12 @@ def _chord(edge: Floats, wing: WingLines) -> float:
 
 
 def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
-    """Return points (k, p, 3) of lines beyond a tip, row k = 0, whose first cells on it are normal.
+    """Return the points (k, p, 3) of lines beyond a tip, turned to its normals.
 
-    `cap` (c,) are the columns that fill the last section, `ring` (n, m) those of its collar. Lines of the
-    collar turn with those of the wing, the less the farther out they are.
+    Lines begin on its level, k = 0.
+
+    `cap` (c,) are the numbers of the columns that fill the last section, `ring` (n, m) those of its collar.
+    Lines of the collar are turned less the farther they are from the section.
     """
     apart = arc_lengths(points[0, ring])
     fade = 1.0 - apart / apart[:, -1:]

@@ -18,22 +18,26 @@ from meshonet.solvers.rows.span_spacing import spaced_cells, two_sided
 from meshonet.solvers.stacking.section_nodes import GAP, Around, around, unit_nodes
 
 _TRIED = 1.2, 1.25, 1.3, 1.35, 1.4, 1.5, 2.0
-"""Growth of cells around sections that is tried. Longer cells at the nose would allow for hardly less, and
-cost lift: 4 % on a coarse grid."""
+"""Growth ratios of cells around sections, in order of attempts. Longer cells at the nose would hardly allow a
+smaller growth, and reduce the lift by 4 % on a coarse grid.
+"""
 _BASE = 2
-"""Cells across a base."""
+"""Number of cells across a base."""
 _SHARP = 0.001
-"""Least height of the base of a wing that is a surface, in chords, where none is given."""
+"""Smallest height of the base of a wing given as a surface, in chords, if no height is prescribed."""
 _ROUNDS = 6
-"""Times a part is scaled; lines are nearly straight over a first cell."""
+"""How often a fraction is scaled; lines are nearly straight over a first cell."""
 
 
 @dataclass(frozen=True)
 class EvenAround(Around):
-    """Distribution of nodes around sections, whose cells grow by as little as their number allows."""
+    """Distribution of nodes around sections with the smallest growth that their number allows."""
 
     def law(self, height: float, length: float) -> Callable[[Floats], Floats]:
-        """Return the law from base to nose for a side of the given length and base height, both in chords."""
+        """Return the node distribution of a side from base to nose.
+
+        Height of the base and length are in chords.
+        """
         ends = self.ends(height, length)
         for growth in _TRIED:
             if spaced_cells(1.0, ends, growth, 1.0, 4) <= self.cells:
@@ -51,10 +55,11 @@ class WingLines:
     Parameters
     ----------
     loft : the lines, from inside the body.
-    name : of the wing.
-    roots : (n,) heights z where they leave the body.
-    notes : what was changed of the wing.
-    fin : whether its span is along y: lines are those of its half z >= 0, from nose to trailing edge.
+    name : name of the wing.
+    roots : (n,) heights z at which the lines leave the body.
+    notes : sentences on changes of the wing.
+    fin : whether this is a fin, with its span along y; it has only the lines of the half z >= 0, from nose to
+        edge.
     """
 
     loft: Loft
@@ -67,9 +72,9 @@ class WingLines:
     def of(
         cls, wing: Stack | SurfaceWing, name: str, body: Body, nodes: int, base: float | None = None
     ) -> WingLines:
-        """Return `nodes` lines, of a wing with trailing edges of at least `base` chords.
+        """Return `nodes` lines of a wing, with trailing edges opened to a thickness of `base` chords.
 
-        Raises InputError: too few nodes, a wing that does not begin in the body or does not leave it.
+        Raises InputError: too few nodes; a wing that does not begin inside the body or does not leave it.
         """
         if isinstance(wing, SurfaceWing):
             least = _SHARP if base is None else base
@@ -84,12 +89,12 @@ class WingLines:
         return cls(loft, name, roots, notes, fin)
 
     def points(self, parts: Floats) -> Floats:
-        """Return points (k, n, 3) at parts (k, n) of the way along the lines, in z."""
+        """Return points (k, n, 3) on the lines at the fractions `parts` (k, n) of z from root to tip."""
         z = self.roots + parts * (self.loft.tip - self.roots)
         return np.stack([self.loft.line(k, z[:, k]) for k in range(z.shape[1])], axis=1)
 
     def with_first(self, parts: Floats, first: float) -> Floats:
-        """Return parts (k, n) of the way of which the second are at the distance `first` from the root."""
+        """Return `parts` (k, n) with points of the second row at the distance `first` from the root."""
         parts = parts.copy()
         for _ in range(_ROUNDS):
             root, second = self.points(parts[:2])

@@ -29,15 +29,19 @@ ITERATIONS = 150  # of the optimum, at the most; it usually ends before by its g
 CUT_OFF = 7e-4
 """Fraction of the area that cells may cut off along walls before the walls get more cells."""
 ROUNDS, STEP, MORE = 7, 1.12, 1.19
-"""How often at the most, by which factor, and up to how many times the cells asked for."""
+"""Largest number of refinements at walls, their factor, and the largest multiple of the requested number of
+cells.
+"""
 MOST_CUT_OFF = 9.5e-4
-"""With that many cells, what they cut off less what they add, before wall nodes are held closer at bends."""
+"""Fraction of the area, cut off less added, up to which the largest number of cells is accepted; above it,
+wall nodes are placed closer at bends.
+"""
 MOST_HALVED = 8
-"""Largest number of times that cells are halved without an optimisation."""
+"""Largest number of times that cells are halved without an optimisation in between."""
 RECOUNTS = 4
-"""How often cells are counted if numbers along some sides are given, for as many in total."""
+"""Number of iterations for the total number of cells if numbers along some sides are prescribed."""
 HELD_BACK = 0.6
-"""Part of the angle that a wall may turn by along an edge, from then on from round to round."""
+"""Factor by which the largest turn of a wall along one edge is reduced in each round."""
 
 
 def fine_layout(

@@ -21,10 +21,12 @@ from meshonet.geometry.elementary import functions_of, times
 from meshonet.solvers.algebraic.resample.spline import places
 
 ACUTE, WIDE = np.radians((30.0, 60.0))
-"""Corner angles up to which damping is complete, and from which there is none."""
+"""Corner angles below which damping is complete, and above which there is none."""
 
 NEAR, FAR = 4.0, 10.0
-"""Coarse cells from the corner, along xi or eta, up to which damping is complete, and from which it is 0."""
+"""Distances from the corner, in coarse cells along xi or eta, below which damping is complete and above which
+it is 0.
+"""
 
 
 def openings(z: Any, xp: Any) -> Any:
@@ -51,7 +53,7 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) from second derivatives at n knots to what they add to the interpolant."""
+    """Return the matrix (count, n) from second derivatives at n knots to their contribution at places."""
     return _weighted(n, count, 2)
 
 

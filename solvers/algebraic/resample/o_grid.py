@@ -25,7 +25,8 @@ from meshonet.solvers.algebraic.resample.spline import bending, places, spline_m
 from meshonet.solvers.iteration import put_edges
 
 STEEP, FLAT = 1.15, 0.5
-"""Upper and lower bound of the slopes of the monotonic cubic, in harmonic means of the two adjacent steps."""
+"""Bounds of the slopes of the monotonic cubic, as multiples of the harmonic mean of the two adjacent steps.
+"""
 
 SQUARINGS = 3  # squarings that make the eighth power
 

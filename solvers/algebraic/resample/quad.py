@@ -41,7 +41,9 @@ REACH = 2.0  # steps of the edge over which its mismatch is blended
 CORNERS = [0, 1, -2, -1]  # rows and columns of a grid from which its corner angles are computed
 
 WIDER = (0, 1, 3)
-"""Coarse cells around those with folds that become linear, one attempt after another; at last all do."""
+"""Number of coarse cells around folded ones in which interpolation becomes linear, one attempt after the
+other; in the last attempt it is linear everywhere.
+"""
 
 
 def refine_quad(coarse: Floats, sides: Sides) -> Floats:
@@ -54,10 +56,10 @@ def refine_quad(coarse: Floats, sides: Sides) -> Floats:
 
 
 def mended(coarse: Floats, sides: tuple[Floats, ...], nodes: Floats) -> Straight | None:
-    """Interpolate `coarse` (2, m, n) anew into `nodes` (2, ni, nj), linearly around their folded cells.
+    """Interpolate `coarse` (2, m, n) again into `nodes` (2, ni, nj), linearly around folded cells of `nodes`.
 
-    Returns an array (m, n), 1 at coarse nodes with linear interpolation; None if `coarse` itself has folded
-    cells or no attempt leaves fewer.
+    Return an array (m, n) that is 1 at coarse nodes with linear interpolation. Return None, without a change,
+    if `coarse` has folded cells or if no attempt reduces the number of folded cells.
     """
     if count_folded(coarse.transpose(1, 2, 0)):
         return None

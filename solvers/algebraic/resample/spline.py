@@ -62,7 +62,7 @@ def _solve_between(rows: Floats) -> None:
 
 
 def between(values: Floats, n: int) -> Floats:
-    """Return `values` (..., m) interpolated linearly at n uniform places (..., n); end values are kept."""
+    """Return `values` (..., m) at m uniform knots, interpolated linearly at n uniform places: (..., n)."""
     m = values.shape[-1]
     if n == m:
         return values
@@ -78,9 +78,10 @@ def between(values: Floats, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def places(m: int, n: int) -> tuple[NDArray[np.intp], Floats]:
-    """Return for n uniform places over m knots the knot before each (n,) and four weights (n, 4).
+    """Return for each of n uniform places over m knots the knot before it (n,) and four weights (n, 4).
 
-    The weights apply to the values at that knot and the next, then to the second derivatives at both.
+    The first two weights apply to the values at this knot and the next, the others to the second derivatives
+    there.
     """
     at = np.arange(n) * ((m - 1) / (n - 1))
     first = np.minimum(at.astype(np.intp), m - 2)

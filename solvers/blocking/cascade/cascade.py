@@ -32,9 +32,10 @@ _SAMPLES = 400  # points of the blade at which the gap is measured
 ACROSS = 12.0
 """Smallest number of cells per pitch, before the requested number of cells is distributed."""
 COARSEST = 20.0
-"""How many times as long cells may get along the blade."""
+"""Largest factor by which cells along the blade may become longer."""
 MORE = 10.0
-"""Cells in those asked for, at the most, where a long inlet or outlet does not do with fewer."""
+"""Largest ratio of the number of cells to the requested number, if a long inlet or outlet needs more cells.
+"""
 SHORTEST = 0.08
 """Smallest distance in pitches from the blade with its layers to inlet or outlet."""
 
@@ -53,9 +54,8 @@ class Cascade:
     near : distances upstream and downstream of the blade, in pitches, at which straight rows begin, if
         inlet and outlet are that far away.
     centre : origin of axial distances, inside the blade; the default is a point far from its surface.
-    marched : the layers around the blade, where they are known.
-    factors : (n,) at the points of the blade, by which first cells are higher there than by the settings; the
-        default is 1.
+    marched : the layers around the blade, if they are already known.
+    factors : (n,) factors of the first-cell height at the points of the blade; the default is 1.
     """
 
     blade: Loop
@@ -70,7 +70,7 @@ class Cascade:
     factors: Floats | None = None
 
     def ending(self, near: tuple[float, float], centre: complex) -> Cascade:
-        """Return the cascade with another `near` and `centre`, which layers do not depend on."""
+        """Return the cascade with another `near` and `centre`; the layers do not depend on these."""
         return replace(self, near=near, centre=centre, marched=self.ring)
 
     @property
@@ -149,7 +149,10 @@ class Cascade:
 
     @cached_property
     def reach(self) -> tuple[float, float]:
-        """Lengths from the front to inlet and outlet, of which `ends` are long enough."""
+        """Requested lengths from the front to inlet and outlet.
+
+        `ends` are at least as long as blocks need.
+        """
         axial, around = self._axial(self.blade), self._axial(self.ring.front)
         before = self.inlet * self.chord - float(axial.min() - around.min())
         return before, self.outlet * self.chord - float(around.max() - axial.max())
@@ -190,7 +193,7 @@ class Cascade:
         return replace(sizes, points=points, normals=normals, across=across, along=along)
 
     def check_reach(self, cells: int | None, cell_size: float | None) -> None:
-        """Raise InputError where the largest cells are far more than `cells`, or too many of a size."""
+        """Raise InputError if there must be far more than `cells` cells, or too many of `cell_size`."""
         largest = cell_size or abs(self.left) / ACROSS * COARSEST**0.5
         length = (1.0 + self.inlet + self.outlet) * self.chord
         most = MOST_CELLS if cell_size else min(MORE * (cells or CELLS), MOST_CELLS)

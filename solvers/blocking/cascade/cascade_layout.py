@@ -44,7 +44,7 @@ from meshonet.solvers.stages import Timings, stage
 MOST_OPTIMISED = 4000
 """Largest number of cells that are optimised directly; finer grids are splines through these."""
 CORNERS = ("at first", "later", "nowhere")
-"""When nodes are moved to the corners of the blade, in the order of attempts."""
+"""Whether nodes are moved to the corners of the blade before the optimisation, in the order of attempts."""
 LEAST = 4
 """Smallest number of cells along the side of an optimised block."""
 FIRST, ITERATIONS, PASSES = 150, 120, 2  # iterations of the template and of each sized optimum; their number
@@ -116,9 +116,10 @@ def _outside(
 def passage_optimum(
     layout: Layout, iterations: int, metric: SizeMetric | None, held: Bools | None = None
 ) -> Layout:
-    """Return the layout of a passage with its nodes where the functional is least, for sizes if given.
+    """Return the layout of a passage with nodes that minimise the functional.
 
-    Nodes in which a cut ends are held, and `held` (n,).
+    If `metric` is given, with its target sizes. The two end nodes of the cut and nodes in `held` (n,) do not
+    move.
     """
     mesh = layout.mesh
     ends = (mesh.places.loop >= 0) & mesh.tied
@@ -146,7 +147,7 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
 
 
 def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
-    """Return loop, length and direction of the rows to inlet and outlet."""
+    """Return loop number, length and direction (1 or -1) of the rows to inlet and outlet."""
     passage = cascade.passage
     axial = passage.axial(passage.front.curve.points)
     before = cascade.ends[0] - float(axial.min() - passage.inlet)
@@ -170,7 +171,7 @@ def row_steps(first: float, length: float, largest: float) -> Floats:
 def counts_of(
     cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
 ) -> tuple[Indices, int, SizeMetric]:
-    """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
+    """Return coarse counts (chords,), the factor to the final counts, and the target sizes."""
     sizes = cascade.metric
     wanted = WantedCounts(chords, sizes)
     if cell_size is not None:
@@ -198,8 +199,8 @@ def attached_cells(
 ) -> int:  # fmt: skip
     """Return the cells of the layers and of the rows to inlet and outlet.
 
-    `layers` is their number instead of that of the cascade; rows have as many cells as the `longest` lengths
-    ask for, by loop.
+    `layers` replaces the number of layers of the cascade. `longest` are lengths of the rows by the number of
+    their loop, which replace those of the cascade.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

@@ -60,8 +60,8 @@ class Passage:
     ) -> Passage:  # fmt: skip
         """Return the passage around a closed front.
 
-        `inlet` and `outlet` are the largest distances from the front at which blocks end, `near` their usual
-        distances in pitches; the default of `centre` is a point far from the front.
+        Blocks end at the distances `near` from the front, in pitches, or at `inlet` and `outlet`, in the unit
+        of the front, if these are less. The default of `centre` is a point far from the front.
         """
         points = front.curve.points
         centre = inner_point(points) if centre is None else centre
@@ -104,9 +104,10 @@ class Passage:
     def domain(self, inlet: float, outlet: float) -> Domain:
         """Return the domain of the blocks, with the loops front, inlet, outlet, and one around them.
 
-        Those of inlet and outlet are rectangles before and behind the passage, which have the blade in
-        between; their first sides are inlet, from `inlet` against the pitch, and outlet, along the pitch to
-        `outlet`. Both are distances from the centre in pitches.
+        The loops inlet and outlet are rectangles upstream and downstream of the passage. The first side of
+        the first rectangle is the inlet, which goes from `inlet` against the pitch; the first side of the
+        second is the outlet, which goes along the pitch to `outlet`. Both are distances along the pitch from
+        the centre, in pitches.
         """
         pitch = abs(self.period)
         x, far = (self.inlet, self.outlet), (self.inlet - pitch, self.outlet + pitch)

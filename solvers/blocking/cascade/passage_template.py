@@ -32,13 +32,13 @@ CELLS = 6
 LONG = np.pi / 12.0
 """Length of cells along the channel in the plane G."""
 LONGEST = 72
-"""Most cells along the channel."""
+"""Largest number of cells along the channel."""
 ASIDE, AHEAD = 0.45, 0.12
 """Distances of the ring's outer side from the slit, beside it and at its ends; the period is π."""
 
 _SAME = 1e-9  # distance in the plane G at which nodes are one
 _FEET = 1e3
-"""Places in the plane G that are not used, at which the nodes on the blade are."""
+"""Positions in the plane G of the nodes on the blade, which have no meaning."""
 
 
 def template(passage: Passage, *, at_corners: bool) -> Layout:

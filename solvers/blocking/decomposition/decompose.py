@@ -78,12 +78,12 @@ def decompose(
 
     Parameters
     ----------
-    cells : of the quad mesh that blocks are found in.
-    count : about how many points the triangulation has.
-    price : of a block, in degrees of mean deviation from 90: the higher, the fewer blocks.
-    timings : filled with what the stages took.
-    sizes : of the edges of the quad mesh, in place of `cells`; by default they are all alike.
-    symmetric : whether those of a symmetric domain are to be symmetric (`symmetry.symmetric`).
+    cells : number of cells of the quad mesh from which blocks are derived.
+    count : approximate number of points of the triangulation.
+    price : price of a block, in degrees of mean deviation from 90 degrees; a higher price gives fewer blocks.
+    timings : filled with the times of the stages.
+    sizes : target lengths of the edges of the quad mesh, instead of `cells`; by default all edges are alike.
+    symmetric : whether a symmetric domain gets symmetric blocks (`symmetry.symmetric`).
 
     Raises SolverError: no attempt gave a valid layout, or the domain has too many corners.
     """

@@ -1,6 +1,6 @@
-"""Counts of cells along chords that suit the sides of a domain.
+"""Numbers of cells along chords that satisfy the conditions of the sides of a domain.
 
-They are given numbers along some, by their names, and as many along both of two periodic ones.
+Sides with certain names have given numbers of cells, and two periodic sides have equal numbers.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ _NONE: Mapping[int, int] = MappingProxyType({})
 
 
 def sums_of(chords: Chords) -> Sums:
-    """Return how many edges of each chord are along the sides with given numbers of cells.
+    """Return, for each name with a given number of cells, how many edges of each chord are along its sides.
 
-    Raises InputError: such a side ends inside an edge of a block.
+    Raises InputError: a side with a given number ends inside an edge of a block.
     """
     mesh = chords.layout.mesh
     given = mesh.domain.counts
@@ -70,13 +70,13 @@ def suited(
 ) -> Indices:  # fmt: skip
     """Return the counts (chords,) nearest to `counts`, at least `least`, that suit the sides of the domain.
 
-    They are alike along periodic sides and, if `named`, add up to the numbers given for names of sides.
-    `finer` cells are made of each of them later, with their number adjusted: if it is not 1 counts may be off
-    these numbers by less than one. All are a multiple of `multiple`, as the given ones are then. Chords
-    `fixed` stay.
+    Counts are equal along periodic sides and, if `named`, their sums are the numbers given for names of
+    sides. Each cell is divided into `finer` cells later, when numbers are adjusted again: if it is not 1,
+    sums may differ from the given numbers by less than one. All counts are multiples of `multiple`, and so
+    must the given numbers be. The counts of the chords in `fixed` are prescribed.
 
-    Raises InputError: given counts that exclude each other, or that are too few; SolverError: no counts are
-    alike along periodic sides.
+    Raises InputError: given counts that contradict each other, or that are too small; SolverError: no counts
+    are equal along periodic sides.
     """
     sums, alike = sums_of(chords) if named else {}, _alike(chords)
     if not sums and not alike:
@@ -129,7 +129,7 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return counts (chords,) with those along given sides scaled to about the given numbers."""
+    """Return counts (chords,), scaled along sides with given numbers to nearly these numbers."""
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())
@@ -160,7 +160,7 @@ def _unmatched(sides: Periodic) -> str:
 
 
 def alike_along_sides(chords: Chords, counts: Indices) -> bool:
-    """Return whether `counts` (chords,) are as many cells on both sides of every pair."""
+    """Return whether `counts` (chords,) give equal numbers of cells on both sides of every periodic pair."""
     return all(
         sum(value * counts[chord] for chord, value in row.items()) == 0.0 for row, _, _ in _alike(chords)
     )
@@ -172,7 +172,10 @@ def _alike(chords: Chords) -> list[Row]:
 
 
 def lacking_side(layout: Layout) -> Indices | None:
-    """Return the nodes along a periodic side with fewer cells than the other whatever the counts, or None."""
+    """Return the nodes along a periodic side that has fewer cells than its partner for any counts.
+
+    None if there is none.
+    """
     if not layout.mesh.domain.periodic:
         return None
     for row, (_, first, second) in zip(_differences(Chords.of(layout)), sides_of(layout.mesh), strict=True):

@@ -48,13 +48,15 @@ from meshonet.solvers.stages import Timings, stage
 
 ITERATIONS, STRIDING = 120, 60  # of each optimum, and of one before it on fewer cells
 UNFOLDING = 3
-"""How many times as many there are from folded cells, which leave nodes far from the optimum."""
+"""Factor on the number of iterations after folded cells, which leave nodes far from the optimum."""
 SWEEPS = 10
 """Sweeps that make wanted lengths change gradually: with twice as many, cells in slots grow too fast."""
 COUNTINGS = 3
-"""How often cells are counted, nodes optimised after each, before nodes on fronts are evened and held."""
+"""Number of rounds in which cells are counted and nodes optimised, before nodes on fronts are placed evenly
+and fixed.
+"""
 LIMITS = 1.0, 2.0, 4.0
-"""Multiples of it that are tried in turn: nodes that move far along a front fold the cells beside it."""
+"""Multiples of `EVEN` that are tried in turn: nodes that move far along a front fold the cells beside it."""
 BASE_GROWTH = math.log(4.0)
 """Logarithm of the ratio of neighbouring edges along a wall and its wake beyond which it gets a ring."""
 

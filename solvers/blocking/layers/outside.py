@@ -16,7 +16,7 @@ from meshonet.solvers.blocking.sizes.feature_sizes import feature_sizes
 from meshonet.solvers.stages import Timings
 
 PRICE = 0.08
-"""Price of a block in degrees of mean deviation: from 0.03 to 0.08 a tube bank has 70 blocks, at 0 it has
+"""Price of a block in degrees of mean deviation. With 0.03 to 0.08 a tube bank gets 70 blocks, with 0 it gets
 91.
 """
 CLOSE = "use a larger {growth} or a larger first cell, or open the gap there"
@@ -28,7 +28,7 @@ def found_outside(
 ) -> Layout:
     """Return the blocks of a domain of which some loops are fronts of layers.
 
-    If they are to be `symmetric`, those of a symmetric domain are.
+    If `symmetric`, a symmetric domain gets symmetric blocks.
 
     Raises SolverError: no blocks are found; InputError: walls or fronts that nearly touch.
     """
@@ -46,8 +46,9 @@ def found_outside(
 def taken_outside(layout: Layout, rest: Domain, fronts: Collection[int]) -> Layout:
     """Return a layout transferred to a domain of which `fronts` are the loops that are fronts of layers.
 
-    A layout without fronts can be used if the walls behind the fronts have no corners at blocks. Raises
-    InputError: as `carried_over`; layers around other loops.
+    A layout without fronts can be used if blocks do not meet corners of the walls behind the fronts.
+
+    Raises InputError: the errors of `carried_over`; a layout with layers around other loops.
     """
     taken = carried_over(layout, rest)
     places = taken.mesh.places

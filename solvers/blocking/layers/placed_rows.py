@@ -19,12 +19,12 @@ from meshonet.solvers.blocking.sizes.on_loops import on_loops
 from meshonet.solvers.layers.layer_settings import LayerSettings, exact, spaced
 
 GROWING_COLUMNS = 75
-"""Percentage of the columns of a row that layers fill without growing too fast: thicker ones become thinner
-as growth is evened.
+"""Percentage of the columns of a row that the layers must fill without growing too fast; the longer columns
+become shorter when growth is limited.
 """
 SHORT_COLUMNS = 20
-"""Percentage of columns that may be too short for so many first cells; cells shrink away from the wall
-there.
+"""Percentage of columns that may be too short for so many first cells; there cells become lower away from the
+wall.
 """
 OPENS = 0.15
 """Distance behind a sharp edge, relative to its loop, over which the first cells of a wake grow."""
@@ -54,8 +54,8 @@ def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings)
 def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings]) -> Layout:
     """Return a fine layout with the nodes of its rows moved along the lines across them.
 
-    `settings` are those of each row. First cells are exact; the others grow to the size of those beyond
-    the front.
+    `settings` has one entry per row. First cells are exact; the other cells grow to the size of the cells
+    beyond the front.
     """
     mesh = layout.mesh
     moved = np.zeros(len(mesh.nodes), dtype=bool)

@@ -32,8 +32,8 @@ from meshonet.solvers.layers.even_line import FINER, SLACK, Measures
 FILLED = 0.85
 """Largest part of a gap that the rings of both walls fill; without sharp edges they fill twice `GAP_PART`."""
 THICKNESS, COLUMNS = 0.018, 140
-"""Thickness of layers where there is room, in lengths of their loop, and cells around a loop, if all were as
-long as the longest.
+"""Thickness of layers where there is room, divided by the length of the loop; and number of cells around a
+loop if all were as long as the longest.
 """
 _SAMPLES = 2000  # points of a wall from which distances are measured
 
@@ -166,9 +166,10 @@ def march_ring(
 
 
 def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
-    """Return the largest thickness (n,) at the columns of those rings that fill a gap to another one.
+    """Return the largest thickness (n,) at the columns of the rings that would collide with another ring.
 
-    Lines of a march spread around sharp edges, towards walls that are not in front of where they start.
+    Lines of a march spread around sharp edges, towards walls that are not in front of the point where they
+    start.
     """
     rooms = {}
     walls = {k: np.arange(_SAMPLES) / _SAMPLES * ring.wall.length for k, ring in rings.items()}
@@ -242,9 +243,9 @@ def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, 
 
 
 def started(lines: Floats, begin: Floats) -> Floats:
-    """Return lines (k, m, 2) with their first nodes moved to (k, 2).
+    """Return lines (k, m, 2) with their first nodes moved to `begin` (k, 2).
 
-    The displacement decreases to 0 at the ends.
+    The displacement decreases along each line to 0 at its end.
     """
     moved = lines + (1.0 - arc_parts(lines))[..., None] * (begin - lines[:, 0])[:, None]
     moved[:, 0] = begin

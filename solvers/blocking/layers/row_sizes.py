@@ -32,8 +32,8 @@ THINNEST = 8.0
 SPREAD = 0.1
 """Growth of the thickness of layers along a wake per distance from the sharp edge."""
 AROUND_CORNER = 2.5
-"""Ratio of arc length to straight distance below which the same wall counts as around a corner, not as a
-gap.
+"""If the arc length to a point of the same wall, divided by the distance, is less, the point is around a
+corner, and the distance is no gap.
 """
 
 
@@ -46,7 +46,7 @@ class RowSizes:
     loop : the wall.
     arcs : (n,) arc lengths on it, ascending.
     length : (n,) lengths of cells there, for a scale of 1.
-    gap : (n,) distances to the next wall in front.
+    gap : (n,) distances to the nearest wall in front.
     on : (n,) mask of points with layers.
     first : (n,) first-cell heights.
     """
@@ -77,7 +77,10 @@ class RowSizes:
         return cls(loop, arcs, length, gap, on, first)
 
     def thickness(self, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (n,) of layers: cells grow until they are square, or the gap is filled."""
+        """Return the thickness (n,) of layers: cells grow until they are square, or until the gap is filled.
+
+        `scale` is a factor on the cell lengths along the wall; with a larger scale, layers are thicker.
+        """
         last = scale * self.length * settings.growth
         full = np.maximum((last - self.first) / (settings.growth - 1.0), THINNEST * self.first)
         full = np.minimum(full, GAP_PART * self.gap)
@@ -105,7 +108,10 @@ class RowSizes:
             check_room(room, float(first), lambda k: place(self.loop, self.arcs[k]))
 
     def metric(self, scale: float, settings: LayerSettings) -> SizeMetric:
-        """Return the sizes of cells beyond the layers."""
+        """Return the sizes of cells beyond the layers.
+
+        `scale` is a factor on the cell lengths along the wall.
+        """
         on, along = self.on, np.maximum(scale * self.length, self.first)
         thick, normals = self.thickness(scale, settings), turned_left(self.loop.tangent(self.arcs))
         across = np.minimum(last_layers(thick, self.rows(scale, settings), settings, self.first), along)
@@ -113,7 +119,10 @@ class RowSizes:
         return SizeMetric(points[on], normals[on], across[on], along[on], np.inf)
 
     def wake_metric(self, wake: Floats, scale: float, settings: LayerSettings) -> SizeMetric:
-        """Return the sizes of cells next to a wake (k, 2), from the sharp edge on."""
+        """Return the sizes of cells next to a wake (k, 2), which begins at the sharp edge.
+
+        `scale` is as in `metric`.
+        """
         tangent = np.gradient(wake, axis=0)
         normals = turned_left(tangent) / np.hypot(*tangent.T)[:, None]
         away = np.hypot(*(wake - wake[0]).T)

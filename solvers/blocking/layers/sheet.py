@@ -34,7 +34,10 @@ def wake_of(mesh: QuadMesh, number: int) -> list[int]:
 
 
 def with_sheet(mesh: QuadMesh, number: int) -> QuadMesh:
-    """Return the mesh with this row; its quads are last, each from the path to the front."""
+    """Return the mesh with the row inserted at loop `number`.
+
+    The quads of the row are the last of the mesh; each begins at the path and ends at the front.
+    """
     wake = wake_of(mesh, number)
     return with_row(mesh, [*wake[:0:-1], *_edge(mesh, number), *wake])
 

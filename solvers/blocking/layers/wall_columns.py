@@ -25,8 +25,8 @@ _RESOLVED = 0.01  # samples that a cell at a corner is long, at the least, witho
 def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floats:
     """Return ascending arc lengths (n,) of columns around a loop, its corners among them.
 
-    `largest` is the length of the largest cell; `sums` are those of mirrors that take the loop to itself: the
-    images of columns are columns.
+    `largest` is the length of the largest cell. For each c in `sums`, the columns are symmetric: the mirror
+    image of the column at arc length s is the column at c - s.
     """
     arcs = np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs)
     arcs = distinct(np.append(arcs, _beside_corners(loop, largest)))
@@ -57,7 +57,7 @@ def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floa
 
 
 def nearest_arc(arcs: Floats, arc: float, length: float) -> int:
-    """Return which of some arc lengths (n,) of a curve that closes after `length` is nearest to one."""
+    """Return the index in `arcs` (n,) of the arc length nearest to `arc` on a closed curve of a `length`."""
     off = (arcs - arc) / length
     return int(np.abs(off - np.round(off)).argmin())
 

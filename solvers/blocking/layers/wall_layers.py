@@ -41,9 +41,9 @@ from meshonet.solvers.refinement.size_metric import SizeMetric
 INNER_THICKNESS = 0.12
 """Thickness of layers inside an outer loop in hydraulic diameters: four times area over perimeter."""
 MOST_OPTIMISED = 4000
-"""Cells that are optimised at the most; finer grids are splines through these."""
+"""Largest number of cells that are optimised directly; finer grids are splines through these."""
 ROWS = 3
-"""Cells that stand for a row of layers in the optimum, which so never sees cells far longer than high."""
+"""Number of cells across a row of layers during the optimisation, so that it has no very thin cells."""
 _MARCHES = 4  # of rings that come too close to each other, each thinner
 _BISECTIONS = 14  # of a range of 240 to 1: the scale to 0.03 %
 
@@ -97,7 +97,7 @@ class WallLayers:
 
     @cached_property
     def mirrors(self) -> tuple[Mirror, ...]:
-        """Mirrors of what the layers leave; none unless the domain has some."""
+        """Mirrors of the domain outside the layers; none if the domain has none."""
         return mirrors_of(self.rest) if mirrors_of(self.domain) else ()
 
     def of_ring(self, number: int) -> LayerSettings:
@@ -116,7 +116,10 @@ class WallLayers:
         return replace(layout, mesh=made_symmetric(layout.mesh, images_of(layout.mesh, self.mirrors)))
 
     def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
-        """Return whether a wake, nodes from a sharp edge on, has room for layers up to the outer loop."""
+        """Return whether a wake has room for layers up to the outer loop.
+
+        `wake` are its nodes from the sharp edge.
+        """
         return bool(mesh.places.loop[wake[-1]] == 0) and self.has_room(number, mesh.nodes[wake])
 
     def has_room(self, number: int, wake: Floats, scale: float = 1.0) -> bool:

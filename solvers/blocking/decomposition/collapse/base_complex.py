@@ -45,8 +45,9 @@ class BaseComplex:
     def sides(self) -> tuple[Indices, Indices, Indices]:
         """Sides of the blocks, south, north, west and east of each: three arrays.
 
-        They are the edge after each node of the sides (k,), -1 after the last node of a side; the start of
-        each side in this array (4 b,); and the chord of each side (4 b,).
+        The first array (k,) has, for the nodes of all sides one after the other, the number of the edge to
+        the next node, -1 after the last node of a side. The second array (4 b,) is the start of each side in
+        the first array, the third (4 b,) the chord of each side.
         """
         lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
         nodes = np.concatenate(lines)
@@ -73,7 +74,7 @@ class BaseComplex:
 
 
 def base_complex(mesh: QuadMesh, lines: Bools | None = None) -> BaseComplex:
-    """Return the blocks of a quad mesh, which also end at additional `lines` (e,) of edges.
+    """Return the blocks of a quad mesh; `lines` (e,) is a mask of further edges at which blocks end.
 
     Raises SolverError: the mesh is not manifold, or a region between lines is not a lattice.
     """

@@ -46,7 +46,7 @@ class CrossField:
     angles: Floats
     """(t,) theta in each triangle for one of the four directions, which defines the frame."""
     quarters: Indices
-    """(t, 3) number of quarter turns between the frame and that across each edge."""
+    """(t, 3) number of quarter turns from the frame of a triangle to the frame across each edge."""
     wall_axis: Indices
     """(w,) quarter turns from the frame to each wall edge, in the order of `Triangulation.walls`."""
     valence: Indices

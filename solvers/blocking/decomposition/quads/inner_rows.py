@@ -21,14 +21,15 @@ HalfEdges = dict[tuple[int, int], tuple[int, int]]
 
 
 def half_edges(mesh: QuadMesh) -> HalfEdges:
-    """Return the quad, and which of its nodes, at which an edge from one node to another begins."""
+    """Return for each edge (a, b) of a quad the number of the quad, and the index of node a in it."""
     return {(q[i], q[(i + 1) % 4]): (k, i) for k, q in enumerate(mesh.quads.tolist()) for i in range(4)}
 
 
 def with_row(mesh: QuadMesh, path: Sequence[int]) -> QuadMesh:
-    """Return the mesh with a row on the left of a path from wall to wall; along a loop it may be the wall.
+    """Return the mesh with a row of quads inserted on the left of a path of nodes.
 
-    Its quads are last, each from the path to the front.
+    The path goes from wall to wall, or along a closed loop, which may be a wall. The quads of the row are the
+    last of the mesh; each begins at the path and ends at the front.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
     quads, nodes = mesh.quads.copy(), np.concatenate([mesh.nodes, mesh.nodes[path]])
@@ -76,9 +77,10 @@ def _left_of(
 
 
 def corner_row(mesh: QuadMesh, corner: int, farthest: int) -> QuadMesh | None:
-    """Return the mesh with a row around a `corner` of one quad, as far from it as its quads are regular.
+    """Return the mesh with a row of quads inserted around a corner of the domain at which one quad meets.
 
-    `farthest` is the largest distance in quads. Returns None if there are irregular nodes beside the corner.
+    `corner` is the number of its node. The row is placed as far from the corner as all nodes up to there are
+    regular, but at most `farthest` quads away. Return None if irregular nodes are next to the corner.
     """
     for size in range(farthest, 0, -1):
         lattice = _lattice(mesh, corner, size)

@@ -125,7 +125,7 @@ def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
 
 
 def towards(loop: Loop, arc: float, beyond: float) -> float:
-    """Return the arc length that is `INSET` of the shorter way from one arc length of a loop to another."""
+    """Return the arc length at the fraction `INSET` of the shorter way from `arc` to `beyond` on a loop."""
     way = beyond - arc
     way -= loop.length * np.round(way / loop.length)
     return float(np.mod(arc + INSET * way, loop.length))

@@ -18,7 +18,11 @@ SLACK = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Ports:
-    """Nodes at vertices, and the rays that leave them."""
+    """Nodes at vertices, and the rays that leave them.
+
+    `vertex` (n,) is the vertex of the triangulation at each node, `on_wall` (n,) whether the vertex is on a
+    wall.
+    """
 
     vertex: Indices
     """(n,)"""

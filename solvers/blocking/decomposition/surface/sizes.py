@@ -54,7 +54,7 @@ class WallSizes:
     length: Floats
     """(n,) length of the interval around the sample."""
     size: Floats
-    """(n,)"""
+    """(n,) size at the sample."""
 
 
 @dataclass(frozen=True, eq=False)

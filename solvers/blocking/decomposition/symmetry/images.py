@@ -1,4 +1,6 @@
-"""Quad meshes that are their own mirror images: which node each one becomes, and nodes made so exactly."""
+"""Quad meshes that are symmetric about mirrors: the mirror image of each node, and nodes made symmetric
+exactly.
+"""
 
 from __future__ import annotations
 
@@ -12,13 +14,16 @@ from meshonet.kernels._native import nearest_points
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
 
 Images = Sequence[tuple[Mirror, Indices]]
-"""Mirrors, and the node (n,) that each node of a mesh becomes in them."""
+"""For each mirror the mirror, and the number (n,) of the mirror image of each node of a mesh."""
 SOME = 100
-"""Quads of which images are looked for; those of others follow from them."""
+"""Number of quads whose images are searched for; the images of the others follow from these."""
 
 
 def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images:
-    """Return the images of nodes in those mirrors of its domain, of all by default, that its quads have."""
+    """Return the mirror images of nodes in the mirrors about which the quads of a mesh are symmetric.
+
+    `mirrors` are the mirrors of the domain that are tried, by default all.
+    """
     mirrors = mirrors_of(mesh.domain) if mirrors is None else mirrors
     if (mesh.places.partner >= 0).any():
         return []
@@ -33,12 +38,12 @@ def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images
 
 
 def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list[Indices]:
-    """Return `images_of` without their mirrors."""
+    """Return the results of `images_of` without the mirrors."""
     return [to for _, to in images_of(mesh, mirrors)]
 
 
 def agree(images: Images) -> bool:
-    """Return whether images of images are what turns by twice the angle between mirrors make of nodes."""
+    """Return whether two reflections of nodes are always a rotation by twice the angle between mirrors."""
     if len(images) < 2:
         return True
     (_, one), (_, other) = images[:2]
@@ -51,10 +56,11 @@ def agree(images: Images) -> bool:
 
 
 def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
-    """Return the mesh with all nodes and their images, by default in all mirrors, at the means of both.
+    """Return the mesh with each node at the mean of itself and its mirror images.
 
-    Corners stay. A ring with an odd number of quads around is symmetric to the first mirror only. Images of
-    what is symmetric to the first one are what turns make of it, so that one mean is over all others.
+    `images` are by default the images in all mirrors. Corners do not move. A ring with an odd number of quads
+    around is made symmetric about the first mirror only. If there are several mirrors, nodes are first made
+    symmetric about the first mirror, and then averaged over the rotations.
     """
     images = images_of(mesh) if images is None else images
     if not agree(images):

@@ -22,9 +22,11 @@ SAME = 1e-7
 """Largest distance of a symmetric boundary from its mirror image, relative to the extent. Drawings that are
 meant to be symmetric deviate by up to 1e-12, others by more than 1e-4."""
 MOST = 64
-"""Directions looked at closely: a circle has as many as points, of which the first will do."""
+"""Largest number of directions that are examined: a circle has one for each of its points, and the first few
+suffice.
+"""
 MOST_MIRRORS = 8
-"""More are those of a circle, or nearly; each takes as many cells around the centre."""
+"""Largest number of mirrors through a centre: a domain with more is a circle, or nearly."""
 _STEPS = 8  # of Newton's method towards a place on a curve, from the nearest of two places an interval
 
 
@@ -45,15 +47,16 @@ class Mirror:
         return _images(points, self.centre, self.along)
 
     def ahead_and_left(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return how far points (..., 2) are from the centre along the line, and to the left of it."""
+        """Return coordinates (...) of points (..., 2) from the centre, along the line and to its left."""
         return along_and_across(points - self.centre, self.along)
 
 
 @lru_cache(maxsize=64)
 def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
-    """Return the mirrors of a domain by their angles, which are equal between; none if it has periodic sides.
+    """Return the mirrors of a domain in order of their angles; neighbours are separated by equal angles.
 
-    The first is along x or y if there is such a one. A circle counts as having four.
+    The first mirror is along x or y if there is such a mirror. A circle counts as having four mirrors, a
+    domain with periodic sides none.
     """
     if domain.periodic:
         return ()

@@ -25,32 +25,34 @@ from meshonet.solvers.blocking.decomposition.quads.padding import Span
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
 
 _NEAR = 1e-6
-"""Part of a loop, or of the extent, within which places are the same: more than images are off a boundary,
-less than a cell.
+"""Positions nearer than this fraction of a loop, or of the extent, are the same: it is more than the
+deviation of mirror images, and less than a cell.
 """
 _SHARPEST = 52.5
-"""Degrees of half a corner, at the least: one of 90 degrees keeps its one cell, one of 120 is cut in two."""
+"""Smallest angle of half a corner, in degrees: a corner of 90 degrees keeps its one cell, one of 120 is cut
+in two.
+"""
 Ray = tuple[Mirror, Floats]
-"""A mirror, and the direction (2,) along it from the centre of the part."""
+"""A mirror, and the direction (2,) of the ray on it, from the centre of the part."""
 
 
 @dataclass(frozen=True, eq=False)
 class LoopPart:
-    """Part of a loop of the whole: its arc lengths (n,), rising from ray to ray, and their points.
+    """Part of a loop of the whole domain, from ray to ray: arc lengths (n,), ascending, and points.
 
-    The number of the loop is -1 for the centre, which is on none.
+    For the centre, which lies on no loop, the number of the loop is -1.
     """
 
     loop: int
     arcs: Floats
     points: Floats
-    """(n, 2)"""
+    """(n, 2) points at these arc lengths."""
     corners: Indices
-    """Which of them are corners, those on rays included."""
+    """Indices of the points that are corners, including those on rays."""
     breaks: Indices
-    """At which its tangent may jump."""
+    """Indices of the points at which the tangent may jump."""
     straight: Bools
-    """(n,) whether the way to the next is straight, as it is from the last along a ray."""
+    """(n,) whether the line to the next point is straight, as it is from the last point along a ray."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,10 +63,10 @@ class DomainPart:
     ----------
     whole : the domain.
     domain : the part; its outer loop begins on the first ray.
-    stretches, holes : its walls: stretches of loops of the whole, and loops inside it.
-    rays : the mirrors that bound it.
-    copies : mirrors that it is reflected in, one after another, to become each part of the whole; none of
-        them first.
+    stretches, holes : walls of the part: parts of loops of the whole domain, and whole loops inside.
+    rays : the mirrors that bound the part.
+    copies : for each part of the whole domain the mirrors in which this part is reflected, one after the
+        other, to get there; the first entry is empty.
     """
 
     whole: Domain
@@ -76,9 +78,10 @@ class DomainPart:
 
 
 def spans_between(loop: Loop) -> list[Span]:
-    """Return the stretches of the outer loop of a part from a corner of one cell to the next, two between.
+    """Return the stretches of the outer loop of a part between two corners at which one cell meets.
 
-    A row of quads along one takes singularities off the wall, or off a ray.
+    Corners within a stretch have two cells. A row of quads along a stretch moves singularities from a wall,
+    or from a ray, into the interior.
     """
     corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
     turns = [(arc, cells) for arc, cells in corners if cells != 2]
@@ -218,7 +221,10 @@ def _stretch(
 
 
 def with_copies(mesh: QuadMesh, part: DomainPart) -> QuadMesh:
-    """Return the mesh of the whole domain from that of a part; it is none where rays do not fit."""
+    """Return the mesh of the whole domain, made of copies of the mesh of a part.
+
+    If the nodes on the rays do not fit together, the result is no conforming mesh.
+    """
     nodes, (loop, arc, on_ray) = mesh.nodes.copy(), _places_in_whole(mesh, part)
     ends = np.flatnonzero(on_ray)
     nearest = np.stack([np.abs(ray.ahead_and_left(nodes[ends])[1]) for ray in part.rays]).argmin(axis=0)
