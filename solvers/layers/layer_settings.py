@@ -19,13 +19,13 @@ from meshonet.solvers.refinement.size_metric import GRADING
 JOIN = 1.1
 """Ratio of the first cell outside a ring to the last one inside."""
 NOMINAL, STEEPEST = 0.9, 0.97
-"""Mean and largest growth of layers over the limit, in logarithms: the rest is left for what follows."""
+"""Mean and largest growth of layers as fractions of the limit, in logarithms: later steps use the rest."""
 ELSEWHERE, MOST_GROWTH = 1.21, 1.25
-"""By how much cells may differ along walls, in logarithms, over the limit, and ratio that is allowed in any
-case there.
+"""Largest growth of cells along walls as a multiple of the limit, in logarithms, and the ratio that is always
+allowed there.
 """
 SPREAD = 0.65
-"""Largest growth of edge lengths per distance, over the growth from one cell to the next."""
+"""Largest growth of edge lengths per distance, divided by the growth from one cell to the next."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class LayerSettings:
     constant : number of cells with the height of the first one.
     multiple : divisor of the number of layers, so that coarser grids are nested.
     heights : first-cell heights of walls by name.
-    limit : largest ratio of neighbouring cells along lines from walls; 0 for that of layers, `growth`, and
-        a fifth more, in logarithms, where columns differ.
+    limit : largest ratio of neighbouring cells along lines from walls. If 0, the logarithm of the ratio may
+        be a fifth more than that of `growth`, because columns differ.
     """
 
     first: float
@@ -75,17 +75,20 @@ class LayerSettings:
 
     @property
     def steepest(self) -> float:
-        """Logarithm of the ratio by which neighbouring cells along lines from walls may differ in the end."""
+        """Logarithm of the largest ratio of neighbouring cells along lines that leave walls.
+
+        This is the limit of the final grid.
+        """
         return math.log(self.limit) if self.limit else self.elsewhere
 
     @property
     def elsewhere(self) -> float:
-        """The same along walls."""
+        """Logarithm of the largest ratio of neighbouring cells elsewhere, for example along walls."""
         return max(ELSEWHERE * math.log(self.limit or self.growth), math.log(MOST_GROWTH))
 
     @property
     def join(self) -> float:
-        """Ratio of the first cell beyond the layers to the last one of them."""
+        """Ratio of the first cell beyond the layers to the last layer."""
         return min(JOIN, math.sqrt(self.limit)) if self.limit else JOIN
 
     @property
@@ -94,7 +97,7 @@ class LayerSettings:
         return min(GRADING, SPREAD * (self.limit - 1.0)) if self.limit else GRADING
 
     def below(self, growth: float) -> float:
-        """Return a growth of cells outside of layers, `growth` unless that is too close to the limit."""
+        """Return the growth ratio of cells outside of layers: `growth`, or less if near the limit."""
         return min(growth, 1.0 + NOMINAL * (self.limit - 1.0)) if self.limit else growth
 
     def arcs(self, length: Floats, first: float | Floats, last: Floats, cells: int) -> Floats:
@@ -116,7 +119,7 @@ def layer_lines(
 ) -> Floats:
     """Return the nodes (k, rows + 1, 2) of layers along columns (k, m, 2), from the wall to `ends` (k, 2).
 
-    `inner` (k,) are the heights of the cells beyond, `first` (k,) those of the first ones.
+    `inner` (k,) are the heights of the cells beyond the layers, `first` (k,) the heights of first cells.
     """
     columns = columns + arc_parts(columns)[..., None] * (ends - columns[:, -1])[:, None]
 

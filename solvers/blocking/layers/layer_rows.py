@@ -22,7 +22,7 @@ _WINDOW = 4  # columns to either side over which lengths along fronts are averag
 def ring_metric(ring: Ring, settings: LayerSettings, factors: Floats | float = 1.0) -> SizeMetric:
     """Return the cell sizes that the front of a ring requires: those of its columns and its last layer.
 
-    First cells are higher than those of the settings by `factors` (n,) at the columns.
+    First cells have the height of the settings times `factors` (n,) at the columns.
     """
     points = ring.front.curve.points
     step = np.roll(points, -1, axis=0) - points
@@ -50,7 +50,8 @@ def ring_rows(
 ) -> Rows:  # fmt: skip
     """Return the layers below the nodes of a front; `inner` (k,) are the heights of the cells beyond it.
 
-    First cells are higher than those of the settings by `factors` of arc lengths (k,) of the wall, if given.
+    First cells have the height of the settings times `factors`, a function of arc lengths (k,) of the wall,
+    if given.
     """
     order = mesh.places.along(loop)
     columns, starts = ring.columns(mesh.places.arc[order])

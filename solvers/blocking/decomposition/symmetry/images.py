@@ -1,6 +1,4 @@
-"""Quad meshes that are symmetric about mirrors: the mirror image of each node, and nodes made symmetric
-exactly.
-"""
+"""Quad meshes that are symmetric about mirrors: mirror images of nodes, and nodes made symmetric exactly."""
 
 from __future__ import annotations
 
