@@ -1,4 +1,4 @@
-"""Requests from keyword parameters, and parameters that a kind of grid has no use for."""
+"""Requests from keyword parameters, and errors for parameters that do not apply to a kind of grid."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ Request = TypeVar("Request")
 def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) -> Request:
     """Return a request, a dataclass, with the parameters; ``wall_spacing`` is another name of ``first_cell``.
 
-    `what` is what errors call the grid, such as ``a row``. Raises InputError: as `kind`, or a parameter that
-    it does not have.
+    `what` is the name of the grid in messages, such as ``a row``.
+
+    Raises InputError: the errors of `kind`; a parameter that `kind` does not have.
     """
     named = {"first_cell" if name == "wall_spacing" else name: each for name, each in parameters.items()}
     known = {each.name for each in fields(kind)}  # type: ignore[arg-type]
@@ -24,7 +25,7 @@ def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) 
 
 
 def refuse_given(what: str, options: Mapping[str, object]) -> None:
-    """Raise InputError for the first of the options, by name, that is given: neither None nor False."""
+    """Raise InputError for the first of the `options`, by name, that is neither None nor False."""
     for name, value in options.items():
         if value is not None and value is not False:
             raise InputError(f"{what} has no {{{name}}}", f"leave {{{name}}} out")

@@ -1,4 +1,4 @@
-"""Nodes along the edges of a CAD file: sizes of cells, which follow its curvature, and places of nodes."""
+"""Nodes along the edges of a CAD file; cell sizes can follow the curvature."""
 
 from __future__ import annotations
 
@@ -14,39 +14,39 @@ from meshonet.geometry.errors import InputError
 TURN_DEG = 12.0
 """Largest angle by which a curve turns along a cell, with spacing by curvature."""
 _FINEST = 0.02
-"""Smallest cell by curvature, over the size of cells elsewhere."""
+"""Smallest ratio of cells where the curvature is large to cells elsewhere."""
 _SHORT = 4.0
 """Number of cells along a short edge, to which cells beside its ends are adapted."""
 _GRADE = 0.2
-"""Change of the size of cells along an edge, over the distance."""
+"""Largest change of the cell size along an edge per distance."""
 _SAMPLES = 257
 CORNER_DEG = 30.0
-"""Turn of a loop at a vertex from which it is a corner of the face."""
+"""Smallest turn, in degrees, of a loop at a vertex that is a corner of the face."""
 
 
 @dataclass(frozen=True, eq=False)
 class EdgeNodes:
-    """Nodes of an edge: parameters (n,) from 0 to 1 and positions (n, 3), the ends those of its vertices."""
+    """Nodes of an edge: parameters (n,) from 0 to 1 and positions (n, 3); the ends are the vertices."""
 
     parts: Floats
     points: Floats
 
     def along(self, use: EdgeUse) -> tuple[Floats, Floats]:
-        """Return coordinates (n, 2) on a face and positions (n, 3), in the direction of its loop."""
+        """Return coordinates (n, 2) on a face and positions (n, 3), in the direction of the face's loop."""
         places = use.trace(self.parts)
         return (places, self.points) if use.forward else (places[::-1], self.points[::-1])
 
 
 @dataclass(frozen=True, eq=False)
 class EdgeLaw:
-    """Where nodes of an edge go: number of cells so far (s,), as a function of the parameter (s,)."""
+    """Node distribution of an edge: number of cells (s,) from its start to samples (s,) of the parameter."""
 
     parts: Floats
     cells: Floats
 
     @property
     def total(self) -> float:
-        """Number of cells that the law wants, not a whole one."""
+        """Number of cells of the distribution, in general not an integer."""
         return float(self.cells[-1])
 
     def nodes(self, model: CadModel, edge: CadEdge, count: int) -> EdgeNodes:
@@ -88,7 +88,7 @@ def edge_laws(model: CadModel, size: float, spacing: str) -> list[EdgeLaw]:
 
 
 def length_of(curve: Curve) -> float:
-    """Return the length of a curve, that of chords."""
+    """Return the length of a curve, as the sum of short chords."""
     return float(norms(np.diff(curve(np.linspace(0.0, 1.0, _SAMPLES)), axis=0)).sum())
 
 
@@ -140,7 +140,7 @@ def angle_between(first: Floats, second: Floats) -> Floats:
 
 
 def corner_turns(model: CadModel, uses: tuple[EdgeUse, ...]) -> Floats:
-    """Return by how many degrees a loop turns where each of its edges (k,) starts; 180 beside a pole."""
+    """Return the turns (k,) in degrees of a loop at the start of each of its edges; 180 beside a pole."""
     ends = np.array([0.0, 1e-4, 1.0 - 1e-4, 1.0])
     starts, stops, poles = [], [], []
     for use in uses:

@@ -22,11 +22,11 @@ from meshonet.solvers.cad.sides import FacePlan, cell_counts, planned
 from meshonet.solvers.solution import Solution, timed
 
 CELLS = 40
-"""Number of cells along the longest extent of a file, where none is given."""
+"""Default number of cells along the longest extent of a file."""
 _CORE = 0.5
-"""Size of the core of a disc over that of the disc."""
+"""Ratio of the size of a disc's core to the size of the disc."""
 _OFF = 1e-8
-"""Distance of edges from their faces over the size of a file, above which a note names it."""
+"""Largest distance of edges from their faces, divided by the size of the file, without a note."""
 
 
 class _FaceLine(NamedTuple):
@@ -46,8 +46,9 @@ class _FaceLine(NamedTuple):
 def patches_on(model: CadModel, sampling: Sampling) -> Solution:
     """Return the patches on all faces of a CAD file, as a grid of blocks (ni, nj, 3).
 
-    Of `sampling` the number of cells along the longest extent (`ni`, None is `CELLS`) and the spacing apply:
-    ``uniform``, ``cosine``, or ``curvature`` (``auto``) with smaller cells where edges bend.
+    Two fields of `sampling` apply: `ni` is the number of cells along the longest extent (None: 40), and
+    `spacing` is ``uniform``, ``cosine``, or ``curvature`` (also ``auto``) with smaller cells where edges
+    bend.
 
     Raises InputError: faces that cannot become patches, with number, sides and place; folded cells; other
     fields of `sampling`.
@@ -148,10 +149,11 @@ def _disc(face: CadFace, loop: _FaceLine) -> list[Floats]:
 
 
 def blended(south: Floats, north: Floats, west: Floats, east: Floats) -> Floats:
-    """Return coordinates (ni, nj, 2) between four sides (ni, 2), (ni, 2), (nj, 2), (nj, 2), transfinite.
+    """Return coordinates (ni, nj, 2) between four sides (ni, 2), (ni, 2), (nj, 2), (nj, 2), by TFI.
 
-    The weights at a node are where the lines that join nodes of equal index, at their parts of the lengths of
-    opposite sides, cross in the unit square (Soni 1985).
+    For the weights, nodes of the sides are placed on the sides of the unit square at their fractions of the
+    length. Straight lines join nodes of equal index on opposite sides; the weights of a node are the
+    coordinates of the point at which its two lines cross (Soni 1985).
     """
     a, b, c, d = (arc_parts(line) for line in (south, north, west, east))
     a, b, c, d = a[:, None], b[:, None], c[None], d[None]

@@ -26,17 +26,19 @@ from meshonet.solvers.whole_numbers import Row, difference, whole_numbers
 
 _REFUSED = 5  # faces named in an error
 _ACROSS = 8
-"""Least number of cells across a base, and across the nose, around which they then turn some 90 degrees."""
+"""Smallest number of cells across a base, and across the nose opposite to it, where they turn by about 90
+degrees.
+"""
 _BASE = 0.7
-"""Longest base over the side opposite."""
+"""Largest ratio of the base to the opposite side."""
 
 
 @dataclass(frozen=True)
 class FacePlan:
     """How a face becomes patches.
 
-    `sides` are runs of its edges, by their places in the loop, which starts at the first corner: four for a
-    ``quad``, the short and the long one for a ``nose``, all in one for a ``disc``.
+    `sides` are runs of its edges, as positions in the loop, which starts at the first corner: four runs for a
+    ``quad``, a short and a long one for a ``nose``, a single run of all edges for a ``disc``.
     """
 
     kind: Literal["quad", "nose", "disc"]
@@ -44,9 +46,9 @@ class FacePlan:
 
 
 def planned(model: CadModel) -> tuple[FacePlan, ...]:
-    """Return how each face becomes patches.
+    """Return for each face how it becomes patches.
 
-    Raises InputError with number, sides and place of the faces that cannot.
+    Raises InputError, with number, sides and place: faces that cannot become patches.
     """
     plans, problems = [], []
     for number, face in enumerate(model.faces, 1):

@@ -33,7 +33,7 @@ def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[i
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Return the weights of each corner's shift along the wall, (n, corners), and the shifts of phi."""
+    """Return the weights (n, corners) of each corner's shift along the wall, and the shifts of phi."""
     n, step = len(wall), 2.0 * np.pi / len(wall)
     between = np.subtract.outer(corners, corners) % n
     apart = np.minimum(between, n - between) + n * np.eye(len(corners))

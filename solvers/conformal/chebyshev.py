@@ -63,7 +63,7 @@ class Panels(NamedTuple):
 
 
 def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> Panels:
-    """Return the panels that cover the levels `first` to `last` - 1 of `eta`, if they save evaluations.
+    """Return panels that cover the levels `first` to `last` - 1 of `eta`, if this saves evaluations.
 
     `eta` (nj,) ascends from 0 at the wall to 1; `height` is the difference of psi between wall and far field,
     and `spread` the variation of psi along the wall. Panels follow each other outwards without gaps and end

@@ -30,7 +30,7 @@ from meshonet.solvers.conformal.strip import MODES, interpolation, wavenumbers
 FAINT = 1e-12  # a wall's high modes are followed until their sum is below this (radians in the strip)
 
 Shift: TypeAlias = tuple[Floats, Callable[[Floats], Floats]]
-"""A shift of phi: its amount (n,) along the wall, and the fraction of it as a function of eta."""
+"""A shift of phi: its amount (n,) along the wall, and a function from eta to the fraction of this amount."""
 
 
 class StripGrid:

@@ -48,8 +48,9 @@ def solve(
     """Return a grid inside each O boundary, with bitwise the nodes of the boundary.
 
     `polish` is the number of Picard iterations. `correction` returns a term that is added to the harmonic
-    extension, for all boundaries at once, and `model` is the name of its operator. `substitute` is called
-    with a boundary that has no map and the reason, before the elliptic solver is used.
+    extension, for all boundaries at once; `model` is the name of the network that computes it. If a boundary
+    has no conformal map, `substitute` is called with the boundary and the reason; only if it returns None,
+    the elliptic solver is used.
     """
     across()  # made once a process: no part of a grid's time
     begun = time.perf_counter()

@@ -53,11 +53,11 @@ class Across:
     vectors: Floats
     inverse: Floats
     matrices: Floats
-    """(4, LEVELS, LEVELS) for the compiled step: `d1`, `d2`, `inverse` and `vectors`, transposed."""
+    """(4, LEVELS, LEVELS) tables of the compiled step: `d1`, `d2`, `inverse` and `vectors`, transposed."""
     stiffness: Floats
-    """`eigenvalues` with one more at either end."""
+    """Eigenvalues with one more value at both ends, for the compiled step."""
     smooth: Floats
-    """`smoothing`."""
+    """Result of `smoothing()`."""
 
 
 @lru_cache(maxsize=1)
@@ -159,11 +159,11 @@ def from_columns(values: Any, xp: Any = np) -> Any:
 def picard(
     c: Complexes, steps: int, settled: float = 0.0, diverged: float = np.inf
 ) -> tuple[Complexes, list[float]]:
-    """Return the modes after `steps` Picard steps at the most, and the largest change of F in each.
+    """Return the modes after at most `steps` Picard steps, and the largest change of F in each step.
 
-    The last step is one whose change is below `settled` or not below `diverged`; one that is not finite
-    counts as an infinite change. `c`: (2 MODES + 1, LEVELS) modes at the Chebyshev points; the two walls stay
-    as they are.
+    The iteration ends after a step whose change is below `settled`, or is at least `diverged`; a change that
+    is not finite counts as infinite. `c` (2 MODES + 1, LEVELS) are the modes at the Chebyshev points; those
+    of the two walls do not change.
     """
     T = float((c[0, -1] - c[0, 0]).real)
     parts, grid = np.stack([c.real, c.imag]), across()

@@ -55,11 +55,12 @@ def walls(boundary: Boundary) -> StripWalls:
 
 
 def is_rough(body: StripWalls) -> bool:
-    """Return whether uneven spacing slightly exceeds the resolution of the strip, so that a grid may fold.
+    """Return whether the strip hardly resolves the uneven wall spacing, so that cells may fold.
 
-    The measure is at most 0.013 for the walls of airfoils, 0.06 if nodes are evenly spaced around the leading
-    edge, at least 0.02 for polygons and 0.01 for a square far field. Raises InputError: the strip does not
-    resolve it.
+    The unresolved part is at most 0.013 for the walls of airfoils, 0.06 if nodes are evenly spaced around the
+    leading edge, at least 0.02 for polygons and 0.01 for a square far field.
+
+    Raises InputError: the strip does not resolve the wall.
     """
     n = len(body.wall)
     k = np.minimum(np.arange(n), n - np.arange(n))
@@ -74,7 +75,10 @@ def is_rough(body: StripWalls) -> bool:
 
 
 def sharp_turns(body: StripWalls) -> tuple[int, ...]:
-    """Return the trailing corners, then nodes at which the wall turns enough for grid lines to cross it."""
+    """Return the indices of the trailing corners, then of nodes with sharp turns of the wall.
+
+    At these turns grid lines may cross the wall.
+    """
     others = set(np.flatnonzero(_turn(body) > SHARP_TURN).tolist()) - set(body.corners)
     return (*body.corners, *sorted(others))
 

@@ -29,10 +29,10 @@ STEPS = 2, 4, 8
 
 @timed
 def deform(grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> Solution:
-    """Return `grid` deformed to the new shapes of `walls`, and notes of what was done.
+    """Return `grid` deformed to the new shapes of `walls`, with notes.
 
-    Raises InputError: a surface, a starting grid with folded cells, a wall that the grid does not have, an
-    unsuitable new shape, walls that cross.
+    Raises InputError: a surface grid; a grid with folded cells; a wall that the grid does not have; an
+    unsuitable new shape; walls that cross.
     """
     table = NodeTable.of(grid)
     folded = count_folded_in(grid)

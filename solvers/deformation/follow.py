@@ -23,9 +23,9 @@ from meshonet.solvers.deformation.sources import Sources, sources_of
 NEAR = 0.3
 """Upper bound of the distance inside which the nearest wall nodes dominate, in extents of the moved walls."""
 ROOM = 0.1
-"""Another bound, in distances between moved and fixed nodes: gaps need a softer field."""
+"""Upper bound of the same distance, in distances between moved and fixed nodes: gaps need a softer field."""
 _SOME = 100
-"""Moved nodes, about, whose distances to fixed ones are computed."""
+"""Approximate number of moved nodes whose distances to fixed nodes are computed."""
 FLAT = 1e-9
 """Largest deviation from a line or plane, as a fraction of its extent, of a side whose nodes slide."""
 
@@ -48,9 +48,9 @@ class Field:
     sources: Indices
     """(k,) node indices of the sources."""
     places: Floats
-    """(d, k) their coordinates."""
+    """(d, k) coordinates of the sources."""
     areas: Floats
-    """(k,) their lengths or areas."""
+    """(k,) lengths or areas assigned to the sources."""
     near: float
     """Distance inside which the nearest sources dominate."""
     points: Floats
@@ -86,7 +86,7 @@ class Follow:
     turning: Turning | None
     """Rotations of the wall's edges; None in three dimensions."""
     slide: Field | None
-    """The field at sliding nodes; None where there are none."""
+    """The field at sliding nodes; None if there are none."""
     field: Field
     """The field at inner nodes."""
     inner: Indices
@@ -107,13 +107,13 @@ class Follow:
         return cls(table, sources, turning, slide, field, inner)
 
     def nodes_to(self, to: Floats) -> Floats:
-        """Return the new positions (n, d) of all nodes when the moved ones have those in `to` (n, d)."""
+        """Return the new positions (n, d) of all nodes if the moved nodes go to `to` (n, d)."""
         there = self.boundary_to(to)
         there[self.inner] += self.field.blended(self._motions(self.field, there))
         return there
 
     def boundary_to(self, to: Floats) -> Floats:
-        """Return all nodes (n, d), with new positions of the moved and the sliding ones only."""
+        """Return all nodes (n, d), with new positions of the moved and of the sliding nodes only."""
         nodes = self.table.nodes
         there = np.where(self.sources.moved[:, None], to, nodes)
         if self.slide is not None:
@@ -152,7 +152,10 @@ def _near(moved: Floats, fixed: Floats) -> float:
 
 
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
-    """Return the unit normal (d,) of a straight or flat side; None where it is curved before or after."""
+    """Return the unit normal (d,) of a side that is straight or flat before and after.
+
+    None for other sides.
+    """
     nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
     centre = nodes.mean(axis=0)
     _, size, ways = singular_values(nodes - centre)

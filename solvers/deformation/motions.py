@@ -25,13 +25,13 @@ class Turning:
     """Rotation angles of the nodes of a planar wall, as weighted means over its edges."""
 
     edges: Indices
-    """(m, 2) node indices."""
+    """(m, 2) node indices of the edges."""
     share: Floats
-    """(m, 2) weights of an edge in the angles of its two ends; those at a node add up to 1."""
+    """(m, 2) weights of each edge in the angles of its two end nodes; the weights at a node add up to 1."""
 
     @classmethod
     def of(cls, nodes: Floats, edges: Indices) -> Turning:
-        """Return that of `edges` (m, 2) between `nodes` (n, 2)."""
+        """Return the weights of `edges` (m, 2) between `nodes` (n, 2)."""
         nearness = 1.0 / np.maximum(norms(nodes[edges[:, 1]] - nodes[edges[:, 0]]), 1e-300)
         total = np.bincount(edges.ravel(), np.repeat(nearness, 2), len(nodes))
         return cls(edges, nearness[:, None] / total[edges])
@@ -92,6 +92,9 @@ def _frames(corners: Floats) -> Floats:
 
 
 def affine(places: Floats, moved: Floats, turns: Floats) -> Floats:
-    """Return a and B, stacked (d + d², n), of the displacement a + B x for each of `places` (n, d)."""
+    """Return a and B, stacked (d + d², n), so that the motion of each node displaces a point x by a + B x.
+
+    `places` and `moved` (n, d) are the old and the new positions of the nodes, `turns` (n, d, d) is R - 1.
+    """
     shift = moved - places - product(turns, places[:, :, None])[:, :, 0]
     return np.ascontiguousarray(np.concatenate([shift.T, turns.reshape(len(places), -1).T]))

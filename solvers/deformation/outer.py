@@ -39,7 +39,7 @@ class NodeTable:
 
     grid: Grid
     nodes: Floats
-    """(n, d)"""
+    """(n, d) coordinates of the nodes."""
     numbers: tuple[Indices, ...]
     """For each block, the indices (ni, nj) or (ni, nj, nk) of its nodes in `nodes`."""
 
@@ -111,7 +111,7 @@ def lines_of(pieces: Sequence[Piece]) -> list[Indices]:
 
 
 def elements_of(pieces: Sequence[Piece], dimension: int) -> Indices:
-    """Return the edges (m, 2) of planar pieces, or the quadrilaterals (m, 4) of those of volumes."""
+    """Return the edges (m, 2) of planar pieces, or the quadrilaterals (m, 4) of pieces of volumes."""
     if dimension == 2:
         parts = [np.stack([p.numbers[:-1], p.numbers[1:]], axis=1) for p in pieces]
     else:

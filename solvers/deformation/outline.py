@@ -21,7 +21,7 @@ from meshonet.geometry.shapes.outline import Outline
 
 Notes = tuple[str, ...]
 _SHARP = np.radians(60.0)
-"""Angle by which a wall turns at least at a trailing edge that is not rounded."""
+"""Smallest turn of a wall at a trailing edge that is not rounded."""
 _WIDEST_BASE = 0.2  # widest base, in perimeters of the section; flatbacks have up to .13
 
 

@@ -14,9 +14,9 @@ from meshonet.geometry.arrays import Bools, Floats, Indices, extent_of, norms
 from meshonet.solvers.deformation.outer import NodeTable, Piece, elements_of, first_heights
 
 REACH = 0.1
-"""Largest length of a group, in distances from the moved nodes."""
+"""Largest length of a group of nodes, divided by its distance from the moved nodes."""
 CELLS = 2.0
-"""The same, in heights of the thinnest cell at the piece."""
+"""Largest length of a group of nodes, divided by the height of the thinnest cell at the piece."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,11 +28,11 @@ class Sources:
     areas: Floats
     """(n,) lengths or areas assigned to boundary nodes; 0 for nodes that are not sources."""
     elements: Indices
-    """Edges (m, 2) or quadrilaterals (m, 4) of which all nodes are moved."""
+    """Edges (m, 2) or quadrilaterals (m, 4) whose nodes are all moved."""
     sliding: tuple[Piece, ...]
-    """Pieces that are not moved but touch moved nodes."""
+    """Pieces that are not moved but touch moved nodes: sliding sides."""
     slides: Bools
-    """(n,) mask of their nodes that belong to no moved or fixed piece."""
+    """(n,) mask of the nodes of these pieces that belong to no moved or fixed piece."""
 
     @property
     def fixed(self) -> Indices:
@@ -58,7 +58,7 @@ def sources_of(table: NodeTable, moved: Bools) -> Sources:
 
 
 def areas_of(nodes: Floats, elements: Indices) -> Floats:
-    """Return the length or area (n,) of each node: that of elements, divided equally among their nodes."""
+    """Return the length or area (n,) of each node; an element is divided equally among its nodes."""
     corners = nodes[elements]
     if elements.shape[1] == 2:
         size = norms(corners[:, 1] - corners[:, 0])

@@ -32,7 +32,8 @@ three dimensions as one array (m, n, 3) for each patch. An array (n, 2) of anoth
 """
 
 SAME = 1e-9
-"""Largest difference, in extents of the wall, between the positions that two pieces give a shared node."""
+"""Largest difference between the positions that two pieces give a shared node, divided by the wall's extent.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +52,10 @@ class NodeTargets:
 def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> NodeTargets:
     """Return the new positions of the nodes of `walls`, new shapes by wall name.
 
-    A shape without a name is that of the only wall; a grid or boundary gives all its patches of the same
-    names. Raises InputError: a wall that the grid does not have, or an unsuitable new shape.
+    A shape without a name belongs to the only wall. A grid or a boundary gives new shapes to all walls with
+    the names of its patches.
+
+    Raises InputError: a wall that the grid does not have; an unsuitable new shape.
     """
     moved, nodes = np.zeros(len(table.nodes), dtype=bool), table.nodes.copy()
     notes: list[str] = []

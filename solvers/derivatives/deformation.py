@@ -23,19 +23,20 @@ from meshonet.solvers.deformation.outer import NodeTable, lines_of
 from meshonet.solvers.deformation.targets import NewWall, targets_of
 
 Lines = dict[str, Floats]
-"""Values (n, 2) at the nodes of each moved wall, in order; several polylines of a name are concatenated."""
+"""Values (n, 2) at the nodes of each moved wall, in order; polylines with the same name are concatenated."""
 
 
 class DeformationDerivative:
     """A planar grid deformed in one step, and the derivative of its nodes with respect to those of its walls.
 
-    Raises InputError: as `meshonet.deform`; a volume; NoValidGridError: cells fold in one step.
+    Raises InputError: the errors of `meshonet.deform`; a volume. Raises NoValidGridError: cells fold in one
+    step.
     """
 
     grid: Grid
     """The deformed grid."""
     walls: Mapping[str, Indices]
-    """Node indices of each moved wall, in order; a closed wall repeats its first."""
+    """Node indices of each moved wall, in order; a closed wall repeats its first node."""
 
     def __init__(self, grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> None:
         if grid.form != "plane":
@@ -70,8 +71,8 @@ class DeformationDerivative:
         """Return the derivative (n, 2) of a functional with respect to the nodes of each moved wall.
 
         `pulls`, one array (ni, nj, 2) per block, is the derivative of the functional with respect to all
-        nodes, taken as independent. In a closed wall the first node has its whole derivative, the repeated
-        one 0.
+        nodes, taken as independent. In a closed wall, which repeats its first node, the first entry is the
+        full derivative and the last entry is 0.
         """
         arrays = [pulls] if isinstance(pulls, np.ndarray) else list(pulls)
         if [a.shape[:2] for a in arrays] != [block.counts for block in self.grid.blocks]:

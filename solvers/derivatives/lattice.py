@@ -30,13 +30,13 @@ class Jacobian:
     """Entries of the derivative of equations at inner nodes with respect to the coordinates of all nodes."""
 
     rows: Indices
-    """(m,) flat indices of equations in (2, ni, nj)."""
+    """(m,) row of each entry: flat index of the equation in (2, ni, nj)."""
     columns: Indices
-    """(m,) flat indices of coordinates, likewise."""
+    """(m,) column of each entry: flat index of the coordinate in (2, ni, nj)."""
     values: Floats
-    """(m,)"""
+    """(m,) value of each entry."""
     size: int
-    """Count of coordinates, 2 ni nj."""
+    """Number of coordinates, 2 ni nj."""
 
     def times(self, x: Floats) -> Floats:
         """Return J x of x (size,)."""

@@ -41,11 +41,11 @@ class OptimumDerivative:
     grid : a grid near the minimum of the variational functional, or near the solution of Winslow's equations,
         with these boundary nodes; Newton's method then converges to it.
     method : ``variational`` or ``winslow``.
-    weights : weights of the functional; None stands for those with which `grid` was solved, as its provenance
-        says, or else for the default ones of `solve_pde`.
+    weights : weights of the functional; None: the weights in the provenance of `grid`, or the defaults of
+        `solve_pde` if it has none.
 
-    Raises InputError: an O grid, several blocks, a volume, an unknown method; SolverError: the grid is far
-    from the solution.
+    Raises InputError: an O grid, several blocks, a volume, an unknown method. Raises SolverError: the grid is
+    far from the solution.
     """
 
     grid: Grid
@@ -165,7 +165,7 @@ def _inner_numbers(nodes: Floats) -> Indices:
 
 
 def aspect_slope(nodes: Floats) -> Floats:
-    """Return the derivative (2, ni, nj) of `aspect_of` (`solvers.energy.functional`) by `nodes`."""
+    """Return the derivative (2, ni, nj) of `functional.aspect_of` with respect to `nodes` (2, ni, nj)."""
     slope = np.zeros_like(nodes)
     walls, sides = nodes[:, :, :: nodes.shape[2] - 1], nodes[:, :: nodes.shape[1] - 1]
     along, across = np.diff(walls, axis=1), np.diff(sides, axis=2)

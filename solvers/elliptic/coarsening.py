@@ -63,7 +63,7 @@ class Direction:
 
     @cached_property
     def transfer(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """Weights (right (n,); before, at, after (coarse n,)) of interpolation and restriction.
+        """Weights of interpolation, right (n,), and of restriction, before, at and after (coarse n,).
 
         Interpolation is linear; restriction is its transpose, scaled by the dual lengths of nodes, so that a
         constant residual is preserved.

@@ -15,13 +15,15 @@ from meshonet.solvers.algebraic.tfi import Four
 from meshonet.solvers.elliptic.coarsening import Direction
 
 REENTRANT = np.radians(30.0)
-"""Excess of a corner's interior angle over 180 degrees from which there is local relaxation."""
+"""Smallest excess of a corner's interior angle over 180 degrees for local relaxation."""
 
 REACH = 32  # cells to each side of the corner, and inwards
 SWEEPS = 8  # local sweeps after each sweep of the level
 
 LEAST = 120
-"""Least count of cells per direction of a level with local relaxation; on smaller ones it costs too much."""
+"""Smallest number of cells per direction of a level with local relaxation; on smaller levels it costs too
+much.
+"""
 
 Window = tuple[slice, slice]
 Corner = tuple[str, int]

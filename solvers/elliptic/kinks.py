@@ -10,10 +10,10 @@ from meshonet.geometry.quality.measure import angles
 from meshonet.solvers.elliptic.multigrid import relax
 
 REACH = 3.0
-"""Coarse cells to each side of a kink, and inwards, that are relaxed at full resolution.
+"""Number of coarse cells on each side of a kink, and inwards, that are relaxed at full resolution.
 
-Half as many where that is more than `NEAR` fine cells and Winslow's equations were solved: what the
-sweeps change is nearer to the kink, and the largest angles are the same to a tenth of a degree.
+If this is more than `NEAR` fine cells and Winslow's equations were solved, half as many are relaxed: the
+sweeps change only nodes nearer to the kink, and the largest angles are the same to a tenth of a degree.
 """
 
 NEAR = 40  # fine cells from the kink

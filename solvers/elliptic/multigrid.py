@@ -114,7 +114,8 @@ class Multigrid:
     def cycle(self, k: int = 0, forced: bool = False) -> float:
         """Run one V-cycle from level `k`; return the root mean square of the coarse correction.
 
-        It has the unit of length and estimates the error before the cycle; 0 on the coarsest level.
+        `forced` keeps the right-hand side of level `k`; otherwise it is 0. The correction is in the unit of
+        length, and is an estimate of the error before the cycle; on the coarsest level it is 0.
         """
         if k == len(self.levels) - 1:
             self._relax_coarsest(forced, 1e-2, 10)

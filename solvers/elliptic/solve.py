@@ -47,7 +47,8 @@ def solve(
     the discretisation error. At most `max_cycles` cycles are run. `initial`, of the same counts, replaces
     nested iteration. The grid may be folded at re-entrant corners (`meshonet.solvers.pipeline.fallback`).
 
-    Raises InputError for bad settings or counts, SolverError when every attempt diverged.
+    Raises InputError: settings out of range; an `initial` grid with other node counts. Raises SolverError:
+    every attempt diverged.
     """
     check_settings(boundary, tol, max_cycles, initial)
     notes: tuple[str, ...] = ()
@@ -78,7 +79,8 @@ def solve_thomas_middlecoff(
 ) -> Solution:
     """Solve Winslow's equations with the control functions of Thomas and Middlecoff.
 
-    As `solve`, with `meshonet.solvers.elliptic.control.thomas_middlecoff`.
+    Parameters and errors are those of `solve`; the control functions are those of
+    `meshonet.solvers.elliptic.control.thomas_middlecoff`.
     """
     return solve(
         boundary, tol=tol, max_cycles=max_cycles, initial=initial, controls=thomas_middlecoff(boundary),

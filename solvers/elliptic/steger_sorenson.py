@@ -52,7 +52,8 @@ def solve_steger_sorenson(
     an edge and the lines that leave it, in degrees. `tol`, `max_cycles` and `initial` are those of `solve`.
     Notes state the remaining error of the angles, and whether sources were weakened because cells folded.
 
-    Raises InputError: a side that cannot be controlled, an angle out of range, or as `solve`; SolverError.
+    Raises InputError: a side that cannot be controlled; an angle out of range; the errors of `solve`. Raises
+    SolverError: every attempt diverged.
     """
     check_settings(boundary, tol, max_cycles, initial)
     heights = _checked(boundary, heights, angle)
@@ -76,7 +77,10 @@ def solve_steger_sorenson(
 
 
 def largest_lean(nodes: Floats, boundary: Boundary) -> float:
-    """Return the largest deviation from 90 degrees of a quad's lines at south and north, not near corners."""
+    """Return the largest deviation from 90 degrees of lines at south and north of a quad.
+
+    Nodes near corners do not count.
+    """
     sides = ("south", "north")
     edges = _edges(boundary, dict.fromkeys(sides, 0.0), 90.0, nodes)
     sine = max(float(np.abs(edge.errors(nodes)[0]).max()) for edge in edges)

@@ -27,9 +27,11 @@ LIMIT = 1.0  # largest logarithm of a step ratio due to a source
 
 
 class ControlledEdge:
-    """A controlled edge (n, 2), with `across` nodes to the opposite one; closed when `periodic`.
+    """An edge (n, 2) at which angle and first-cell height are controlled.
 
-    Lines leave it at `angle` (degrees, from the edge), with first cells of `height`, 0 for any.
+    There are `across` nodes from this edge to the opposite one; if `periodic`, the edge is closed. `angle` is
+    the angle in degrees between the edge and the lines that leave it, `height` the first-cell height, 0 if it
+    is free.
     """
 
     def __init__(
@@ -45,9 +47,10 @@ class ControlledEdge:
         self._count = across
 
     def errors(self, nodes: Floats) -> tuple[Floats, Floats]:
-        """Return the errors of the lines' angle (sine) and of the logarithm of first-cell height, (n,) each.
+        """Return the errors (n,) of the angle (as a sine) and of the logarithm of the first-cell height.
 
-        They are weighted to 0 towards corners and ends of the edge, where the angle cannot be prescribed.
+        The errors are multiplied by weights that decrease to 0 at corners and ends of the edge, where the
+        angle cannot be prescribed.
         """
         lines = lines_from_side(nodes, self.side)
         lean = leaning(lines, self._tangent) - math.cos(math.radians(self.angle))
@@ -79,7 +82,7 @@ class ControlledEdge:
         return Controls(Factors(fade[None], across), Factors(fade[None], along))
 
     def resample(self, coarse: ControlledEdge) -> None:
-        """Take the sources of the same edge with other node counts, interpolated."""
+        """Set the sources to those of `coarse`, the same edge with other node counts, interpolated."""
         n, m = self.sources.shape[1], coarse.sources.shape[1]
         place, few = np.linspace(0.0, 1.0, n), np.linspace(0.0, 1.0, m)
         factors = (m - 1) / (n - 1), (coarse._count - 1) / (self._count - 1)

@@ -28,7 +28,10 @@ class Window:
         return int(np.prod(np.subtract(self.last, self.first)))
 
     def rows(self, ni: int, periodic: bool) -> NDArray[np.intp]:
-        """Return the first indices of the nodes in a grid with `ni` rows."""
+        """Return the i indices (m,) of the window's nodes in a grid with `ni` nodes along i.
+
+        If `periodic`, the indices are taken modulo ni - 1.
+        """
         rows = np.arange(self.first[0], self.last[0] + 1)
         return rows % (ni - 1) if periodic else rows
 
@@ -38,11 +41,14 @@ class Window:
         return rows, *(slice(low + less, high + 1 - less) for low, high in ends)
 
     def cut(self, nodes: Floats, periodic: bool = False) -> Floats:
-        """Return a planar copy of the window's part of `nodes` (ni, nj, 2) or (ni, nj, nk, 3)."""
+        """Return a copy of the window's nodes, from `nodes` (ni, nj, 2) or (ni, nj, nk, 3).
+
+        The copy is in planar layout (`meshonet.geometry.arrays`): each coordinate is contiguous in memory.
+        """
         return as_planar(nodes[self._index(self.rows(len(nodes), periodic), 0)])
 
     def put(self, nodes: Floats, periodic: bool, patch: Floats) -> None:
-        """Set the inner nodes of the window to those of `patch`, which has the shape returned by `cut`."""
+        """Set the inner nodes of the window in `nodes` to those of `patch`, which `cut` returned."""
         inner = (slice(1, -1),) * len(self.first)
         nodes[self._index(self.rows(len(nodes), periodic)[1:-1], 1)] = patch[inner]
         if periodic:

@@ -39,10 +39,10 @@ def descend(
 
     Return the iterations and whether the grid is valid.
 
-    `still` is the `tol` of `solve` and `most` the largest number of iterations. If `first` is given, the
-    iteration stops after `first` iterations unless the value is then above `HARD`. Around a body (`periodic`)
-    the last row of nodes is the first one and moves too. `stiffness` is the Hessian on a coarse copy with its
-    node counts, a preconditioner for smooth displacements.
+    `still` is the `tol` of `variational.solve` and `most` the largest number of iterations. If `first` is
+    given, the iteration stops after `first` iterations unless the value is then above `HARD`. Around a body
+    (`periodic`) the last row of nodes repeats the first row, and both move. `stiffness` is the Hessian on a
+    coarse copy with its node counts, a preconditioner for smooth displacements (`stiffness_of`).
     """
     ni, nj = nodes.shape[:2]
     if min(ni, nj) < 3:
@@ -68,9 +68,9 @@ def descend(
 def newton(nodes: Floats, weights: Weights, most: int) -> int:
     """Take up to `most` Newton steps from planar `nodes` (ni, nj, 2) of a quad; return the number of steps.
 
-    A step reduces the error much more than one of `descend`; with 33 x 33 nodes it costs about six of these.
-    The iteration ends after a step that lowers the functional by less than `WON`. If nodes cannot be
-    repaired, no step is taken.
+    A step reduces the error much more than an iteration of `descend`; with 33 x 33 nodes it costs as much as
+    about six iterations. The iteration ends after a step that lowers the functional by less than `WON`. If
+    folded cells cannot be repaired, no step is taken.
     """
     if min(nodes.shape[:2]) < 3 or (count_folded(nodes) and repair(nodes, periodic=False)):
         return 0
@@ -90,7 +90,7 @@ def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int,
 
 
 def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
-    """Return a function that calls the listeners with `nodes` (ni, nj, 2), None without listeners."""
+    """Return a function that calls the listeners with `nodes` (ni, nj, 2); None if there are no listeners."""
     if not listened_to():
         return None
     first = 0.0

@@ -23,7 +23,9 @@ from meshonet.solvers.energy.hex_tables import HexTables, Targets, cell_lengths,
 RENEWED = 10
 """Number of iterations after which the preconditioner is updated."""
 STILL = 0.3
-"""Displacement in cells; a minimisation ends after two consecutive smaller steps that gain little."""
+"""A minimisation ends after two consecutive steps that gain little and move nodes by less than this, in
+cells.
+"""
 REACH = 0.5
 """Largest displacement of a node in a first step, in cells."""
 ROUNDS, ROUND = 20, 10
@@ -48,17 +50,23 @@ class Slides:
 
     @classmethod
     def none(cls) -> Slides:
-        """Return those of a mesh without sliding nodes."""
+        """Return the value for a mesh without sliding nodes."""
         return cls(np.empty(0, dtype=np.intp), np.empty((0, 3, 3)))
 
     def among(self, nodes: Indices) -> Slides:
-        """Return those among `nodes` (m,), sorted numbers, by their indices in `nodes`."""
+        """Return the sliding nodes among `nodes` (m,), sorted numbers.
+
+        They are numbered by their indices in `nodes`.
+        """
         place = np.minimum(np.searchsorted(nodes, self.nodes), len(nodes) - 1)
         some = nodes[place] == self.nodes
         return Slides(place[some], self.projections[some])
 
     def kept(self, before: Floats, after: Floats, moves: Bools) -> Floats:
-        """Return nodes (n, 3) `after` a displacement, projected exactly to their planes or lines."""
+        """Return nodes (n, 3) `after` a displacement, sliding ones projected to their planes or lines.
+
+        The planes and lines go through the nodes `before`.
+        """
         nodes, at = after.copy(), self.nodes
         nodes[at] = before[at] + (self.projections * (after[at] - before[at])[:, None]).sum(axis=2)
         nodes[~moves] = before[~moves]
@@ -70,7 +78,7 @@ class HexOptimum:
     """Result of `optimise`."""
 
     nodes: Floats
-    """(n, 3); nodes that are not free are bitwise unchanged."""
+    """(n, 3) nodes; nodes that are not free are bitwise unchanged."""
     smallest: float
     """Smallest corner Jacobian of cells with free nodes, relative to their target volume."""
     value: float

@@ -72,7 +72,7 @@ def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights)
 
 
 Halves: TypeAlias = tuple[Modes, Modes]
-"""Modes that are even and odd about the middle, on the first half of the nodes."""
+"""Modes that are even and modes that are odd about the middle, on the first half of the nodes."""
 
 
 @lru_cache(maxsize=16)

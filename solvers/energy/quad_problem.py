@@ -83,7 +83,10 @@ class Problem:
         self.descent = self._descent(aspects, targets, turning)
 
     def take(self, mesh: QuadMesh) -> None:
-        """Begin again with a mesh of other nodes, all of whose wall nodes are where they were, and stay."""
+        """Begin again with a mesh of the same quads with other inner nodes.
+
+        All wall nodes must be at the same positions, and be fixed.
+        """
         self.mesh = mesh
         self.nodes[:] = (mesh.nodes - self.centre) / self.unit
         self.areas[:] = self._areas()

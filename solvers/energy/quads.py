@@ -76,7 +76,10 @@ def problem_of(
     mesh: QuadMesh, held: Bools | None, aspects: Floats | None = None, targets: Floats | None = None,
     turning: float = ALLOWED,
 ) -> Problem | None:  # fmt: skip
-    """Return the minimisation over the nodes of a mesh; see `optimise`. None: fixed wall nodes overtake."""
+    """Return the minimisation over the nodes of a mesh (see `optimise`).
+
+    Returns None if the fixed wall nodes are not in order along the wall.
+    """
     unknowns = unknowns_of(mesh, held)
     walls = walls_of(mesh, unknowns.fixed, unknowns.tied)
     return Problem(mesh, unknowns, walls, aspects, targets, turning) if walls else None

@@ -23,7 +23,8 @@ from meshonet.solvers.energy.preconditioner import Descent
 from meshonet.solvers.energy.untangle import unfold
 
 UNFOLDING = (Weights(0.3, 0.0), 60), (Weights(0.0, 0.0), 60), (Weights(0.0, 0.0), 200)
-"""Weights and iterations that are tried in turn, with decreasing regularisation, while cells stay folded.
+"""Weights and numbers of iterations that are tried in turn, with decreasing regularisation, while cells stay
+folded.
 
 The harmonic term alone untangles more cells, but with larger angles; around spikes it needs many iterations.
 """

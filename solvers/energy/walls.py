@@ -24,14 +24,14 @@ class Walls:
     nodes: Indices
     loop: Indices
     arc: Floats
-    """Arc lengths (w,), less than the length of the loop."""
+    """(w,) arc lengths of the nodes, less than the length of the loop."""
     edges: Indices
-    """(e, 2), numbers of wall nodes."""
+    """(e, 2) the two wall nodes of each edge, as indices into the nodes on loops."""
     round: Floats
     """(e,) value to add to the arc length of the second node: 0 or the length of the loop."""
 
     def range_of(self, loop: int) -> tuple[int, int, int, int]:
-        """Return first and end index of the nodes and of the edges of a loop."""
+        """Return first and end index of the nodes of a loop, and first and end index of its edges."""
         of_edge = self.loop[self.edges[:, 0]]
         n = [int(k) for k in np.searchsorted(self.loop, [loop, loop + 1])]
         e = [int(k) for k in np.searchsorted(of_edge, [loop, loop + 1])]

@@ -40,9 +40,9 @@ def around_base(
 ) -> Solution:
     """Return the grid of two blocks around `lines`, with first cells of height `first` in their unit.
 
-    The other parameters are those of `hyperbolic`.
+    The other parameters are those of `march.hyperbolic`.
 
-    Raises InputError: as `hyperbolic`; SolverError: the march diverged.
+    Raises InputError: the errors of `hyperbolic`. Raises SolverError: the march diverged.
     """
     check_layers(first / lines.chord, growth)
     ends, between = _h_block(lines, first, growth)

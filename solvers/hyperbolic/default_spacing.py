@@ -19,8 +19,10 @@ from meshonet.solvers.hyperbolic.march import hyperbolic
 from meshonet.solvers.solution import Solution
 
 PART = 0.05
-"""First cell over the smallest cell of the wall. At 0.25 lines lean by up to 80 degrees around some sections
-with 400 rows; at 0.05 by 29 at the most, and by 4 around most."""
+"""Ratio of the first-cell height to the smallest cell of the wall. With 0.25 and 400 rows, lines deviate from
+the normals by up to 80 degrees around some sections; with 0.05 by at most 29 degrees, around most sections by
+4.
+"""
 MOST = 0.25  # the same where rows are few, so that they grow by no more than `GROWTH`
 GROWTH = 1.2  # largest ratio of neighbouring rows
 CHOSEN = "no first cell was asked for: it follows from the smallest one along the wall"
@@ -38,9 +40,9 @@ def first_cell(boundary: Boundary) -> float:
 
 
 def first_cell_around_base(width: float, away: float, chord: float, ni: int, nj: int) -> float:
-    """Return the same for a C grid of `ni` x `nj` nodes that keeps a base of this `width`, before it is made.
+    """Return the height of first cells of a C grid with `ni` x `nj` nodes that keeps a base of this `width`.
 
-    Its smallest cell is what it is behind a sharp edge, or a cell on the base.
+    The grid need not exist yet: its smallest cell is the cell behind a sharp edge, or a cell on the base.
     """
     return _height(min(C_EDGE / ni * chord, COARSEST * width), away, nj)
 
@@ -53,8 +55,8 @@ def _height(smallest: float, away: float, nj: int) -> float:
 def march_by_default(boundary: Boundary) -> Solution | None:
     """Return the C grid marched from `boundary`, or None where another method suits better.
 
-    This is the case if the far field is given node by node, since a march ends in its own; if rows are so few
-    that cells would grow by more than `STEEPEST`; or if cells are folded.
+    Another method is better in three cases: the nodes of the far field are given, because a march makes a far
+    field of its own; rows are so few that cells would grow by more than `STEEPEST`; cells are folded.
     """
     if boundary.wall is None:
         return None

@@ -24,22 +24,27 @@ from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
 
 _OPENING = 5.0  # growth of first cells far behind the edge, in those of the wall per chord
 _NEAR = 0.3
-"""First cells at x chords behind the edge are 1 + `_OPENING` x²/(x + `_NEAR`) times those of the wall."""
+"""Height of first cells at x chords behind the trailing edge, divided by that of the wall: 1 + a x²/(x + b),
+with these a and b.
+"""
 
 _CLOSED_AHEAD, _ASIDE, _OPEN_AHEAD, _OPEN_MORE = 1.8, 0.055, 23.0, 0.016
-"""How levels differ from those around a circle, measured on airfoils, where it leaves 1 %. Around slender
-bodies they come out farther by a part of the first times slenderness and the square of the rate at which
-steps grow, and are nearest at less than their mean distance by a part of the second times slenderness. In
-front of C grids they come out farther by a part of the third times the cube of that rate; the last puts these
-on the safe side."""
+"""Corrections of the distance of levels, relative to levels around a circle; they are fitted on airfoils, and
+leave an error of 1 %. Around slender bodies the distance is larger by the first constant times slenderness
+times the square of the growth rate of steps, and the smallest distance is less than the mean by the second
+constant times slenderness. In front of C grids the distance is larger by the third constant times the cube of
+the growth rate; the fourth is a margin.
+"""
 
 
 class Front:
-    """Level 0 of a march from an ``o`` or ``c`` boundary, and the distance its last level is to reach."""
+    """Level 0 of a march from an ``o`` or ``c`` boundary, and the distance that the last level must reach."""
 
     inner: float  # radius of the circle of the body's area
     slender: float
-    """1 - l/L, with l the perimeter of the circle of the body's area and L its own: 0 for a circle."""
+    """Slenderness 1 - l/L: L is the perimeter of the body, l that of a circle of the same area; 0 for a
+    circle.
+    """
     outer: float  # radius of the far field: least distance of the last level from the centre of the body
     ends: Floats | None  # (2, 2) unit directions in which the ends of an open front move
     widening: Floats | None  # (n,) factors of the first step, relative to the wall, for an open front
@@ -84,7 +89,7 @@ class Front:
         return self._south[:-1] if self._closed else self._south
 
     def reach(self, levels: Floats) -> float:
-        """Return the least distance of the last of `levels` (2, m, n) from the centre of the body."""
+        """Return the smallest distance of the last of the `levels` (2, m, n) from the centre of the body."""
         return float(np.hypot(*(levels[:, -1].T - self._middle).T).min())
 
     def nodes(self, levels: Floats) -> Floats:
@@ -135,8 +140,8 @@ def distance_to_march(
 
     Around a circle of n nodes a step s leads from radius r to r + s (1 - e)/(1 + f s/r + 2 e s/r): f is the
     weight of the flux along a level, e = 2π ε q/n + b h/r the dissipation, q its reduction where lines
-    diverge. The same holds in front of a C. `_CLOSED_AHEAD` and the constants next to it correct for bodies
-    that are no circles.
+    diverge. The same holds in front of a C. For other bodies, constants fitted on airfoils correct the
+    distance.
     """
     distance = front.outer - front.inner
     around = 2.0 * math.pi * settings.dissipation / len(front.start())

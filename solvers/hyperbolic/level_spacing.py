@@ -18,14 +18,16 @@ from meshonet.geometry.spacing.growth import growing_steps, growth_rate
 
 _LESS = 0.24  # largest reduction of growth, as a fraction, where lines from an edge of zero angle diverge
 _BEGIN, _FULL = 1.2, 3.0
-"""Heights over the cell at the edge at which half of that is left out, and from which it fades."""
+"""Distances from the wall, divided by the cell at the edge: where half of the reduction of growth has ended,
+and where it begins to end.
+"""
 _FADE = 0.45  # power of the height with which it fades
 _BEFORE = 0.04  # part of the growth left out nearer to the wall, where lines off a leading edge grow the most
 _LEAST_TURN = math.radians(60.0)  # of an edge that counts as sharp
 
 
 class Edge(NamedTuple):
-    """A sharp edge of a wall: the size of the cells beside it, and how sharp it is, 0 to 1."""
+    """A sharp edge of a wall: the size of the cells beside it, and its sharpness, 0 to 1."""
 
     size: float
     sharpness: float
@@ -34,7 +36,7 @@ class Edge(NamedTuple):
 def sharpest_edge(ring: Floats) -> Edge | None:
     """Return the sharpest convex corner of a clockwise closed wall (n, 2), the first node not repeated.
 
-    None where no corner turns by 60 degrees.
+    None if no corner turns by 60 degrees.
     """
     turn = -turning(ring, closed=True)
     k = int(np.argmax(turn))
@@ -51,10 +53,11 @@ def fastest(nodes: Floats) -> Floats:
 
 
 def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Floats:
-    """Return shares (n,) of growth for steps with which no cells should grow by more than `rate` (logarithm).
+    """Return weights (n,) of the growth at each level, for steps with which no cell should grow too much.
 
-    The growth of `steps` (n,) at each level is changed by the difference between `rate` and the largest
-    growth of cells there in `nodes`, marched by `steps`, in logarithms.
+    `rate` is the logarithm of the largest growth ratio. `nodes` is a grid marched with `steps` (n,). At each
+    level, the logarithm of the growth of the steps is changed by the difference between `rate` and the
+    largest growth of cells there.
     """
     grown = np.diff(log(steps))
     shares = np.maximum(grown + rate - fastest(nodes), 0.0)
@@ -65,12 +68,12 @@ def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Flo
 def level_steps(
     first: float, distance: float, cells: int, constant: int, edge: Edge | None, shares: Floats | None = None
 ) -> Floats:
-    """Return `cells` steps from `first` on that add up to `distance`.
+    """Return `cells` step lengths (cells,), which start with `first` and add up to `distance`.
 
-    The first `constant` ones are equal. The others grow by one ratio, or, if `edge` is given, by its power 1
-    - q with q at most `_LESS` times the sharpness of the edge (constants fitted on airfoils, so that growth
-    is equal along all lines). With `shares` (cells,), the logarithms of growth ratios are proportional to
-    these.
+    The first `constant` steps are equal; the others grow by one ratio. If there is a sharp `edge`, the ratio
+    is reduced at the distances from the wall at which lines diverge from the edge, more at a sharper edge, so
+    that growth is nearly equal along all lines (constants are fitted on airfoils). With `shares` (cells,),
+    the logarithms of growth ratios are proportional to `shares`.
 
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]

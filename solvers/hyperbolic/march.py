@@ -40,16 +40,20 @@ from meshonet.solvers.stages import filling
 
 FADE_ROWS = 12.0  # rows over which the correction of the first cell fades out
 NEAREST, FARTHEST = 1.001, 1.025
-"""Distances of the last level, in those of the far field, between which no other one is tried; further tries
-aim a quarter of the way from the first to the second."""
+"""Accepted range of the distance of the last level, divided by that of the far field. Further marches aim at
+a quarter of the way from the lower to the upper limit.
+"""
 
 MOST_GROWTH = 1.5
-"""Growth ratio beyond which no march is tried: it would not get away from the wall."""
+"""Largest growth ratio with which a march is tried: with a larger one, levels would not get away from the
+wall.
+"""
 
 SPARE_WAY = 1.6
-"""Distance that rows whose number is free can reach, over the one they have to.
+"""If the number of rows is free: the distance that the rows could reach, divided by the prescribed distance.
 
-With fewer rows some lines would be at the limit everywhere and those beside them not, which bends the rows.
+With fewer rows some lines would be at the growth limit everywhere and their neighbours not, which bends the
+rows.
 """
 
 EVENINGS = 6  # most marches in which steps are corrected so that growth is even
@@ -69,13 +73,14 @@ def hyperbolic(
 ) -> Solution:  # fmt: skip
     """Return an O or C grid marched from the wall of `boundary`, whose nodes are kept bitwise.
 
-    The far field of `boundary` determines the distance to march, its `nj` the number of rows, or, with
-    `free_rows`, `growth` does: the largest growth ratio; the rows of cells are then a multiple of `multiple`.
-    The ends of a C's rows move along its west and east, taken as straight. `wall_spacing` is the first-cell
-    height in chords, met to a relative 1e-8; the first `constant` rows have this height. The boundary of the
-    solution is the one that the march reached. The grid may be folded if it was in every attempt.
+    The far field of `boundary` determines the distance to march, and its `nj` the number of rows. With
+    `free_rows`, the number of rows follows from `growth`, the largest growth ratio; it is then a multiple of
+    `multiple`. The ends of the rows of a C grid move along west and east, which are taken as straight.
+    `wall_spacing` is the first-cell height in chords, met to a relative error of 1e-8; the first `constant`
+    rows have this height. The far field of the solution is where the march ended. If all attempts have folded
+    cells, the grid has folded cells.
 
-    Raises InputError: a four-sided boundary; a spacing or growth out of range; rows that do not suffice;
+    Raises InputError: a four-sided boundary; a spacing or growth out of range; too few rows. Raises
     SolverError: no attempt gave finite nodes.
     """
     check_layers(wall_spacing, growth)
@@ -100,11 +105,11 @@ def marched(
     constant: int,
     multiple: int = 1,
 ) -> Floats:
-    """Return the nodes (ni, nj, 2) of a march of `asked` rows of cells, or of as many as `growth` needs.
+    """Return the nodes (ni, nj, 2) of a march of `asked` rows of cells.
 
-    With `free_rows` their number is a multiple of `multiple`.
+    With `free_rows` the number of rows follows from `growth`, and is a multiple of `multiple`.
 
-    Raises InputError: rows that do not suffice; SolverError: no attempt gave finite nodes.
+    Raises InputError: too few rows. Raises SolverError: no attempt gave finite nodes.
     """
     distance = front.outer - front.inner
     least = cells = _rows(asked, first, distance, growth, free_rows, constant, multiple)

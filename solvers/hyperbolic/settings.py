@@ -29,9 +29,10 @@ ATTEMPTS = (
     MarchSettings(1.0, 1.0, 40),
     MarchSettings(2.0, 2.0, 40),
 )
-"""Those around a closed body; the third suits first cells nearly as high as long."""
+"""Settings around a closed body; the third suits first cells nearly as high as long."""
 SHARP_ATTEMPTS = (replace(ATTEMPTS[0], tolerated=0.19), *ATTEMPTS[1:])
-"""The same around a sharp edge: with less tolerance, more of the lines beside it would lean."""
+"""Settings around a body with a sharp edge: with a smaller tolerance, more lines beside it would be oblique.
+"""
 OPEN_ATTEMPTS = (
     MarchSettings(0.5, 0.5, 20, 0.02, 0.13, 0.02),
     MarchSettings(0.5, 0.5, 4, 0.15, bend=0.05),
@@ -39,4 +40,4 @@ OPEN_ATTEMPTS = (
     MarchSettings(1.0, 0.5, 20),
     MarchSettings(2.0, 2.0, 40),
 )
-"""The same for C grids, whose lines spread less."""
+"""Settings for C grids, whose lines diverge less."""

@@ -16,11 +16,9 @@ from meshonet.geometry.quality.growth import ratios
 PASSES = 8
 """Largest number of passes; chords of a bent line differ from its arcs, less so in each pass."""
 SPARE = 1.08
-"""Smallest ratio of the length that the cells can reach to that of the line.
+"""Smallest ratio of the length that the cells can reach to the length of the line.
 
-With a smaller ratio one line would
-
-be changed everywhere and its neighbour not at all.
+With a smaller ratio one line would be changed everywhere and its neighbour not at all.
 """
 LEFT = 1e-6
 """Margin below the growth limit, as a fraction of growth - 1, so that rounded files respect it too."""

@@ -46,9 +46,10 @@ PASSES = 100  # alternating corrections of first cells off edges that meet, at t
 def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution:
     """Return `solution` with its nodes moved along its grid lines into layers.
 
-    `solution` is a valid quad or O grid for `boundary`, preferably with even rows. The result has its own
-    boundary, given by its edges. Raises InputError: heights that the boundary cannot have, or that need more
-    growth than allowed.
+    `solution` is a valid quad or O grid for `boundary`, preferably with even rows. The boundary nodes of the
+    result differ from those of `boundary`.
+
+    Raises InputError: heights that the boundary cannot have, or that need a larger growth ratio than allowed.
     """
     check_fit(heights, boundary)
     check_columns(boundary, heights)
@@ -125,7 +126,7 @@ def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights, more: int) -
 
 
 def check_columns(boundary: Boundary, heights: Heights) -> None:
-    """Raise InputError if the columns of `boundary` do not suffice for heights off west and east."""
+    """Raise InputError if there are too few nodes along xi for the prescribed heights at west and east."""
     ends = heights.west, heights.east
     for edge in (boundary.south, boundary.north) if any(ends) else ():
         curve = Curve(edge)
@@ -214,11 +215,15 @@ def _correct(nodes: Floats, side: str, height: float) -> None:
 
 
 def worst_first_cell(solution: Solution) -> float:
-    """Return the largest relative error of the first-cell heights that `solution` should have."""
+    """Return the largest relative error of first-cell heights in `solution`; 0 if none is prescribed."""
     nodes, heights = solution.grid.nodes, solution.first_cells
     return max((first_cell_error(nodes, side, height) for side, height in heights.items()), default=0.0)
 
 
 def first_cell_error(nodes: Floats, side: str, height: float) -> float:
-    """Return the largest relative error of the first cells at one edge."""
+    """Return the largest relative error of the first-cell heights at one side of a block.
+
+    `nodes` has the shape (ni, nj, 2); `side` is the name of the side; `height` is the prescribed height, in
+    the unit of the nodes.
+    """
     return float(np.abs(first_heights(lines_from_side(nodes, side)) / height - 1.0).max())

@@ -41,8 +41,9 @@ def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
 
     Grid lines of an elliptic grid inside it leave both walls at right angles, except next to west and east if
     these are not normal to the walls, and at kinks of the walls, which stay on nodes. The control function
-    φ(ξ) preserves the uneven spacing that both walls share; it is None for even spacing. Raises InputError:
-    another topology.
+    φ(ξ) preserves the uneven spacing that both walls share; it is None for even spacing.
+
+    Raises InputError: a topology other than ``quad``.
     """
     if boundary.around_body:
         problem = f"walls of topology {boundary.topology} cannot slide"

@@ -20,10 +20,10 @@ from meshonet.geometry.quality.compare import compare
 from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
 
 Goal = Literal["winslow", "variational", "conformal"]
-"""The method whose grids a network imitates."""
+"""Name of the method whose grids a network imitates."""
 
 THRESHOLD = 0.03
-"""Expected error up to which an answer without folded cells is accepted (docs/benchmarks/confidence.md)."""
+"""Largest expected error of a grid without folded cells that is accepted (docs/benchmarks/confidence.md)."""
 
 MOST = 129  # nodes along a direction from which an answer is judged on fewer nodes
 CYCLES = 2  # multigrid cycles for Winslow's equations
@@ -50,7 +50,7 @@ class Confidence:
 def expected_error(grid: Grid, boundary: Boundary, goal: Goal) -> float:
     """Return the expected relative L2 distance of `grid` from the grid of the method `goal`.
 
-    `goal` is ``winslow`` or ``variational``. Infinite where the solver cannot go on from `grid`.
+    `goal` is ``winslow`` or ``variational``. The error is infinite if the solver cannot start from `grid`.
     """
     counts = tuple(min(n, MOST) for n in (boundary.ni, boundary.nj))
     if counts != (boundary.ni, boundary.nj):

@@ -26,7 +26,7 @@ INSTALL_TORCH = (
     "install it: pip install 'meshonet[train]'; without a GPU install PyTorch's CPU wheel first, "
     "which is a tenth as large"
 )
-"""Remedy where torch is not there."""
+"""Remedy if torch is not installed."""
 STEPS = 3  # Picard steps of "auto" after the strip network
 
 
@@ -39,10 +39,11 @@ def solve_on(
 ) -> list[Solution]:
     """Return a grid inside each boundary; boundaries with equal node counts are computed in one batch.
 
-    `polish`: number of Picard steps of the strip operator; ``auto`` or ``off`` for quad operators, which take
-    none; `instead`: solver for a boundary that cannot be solved on the device. Raises InputError: torch or
-    the device is missing; boundaries or polish that do not suit the operator; MemoryError: too little device
-    memory.
+    `polish` is the number of Picard steps of the strip operator; quad operators make no steps and accept only
+    ``auto`` and ``off``. `instead` is called for a boundary that cannot be solved on the device.
+
+    Raises InputError: torch or the device is missing; boundaries or polish that do not suit the operator.
+    Raises MemoryError: too little device memory.
     """
     if not operator.batched:
         raise InputError(f"model {operator.name} has no grids on a device", "leave {device} out")

@@ -19,8 +19,9 @@ from meshonet.solvers.neural.registry import BASE, DEFAULTS, load, makes_volumes
 from meshonet.solvers.solution import Solution
 
 Answer = Literal["valid", "pasted", "raw"]
-"""Treatment of a network's output: ``raw`` none; ``pasted`` its edges are replaced by the boundary's nodes,
-as in the paper; ``valid`` folded cells are repaired as well (by the caller)."""
+"""Treatment of a network's output. ``raw``: none; ``pasted``: its boundary nodes are replaced by the given
+nodes, as in the paper; ``valid``: the caller also repairs folded cells.
+"""
 
 
 def infer_many(

@@ -30,10 +30,11 @@ TURNING_DEG = 25.0
 class Chords:
     """The edges of a layout's blocks, each once.
 
-    `sides` (b, 4) are the edges at south, north, west and east of each block, `reversed` (b, 4) says where
-    the block runs the other way along one, `wall` (e,) which are walls; the `partner` (e,) of an
-    edge is the one that it is, moved by the period, else -1, and `chord` (e,) numbers the chord of each.
-    `images` are the nodes (n,) that all become in each mirror: images of edges are of one chord.
+    `sides` (b, 4) are the numbers of the edges at south, north, west and east of each block; `reversed` (b,
+    4) says whether the block runs along the edge in the opposite direction; `wall` (e,) whether an edge is on
+    a wall. The `partner` (e,) of an edge on a periodic side is the corresponding edge of the other side, else
+    -1; `chord` (e,) is the number of the chord. `images` contains, for each mirror, the number (n,) of the
+    mirror image of each node; an edge and its mirror image belong to the same chord.
     """
 
     layout: Layout
@@ -48,7 +49,7 @@ class Chords:
 
     @classmethod
     def of(cls, layout: Layout, images: Sequence[Indices] = ()) -> Chords:
-        """Return the edges and chords of a layout; mirror images are of the same chord."""
+        """Return the edges and chords of a layout; an edge and its mirror image belong to the same chord."""
         edges: list[Indices] = []
         numbers: dict[tuple[int, ...], int] = {}
         sides = np.empty((len(layout.blocks), 4), dtype=np.intp)
@@ -75,7 +76,10 @@ class Chords:
         return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, images)
 
     def of_refined(self, layout: Layout) -> Chords:
-        """Return the edges and the same chords of a layout with other counts."""
+        """Return the edges of a layout with the same blocks and other numbers of cells.
+
+        The chords are the same.
+        """
         return replace(Chords.of(layout), chord=self.chord, count=self.count)
 
     @cached_property
@@ -87,9 +91,10 @@ class Chords:
 
     @cached_property
     def multiple(self) -> Indices:
-        """(chords,) what divides counts of symmetric layouts, so that finer ones are symmetric.
+        """(chords,) divisors of the counts of symmetric layouts, so that finer layouts are symmetric too.
 
-        Of a ring that is the number of its mirrors, and two where a corner lies on a mirror across a wall.
+        For the chord around a ring this is the number of its mirrors; for a chord along a wall that a mirror
+        crosses at a corner it is two.
         """
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):
@@ -127,7 +132,7 @@ class Chords:
 
     @cached_property
     def least(self) -> Indices:
-        """(chords,) smallest numbers of cells, due to `LEAST`, corners of the domain and `TURNING_DEG`."""
+        """(chords,) smallest numbers of cells: `LEAST`, and more for corners and turns of walls."""
         least = np.full(self.count, LEAST, dtype=np.intp)
         for edge, loop, arcs in self._walls():
             ends = np.sort(arcs[[0, -1]])
@@ -177,7 +182,7 @@ class Chords:
         return self.rounded(exp(mean), self.least if least is None else least)
 
     def rounded(self, wanted: Floats, least: Indices) -> Indices:
-        """Return the counts (chords,) that are nearest to what is wanted, at least `least`."""
+        """Return integer counts (chords,) nearest to `wanted` (chords,), and at least `least` (chords,)."""
         times = self.multiple
         return times * np.maximum(-(-least // times), nearest_whole(wanted / times).astype(np.intp))
 

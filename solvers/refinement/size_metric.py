@@ -48,17 +48,17 @@ class Near:
 class SizeMetric:
     """Target lengths of edges across and along walls.
 
-    In other directions, those of an ellipse with these axes.
+    In other directions, lengths are the radii of an ellipse with these two axes.
 
     Parameters
     ----------
     points : (n, 2) points on walls and fronts.
     normals : (n, 2) unit normals there.
-    across, along : (n,) lengths of edges in the direction of the normal and perpendicular to it.
+    across, along : (n,) lengths of edges along the normal and along the wall.
     largest : length of edges far from all points.
-    grading : growth of lengths with the distance.
-    starts : indices of the points at which parts start: walls with their own sizes. An edge gets the smallest
-        of their lengths, so that sizes change gradually from one wall to the next.
+    grading : growth of lengths per distance from a point.
+    starts : indices of the points at which parts start; each part is a wall with its own sizes. An edge gets
+        the smallest of the lengths of all parts, so that sizes change gradually from one wall to the next.
     """
 
     points: Floats
@@ -85,7 +85,10 @@ class SizeMetric:
         return self.near(places, directions).length(self)
 
     def near(self, places: Floats, directions: Floats) -> Near:
-        """Return what `length` needs at `places` (m, 2) in `directions` (m, 2) independently of the sizes."""
+        """Return the part of the computation of `length` that does not depend on the sizes.
+
+        `places` (m, 2) are the midpoints of edges, `directions` (m, 2) their directions.
+        """
         places = np.ascontiguousarray(places)
         size = np.maximum(np.hypot(directions[:, 0], directions[:, 1]), 1e-300)
         shape = len(self.starts), len(places)
@@ -106,8 +109,8 @@ class SizeMetric:
     def gradual(self, mesh: QuadMesh, sweeps: int = SWEEPS) -> Floats:
         """Return the target lengths (e,) of the edges of a mesh, smoothed from edge to edge.
 
-        Unsmoothed lengths jump where the nearest point does, on the centre lines between walls; grid lines
-        would have wrinkles there.
+        Unsmoothed lengths jump where the nearest wall point changes, on the centre lines between walls; grid
+        lines would have wrinkles there.
         """
         return _evened(self.edges(mesh), mesh, sweeps)
 

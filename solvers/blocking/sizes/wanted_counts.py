@@ -25,7 +25,7 @@ class WantedCounts:
         self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
 
     def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
-        """Return counts (chords,), multiples of `multiple` near the geometric mean of those of the edges."""
+        """Return counts (chords,), multiples of `multiple`, near the geometric mean over the edges."""
         parts = [self.length / near.length(metric) for near in self.near]
         chords = self.chords
         wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)

@@ -19,12 +19,15 @@ SYMMETRY, FREE = "symmetry", "free"
 
 
 def blocks_of(surface: Surface, lines: Floats) -> tuple[Block, ...]:
-    """Return a block for each patch of a surface, of `lines` (3, n, levels)."""
+    """Return a block for each patch of a surface, from the nodes `lines` (3, n, levels) above its n nodes."""
     return tuple(Block(np.moveaxis(lines[:, lattice], 0, -1)) for lattice in surface.lattices)
 
 
 def volume_grid(surface: Surface, blocks: tuple[Block, ...], in_plane: Indices) -> Grid:
-    """Return the grid of `blocks` on a surface; `in_plane` says which (k,) open edges lie in planes."""
+    """Return the grid of `blocks` on a surface.
+
+    `in_plane` (k,) is a mask of open edges that lie in planes of symmetry.
+    """
     top = blocks[0].counts[2] - 1
     sides = [
         (b, side, face_of(lattice, side)) for b, lattice in enumerate(surface.lattices) for side in _SIDES

@@ -25,12 +25,17 @@ from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
 
 _WIDTH, _FALL = 4, 0.35
-"""Rings of nodes around irregular (not 4-valent) ones that are smoothed more, and the factor per ring."""
+"""Number of rings of nodes around irregular nodes (without four neighbours) that are smoothed more; factor
+per ring.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A neighbour of a node, real or ghost, at own x(node) + sign x(base) + shift; sign, shift are (3,)."""
+    """A neighbour of a node, real or ghost.
+
+    Its position is own x(node) + sign x(base) + shift, with sign and shift (3,).
+    """
 
     base: int
     own: float = 0.0
@@ -43,14 +48,14 @@ class Seen:
         return self.own == 0.0 and bool((self.sign == 1.0).all())
 
     def mirrored(self, plane: Plane) -> Seen:
-        """Return its mirror image in a plane."""
+        """Return the mirror image of this neighbour in a plane."""
         turned = np.where(np.arange(3) == plane.axis, -1.0, 1.0)
         return Seen(
             self.base, self.own, turned * self.sign, turned * self.shift + (1.0 - turned) * plane.value
         )
 
     def opposite(self, splay: float) -> Seen:
-        """Return the ghost opposite it, at 1 + `splay` times its distance."""
+        """Return the ghost opposite this neighbour, at 1 + `splay` times its distance from the node."""
         far = 1.0 + splay
         return Seen(self.base, 1.0 + far, -far * self.sign, -far * self.shift)
 

@@ -10,7 +10,7 @@ from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.elementary import exp, log
 
 _MARGIN = 1e-3
-"""Part of the logarithm of the ratio that is kept for chords, which are shorter than lines."""
+"""Fraction of the logarithm of the limit that is used: chords are shorter than the lines."""
 _HALVINGS = 40  # of the range that the tilt of a line lies in
 _LEAST = 0.2  # of the growth, in logarithms: what that of steps is taken for where it is less
 _MOST = 0.5  # part by which growth is cut down at the most: what is beyond it is at few lines
@@ -30,10 +30,11 @@ def growth_of_levels(lines: Floats) -> Floats:
 
 
 def slower_steps(steps: Floats, found: Floats, growth: float) -> Floats:
-    """Return steps of a march that grow less where those before, `steps` (m,), made cells grow too much.
+    """Return steps that grow less where cells grew too much with the `steps` (m,) of the last march.
 
-    There, cells were `found` (m - 1,) to grow by more than the steps, since fronts spread and turn. At the
-    same distance from the wall they are taken to do so by the same part of the growth, in logarithms.
+    `found` (m - 1,) are the largest growth ratios of cells in the last march, which exceed those of the steps
+    because levels spread and turn. The excess, as a fraction of the growth in logarithms, is assumed to be
+    the same at the same distance from the wall. `growth` is the largest growth ratio.
     """
     length, most = float(steps.sum()), math.log(growth)
     ratio = np.maximum(log(steps[1:] / steps[:-1]), _LEAST * most)
@@ -63,8 +64,8 @@ def slower_steps(steps: Floats, found: Floats, growth: float) -> Floats:
 def limit_growth(lines: Floats, growth: float) -> None:
     """Move nodes of `lines` (3, n, levels) along them, in place; first cells and last nodes stay.
 
-    Lines whose cells differ by no more than `growth` stay as they are. Those that are too long for it grow by
-    one ratio, the least there is.
+    Lines whose cells differ by at most `growth` do not change. On lines that are too long for this limit,
+    cells grow by the smallest possible constant ratio.
     """
     if math.isinf(growth):
         return

@@ -65,15 +65,16 @@ class _Volume(NamedTuple):
 def march_surface(surface: Surface, settings: VolumeMarch, *, wing: bool = False) -> Solution:
     """Return the volume between a surface and a far field, with one block per patch.
 
-    i and j of a block are those of its patch, k goes from the wall (``bottom``) to the far field (``top``).
-    Sides in planes of symmetry are patches ``symmetry``, free ones ``free``; all others are connected. First
-    cells have the given height along every line. On the surface of a `wing` other smoothing is tried while
-    cells are poor, not only while they are folded.
+    Blocks have the indices i and j of their patches; k goes from the wall (``bottom``) to the far field
+    (``top``). Sides in planes of symmetry are patches ``symmetry``, sides that grow from free edges patches
+    ``free``; all others are connected. First cells have the given height along every line. For a `wing` other
+    smoothing is tried not only if cells are folded, but also if cells are poor.
 
-    Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` has what differs.
+    Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` lists the differences.
 
-    Raises InputError: settings that no march can meet, parts whose grids would overlap; NoValidGridError with
-    the worst cells: cells stay folded, by their corners or a Bezier coefficient of their Jacobian.
+    Raises InputError: settings that no march can meet; parts whose grids would overlap. Raises
+    NoValidGridError, with the worst cells: in every attempt a corner Jacobian or a Bezier coefficient of a
+    Jacobian is not positive.
     """
     steps, far = settings.steps(surface.size), settings.distance(surface.size)
     check_parts(surface, far)

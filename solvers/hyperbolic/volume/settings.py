@@ -13,9 +13,9 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import cells_for_growth, growing_steps
 
 GROWTH = 1.2
-"""Growth ratio of cells along a line, where neither layers nor growth are given."""
+"""Default growth ratio of cells along a line, if the number of layers is not given either."""
 FAR_FIELD = 15.0
-"""Distance of the far field in lengths of the surface, where none is given."""
+"""Default distance of the far field, in lengths of the surface."""
 _LONGER = 1.1  # lines than the far field is away, as a rule
 FEWEST = 3  # layers of nodes: two cells
 
@@ -27,11 +27,13 @@ class VolumeMarch:
     Parameters
     ----------
     first_cell : height of the cells at the wall, in the surface's unit of length.
-    layers : nodes along each line, the wall's included; None: as many as `growth` needs.
-    far_field : distance that is marched, in the surface's unit; None: 15 times its longest extent.
-    symmetry : axis that planes of symmetry lie across, or ``none`` where all open edges are free; None: open
-        edges in a plane across an axis, with the surface on one side, lie in a plane of symmetry.
-    growth : of cells along a line, at most; None: 1.2 if `layers` is None, else what `layers` need.
+    layers : number of nodes along each line, including the wall node; None: as many as `growth` needs.
+    far_field : distance of the far field, in the surface's unit; None: 15 times the longest extent of the
+        surface.
+    symmetry : axis to which planes of symmetry are normal; ``none``: all open edges are free; None: open
+        edges in a plane normal to an axis, with the surface on one side, lie in a plane of symmetry.
+    growth : largest growth ratio of cells along a line; None: 1.2 if `layers` is None, else as much as
+        `layers` need.
     """
 
     first_cell: float
@@ -54,17 +56,17 @@ class VolumeMarch:
 
     @property
     def limit(self) -> float:
-        """Largest ratio of neighbouring cells; infinite where `layers` decide it."""
+        """Largest ratio of neighbouring cells; infinite if it follows from `layers`."""
         return math.inf if self.layers is not None and self.growth is None else self.growth or GROWTH
 
     def distance(self, size: float) -> float:
-        """Return how far a surface of extent `size` is marched."""
+        """Return the distance of the far field for a surface of extent `size`."""
         return FAR_FIELD * size if self.far_field is None else self.far_field
 
     def steps(self, size: float) -> Floats:
         """Return the steps (layers - 1,) of a march from a surface of extent `size`.
 
-        Raises InputError: too few layers for the growth, or for any.
+        Raises InputError: too few layers for the growth ratio, or for any growth ratio.
         """
         far = self.distance(size)
         if far < 2.0 * self.first_cell:
@@ -108,10 +110,10 @@ class Smoothing(NamedTuple):
     relaxations: int = 30
     splay: float = 0.0
     boost: float = 3.0
-    """Of free edges, and where other than four faces meet (`meshonet.solvers.hyperbolic.volume.graph`)."""
+    """Parameters at free edges and at irregular nodes (`meshonet.solvers.hyperbolic.volume.graph`)."""
 
     def numbers(self, size: float) -> tuple[float, ...]:
-        """Return the parameters as kernels take them, with half the extent (`size`) of the surface."""
+        """Return the parameters in the form of the kernels, for a surface of extent `size`."""
         return (*self[:5], size, *self[5:16])
 
 
@@ -122,11 +124,11 @@ ATTEMPTS = (
     Smoothing(explicit=1.0, implicit=2.0, theta=0.0, longest=0.5, sweeps=60),
     Smoothing(explicit=2.0, implicit=4.0, theta=0.0, longest=0.5, sweeps=60),
 )
-"""Tried in turn while cells are folded, on surfaces without concave edges."""
+"""Smoothing parameters tried in turn while cells are folded, on surfaces without concave edges."""
 WING_ATTEMPTS = tuple(
     one._replace(outer=outer) for one, outer in zip(ATTEMPTS, (6.0, 2.0, 2.0, 2.0, 1.0), strict=True)
 )
-"""The same for wings: levels are smoothed more far away, where lines behind a swept wing run together."""
+"""Parameters for wings: levels are smoothed more far away, where lines behind a swept wing converge."""
 
 _RELAXED = Smoothing(explicit=1.0, implicit=2.0, theta=0.0, longest=1.0, blend=0.1, relaxing=3.0)
 CONCAVE_ATTEMPTS = (
@@ -136,9 +138,9 @@ CONCAVE_ATTEMPTS = (
     _RELAXED._replace(near=4.0, longest=0.5),
     *ATTEMPTS[2:],
 )
-"""The same for surfaces with concave edges: fronts are relaxed (``kernels/surfaces/relax.c``)."""
+"""Parameters for surfaces with concave edges: levels are relaxed (``kernels/surfaces/relax.c``)."""
 
 
 def attempts_for(*, concave: bool, wing: bool) -> tuple[Smoothing, ...]:
-    """Return what is tried in turn on a surface with or without concave edges, and on a wing's."""
+    """Return the parameters tried in turn on a surface with or without concave edges, or on a wing."""
     return CONCAVE_ATTEMPTS if concave else WING_ATTEMPTS if wing else ATTEMPTS

@@ -22,7 +22,9 @@ from meshonet.geometry.surface.surface import Surface
 ROUGH = 1e-3
 """Largest distance of nodes from a given plane of symmetry, relative to the size of the surface."""
 _FACING = 0.1
-"""Part of the area of a surface that may face a plane of symmetry, less what faces away from it."""
+"""Largest area that faces a plane of symmetry, less the area that faces away from it, as a fraction of the
+surface.
+"""
 
 
 class Symmetry(NamedTuple):
@@ -36,10 +38,11 @@ class Symmetry(NamedTuple):
 def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
     """Return the planes of symmetry of a surface that is marched to a distance `far`.
 
-    `axis` is the normal direction of the planes, ``none`` for no plane, None to detect them. Of detected
-    planes those that `closes_in` are left out, with a note.
+    `axis` is the normal of the planes, ``none`` for no plane, None to detect planes. Detected planes that
+    walls face are left out, with a note (`closes_in`).
 
-    Raises InputError: no open edge lies across the axis; a plane across it closes in before the far field.
+    Raises InputError: no open edge lies in a plane normal to `axis`; a wall faces such a plane at less than
+    the distance of the far field.
     """
     planes, inside = symmetry_planes(surface, axis)
     kept, notes = [], []
@@ -60,7 +63,10 @@ def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
 
 
 def closes_in(surface: Surface, plane: Plane) -> float:
-    """Return the mean distance of the walls that face a plane, infinity where as much faces away from it."""
+    """Return the mean distance of the walls that face a plane.
+
+    Infinity if as much area faces away from it.
+    """
     a, b, c, d = (surface.nodes[surface.quads[:, k]] for k in range(4))
     area = 0.5 * np.cross(c - a, d - b)
     away = (0.25 * (a + b + c + d))[:, plane.axis] - plane.value

@@ -1,4 +1,4 @@
-"""Limits of fixed-point iterations for a batch, by Anderson acceleration.
+"""Limits of fixed-point iterations for a batch of problems, by Anderson acceleration.
 
 Walker and Ni, SIAM J. Numer. Anal. 49 (2011) 1715-1735.
 """
@@ -21,11 +21,12 @@ def limit(
     Parameters
     ----------
     step : callable
-        ``step(x, members)`` returns what comes after `x` (m, n), those of the `members` (m,) of the batch.
+        ``step(x, members)`` returns the next iterates of `x` (m, n), which are the iterates of `members`
+        (m,).
     start : (batch, n) first values.
     tol : (batch,) largest change of a value in a step at which a member has converged.
     most : int
-        Steps at the most.
+        Largest number of steps.
     """
     limits, far = start.clone(), torch.ones(len(start), dtype=torch.bool, device=start.device)
     moving, x = torch.arange(len(start), device=start.device), start

@@ -9,10 +9,10 @@ from meshonet.geometry.errors import InputError
 
 
 def check_sides(least: int, nj: int = 2, **sides: Tensor) -> None:
-    """Raise InputError for sides (..., n, 2) that bound no batch of grids.
+    """Raise InputError unless `sides` (..., n, 2) are the sides of a batch of grids.
 
-    `sides`: by name, in pairs of opposite ones; `least`: nodes of a side at least; `nj`: the node count from
-    one to the other, where no side has it.
+    `sides` are given by name, in pairs of opposite sides; `least` is the smallest number of nodes of a side.
+    For bodies, `nj` is the number of nodes from one side to the other.
     """
     names = list(sides)
     first = sides[names[0]]
@@ -42,13 +42,13 @@ def check_sides(least: int, nj: int = 2, **sides: Tensor) -> None:
 
 
 _CLOSE = 1e-5
-"""Distance between corners of two sides, over the extent of the sides, up to which they are one."""
+"""Corners of two sides nearer than this fraction of the extent coincide."""
 
 
 def check_corners(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> None:
     """Raise InputError, with the index of the member, for sides (..., n, 2) that do not meet at the corners.
 
-    Under `vmap`, where numbers are not known, nothing is checked.
+    Under `vmap`, where values are not known, nothing is checked.
     """
     pairs = {
         "south and west": (south[..., 0, :], west[..., 0, :]),
@@ -77,8 +77,8 @@ def batched(
 ) -> Tensor:  # fmt: skip
     """Return nodes (..., ni, nj, 2) inside `sides` (..., n, 2), of their type and on their device.
 
-    `make` takes sides (batch, n, 2) and returns nodes (batch, ni, nj, 2), of type `dtype` and on `device`;
-    `nj` is the node count from one side to the other, where no side has it.
+    `make` takes sides (batch, n, 2) of type `dtype` on `device`, and returns nodes (batch, ni, nj, 2). For
+    bodies, `nj` is the number of nodes from one side to the other.
     """
     if torch.is_inference_mode_enabled():  # solvers differentiate, which tensors of this mode do not allow
         with torch.inference_mode(False), torch.no_grad():
@@ -93,9 +93,10 @@ def batched(
 
 
 def unit_of(values: Tensor) -> Tensor:
-    """Return powers of 2 near the extents of `values` (batch, ...), of as many dimensions.
+    """Return powers of 2 near the extents of `values` (batch, ...), shaped to broadcast with them.
 
-    Divided by them, which is exact, squares of squares neither overflow nor vanish.
+    The division by a power of 2 is exact. Afterwards, fourth powers of the values neither overflow nor
+    vanish.
     """
     flat = values.detach().flatten(1)
     power = torch.frexp(flat.amax(1) - flat.amin(1)).exponent

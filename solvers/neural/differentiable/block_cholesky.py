@@ -16,7 +16,8 @@ from meshonet.solvers.neural.differentiable.functional import Stencil
 class BlockCholesky:
     """The factor of a stencil's matrix at the inner nodes.
 
-    `positive` (batch,) says of which members the matrix is positive definite; other factors are unusable.
+    `positive` (batch,) says whether the matrix of each member is positive definite; other factors are
+    unusable.
     """
 
     def __init__(self, stencil: Stencil) -> None:
@@ -54,7 +55,7 @@ class BlockCholesky:
 
 
 def storage(ni: int, nj: int) -> int:
-    """Return about the bytes that a factorisation for ni x nj nodes takes for each member of a batch."""
+    """Return the approximate number of bytes of a factorisation for ni x nj nodes, per member of a batch."""
     return 256 * max(ni, nj) * min(ni, nj) ** 2
 
 

@@ -18,9 +18,10 @@ _SHARES = (1 / 12, 1 / 12, 1 / 12, 1 / 12, 2 / 3)  # of these places in the mean
 _AT = ((0, 0), (1, 0), (0, 1), (1, 1))  # the nodes
 
 Stencil = dict[tuple[int, int], Tensor]
-"""Second derivatives (batch, 2, 2, ni, nj) by node (i, j) and node (i + di, j + dj), for offsets (di, dj).
+"""Second derivatives with respect to nodes (i, j) and (i + di, j + dj), by offset (di, dj).
 
-Of two opposite offsets it holds the one with positive di, or positive dj if di is 0.
+Each array is (batch, 2, 2, ni, nj). Of two opposite offsets only the one with positive di is stored, or with
+positive dj if di is 0.
 """
 
 
@@ -39,7 +40,11 @@ class Functional:
     smoothness: Tensor
 
     def value(self, nodes: Tensor, aspect: Tensor) -> Tensor:
-        """Return E (batch,) of valid `nodes` (batch, 2, ni, nj) with ratios `aspect` (batch,) of steps."""
+        """Return the value E (batch,) of the functional for `nodes` (batch, 2, ni, nj).
+
+        Cells must not be folded. `aspect` (batch,) is the ratio a of the steps along eta to the steps along
+        xi (`aspect_of`).
+        """
         g, h, jacobian = _measures(*_corners(nodes))
         along, across = self._harmonic(aspect)
         ratio = g * h / (jacobian * jacobian)
@@ -53,8 +58,8 @@ class Functional:
     def hessian(self, nodes: Tensor, aspect: Tensor, *, convex: bool = False) -> Stencil:
         """Return the second derivatives of E at valid `nodes`, with `aspect` constant.
 
-        `convex`: a positive definite matrix near them instead. The matrices of cells lose their negative
-        eigenvalues, and differences of log lengths are linearised (Gauss-Newton).
+        With `convex`, return a positive definite matrix near them: negative eigenvalues of the matrices of
+        cells are set to zero, and differences of log lengths are linearised (Gauss-Newton).
         """
         zero = nodes.new_zeros(len(nodes), 2, 2, *nodes.shape[2:])
         offsets = ((0, 0), (0, 1), (0, 2), (1, -1), (1, 0), (1, 1), (2, 0))
@@ -143,7 +148,7 @@ def _positive_part(blocks: Tensor) -> Tensor:
 
 
 def aspect_of(nodes: Tensor) -> Tensor:
-    """Return the ratios (batch,) of the steps along eta to those along xi on the boundary of `nodes`."""
+    """Return the ratio (batch,) of the steps along eta to the steps along xi on the boundary of `nodes`."""
     walls, sides = nodes[..., :: nodes.shape[3] - 1], nodes[:, :, :: nodes.shape[2] - 1]
     along, across = walls.diff(dim=2).square().mean((1, 2, 3)), sides.diff(dim=3).square().mean((1, 2, 3))
     return torch.sqrt(across / along)

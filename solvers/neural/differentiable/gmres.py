@@ -16,11 +16,10 @@ TINY = 1e-300  # keeps quotients finite where a residual is zero
 
 
 def gmres(times: Callable[[Tensor], Tensor], right: Tensor, tol: float, most: int) -> Tensor:
-    """Return about the solutions x (batch, n) of A x = `right` (batch, n).
+    """Return approximate solutions x (batch, n) of A x = `right` (batch, n).
 
-    `times(x)` returns A x; `tol`: Euclidean norm of the residual relative to `right` at which every member of
-    the batch has converged; `most`: matrix products at the most. Where they do not suffice, the last iterate
-    is returned.
+    `times(x)` returns A x. A member has converged if the Euclidean norm of its residual is `tol` times that
+    of `right`. After at most `most` products with the matrix the last iterate is returned, converged or not.
     """
     x, goal = torch.zeros_like(right), tol * right.norm(dim=1)
     rest, done = right, 0

@@ -19,13 +19,13 @@ class Equations(Protocol):
     """Equations for the inner nodes of four-sided grids."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return how many members of the batch `nodes` (batch, 2, ni, nj) are best solved at once."""
+        """Return how many members of the batch `nodes` (batch, 2, ni, nj) should be solved at once."""
         ...
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions (batch, 2, ni, nj), and one number (batch,) that the equations depend on.
+        """Return the solutions (batch, 2, ni, nj), and a number (batch,) on which the equations depend.
 
-        Only the boundary nodes of `nodes` count. Raises MemberError: there is no solution.
+        Only the boundary nodes of `nodes` are used. Raises MemberError: there is no solution.
         """
         ...
 
@@ -39,18 +39,18 @@ class Equations(Protocol):
 
 
 class Converged(torch.autograd.Function):
-    """From equations and nodes (batch, 2, ni, nj), of which those of the boundary count, to the solution."""
+    """The solution of equations as a function of nodes (batch, 2, ni, nj); inner nodes have no effect."""
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solution, and the number of each member."""
+        """Return the solution, and the number of each member on which its equations depend."""
         unit = unit_of(nodes)
         solution, number = in_parts(equations.solve, equations.most(nodes), nodes / unit)
         return unit * solution, number
 
     @staticmethod
     def setup_context(ctx: Any, inputs: tuple[Equations, Tensor], output: tuple[Tensor, Tensor]) -> None:
-        """Keep the solution."""
+        """Keep the solution for `backward`."""
         ctx.equations = inputs[0]
         ctx.mark_non_differentiable(output[1])
         ctx.save_for_backward(*output)
@@ -67,7 +67,7 @@ class Converged(torch.autograd.Function):
 
 
 class Adjoint(torch.autograd.Function):
-    """The derivative with respect to boundary nodes, from that with respect to all nodes of a solution."""
+    """The derivative with respect to boundary nodes, computed from the one with respect to all nodes."""
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
@@ -98,7 +98,7 @@ class Adjoint(torch.autograd.Function):
 
 
 def in_parts(function: Callable[..., tuple[Tensor, ...]], most: int, *tensors: Tensor) -> tuple[Tensor, ...]:
-    """Return the values of `function` for a batch, of which it is given at most `most` members at once."""
+    """Return the values of `function` for a batch, passed to it in parts of at most `most` members."""
     parts = []
     for first in range(0, len(tensors[0]), max(most, 1)):
         some = slice(first, first + max(most, 1))

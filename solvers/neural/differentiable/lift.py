@@ -1,7 +1,7 @@
 """The conformal lift in torch: `meshonet.geometry.conformal.lift` with gradients by the nodes of the wall.
 
-Discrete decisions are taken from that function: which nodes are corners and tips, and which branch of a root
-or a logarithm applies at a node.
+Discrete decisions are taken by the NumPy function: which nodes are corners and tips, and which branch of a
+root or a logarithm applies at a node.
 """
 
 from dataclasses import dataclass, replace

@@ -14,9 +14,9 @@ class MemberError(SolverError):
     Parameters
     ----------
     member : int
-        Its index, from 0.
+        Index of the member in the batch, from 0.
     problem, remedy : str
-        What is wrong with it, and what a user can do.
+        What is wrong with the member, and what a user can do.
     """
 
     def __init__(self, member: int, problem: str, remedy: str) -> None:
@@ -24,7 +24,7 @@ class MemberError(SolverError):
         self._parts = member, problem, remedy
 
     def later(self, count: int) -> "MemberError":
-        """Return the same error of a batch with `count` members before this one's."""
+        """Return the same error for a batch that has `count` further members before this batch."""
         member, problem, remedy = self._parts
         return MemberError(member + count, problem, remedy)
 
@@ -37,9 +37,9 @@ def check_finite(nodes: Tensor) -> None:
 
 
 def as_one_batch(function: Callable[..., Any], count: int, in_dims: Any, *inputs: Any) -> tuple[Any, Any]:
-    """Return the values of `function` for `count` batches, flattened to one batch, and their dimension.
+    """Return the values of `function` for `count` batches, computed as one batch, and their batch dimension.
 
-    `inputs` that are no tensors are the same for all.
+    `inputs` that are no tensors are the same for all batches.
     """
     flat = []
     for value, dim in zip(inputs, in_dims, strict=True):

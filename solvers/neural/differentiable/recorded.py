@@ -1,7 +1,7 @@
-"""Functions of torch that take decisions by the values of tensors, so that `torch.func` applies to them.
+"""Makes `torch.func` applicable to functions whose decisions depend on the values of tensors.
 
-`torch.func.vmap` cannot follow such decisions. It is given the whole batch at once instead, and gradients
-come from the operations that torch recorded in the forward pass.
+`torch.func.vmap` cannot follow such decisions. The function is therefore called once for the whole batch, and
+gradients come from the operations that torch recorded in the forward pass.
 """
 
 from collections.abc import Callable

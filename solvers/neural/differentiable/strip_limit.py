@@ -29,9 +29,9 @@ def picard(c: Tensor) -> Tensor:
 
 
 class Settled(torch.autograd.Function):
-    """From modes (batch, modes, LEVELS), those of the start, to those that solve Winslow's equations.
+    """The modes (batch, modes, LEVELS) that solve Winslow's equations, as a function of initial modes.
 
-    The highest modes, which are filtered, remain near the start: a solution c is where
+    The highest modes are filtered, and remain near the start. A solution c satisfies
     c = start + smoothing (Picard(c) - start), with a Picard step that is not filtered.
     """
 

@@ -28,10 +28,10 @@ PRODUCTS = 40, 400  # with the matrix at the most: for a step, for gradients
 
 
 class Winslow:
-    """Winslow's equations, as `implicit.Equations`; no number of a member enters."""
+    """Winslow's equations as `implicit.Equations`; they depend on no number of a member."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return how many members are solved at once: on a CPU a Krylov space is to fit in its cache."""
+        """Return how many members are solved at once: on a CPU, a Krylov space then fits the cache."""
         return len(nodes) if nodes.is_cuda else MOST // nodes[0].numel()
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:

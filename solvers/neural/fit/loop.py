@@ -18,7 +18,7 @@ from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.stages import reached
 
 SLOWER = "resume from the last checkpoint with a smaller learning rate"
-"""Remedy for a run that diverged, by its loss or by its weights."""
+"""Remedy for a run with a loss or a weight that is not finite."""
 
 FREE = ("rate",)  # settings that may change when a run is resumed: a smaller rate is that remedy
 
@@ -26,7 +26,7 @@ FREE = ("rate",)  # settings that may change when a run is resumed: a smaller ra
 class Task(nn.Module):
     """A model with its training set; parameters and data are on one device.
 
-    `count`: training shapes; `parts`: names of the parts of the loss.
+    `count` is the number of training shapes, `parts` the names of the parts of the loss.
     """
 
     count: int
@@ -44,12 +44,12 @@ class Task(nn.Module):
         parts.sum().backward()
 
     def validate(self) -> dict[str, float]:
-        """Return ``loss`` and other figures over the held-out shapes; nothing when there are none."""
+        """Return ``loss`` and other figures over the held-out shapes; an empty dict if there are none."""
         return {}
 
     @abstractmethod
     def figures(self, epoch: int) -> dict[str, Any]:
-        """Return errors and other figures of the model, with weights of `epoch`, on held-out shapes."""
+        """Return errors and other figures of the model on held-out shapes, after `epoch` epochs."""
 
     @abstractmethod
     def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
@@ -58,7 +58,7 @@ class Task(nn.Module):
 
 @dataclass(frozen=True)
 class Run:
-    """A task, the settings recorded as its recipe, and further ones that a resumed run must share."""
+    """A task, the settings stored as its recipe, and further settings that a resumed run must share."""
 
     task: Task
     recipe: Mapping[str, Any]

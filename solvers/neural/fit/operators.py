@@ -27,7 +27,7 @@ PLAN = Plan(epochs=15_000, points=(1000, 200))  # the authors' published setting
 HELD_OUT = 0  # datasets are small, as in the paper: all shapes outside the test split are trained on
 
 MACHINE = ("device", "compiled", "log_every", "validate_every", "checkpoint_every")
-"""Settings that a resumed run may change without changing what it computes."""
+"""Settings that a resumed run may change, because they do not affect the result."""
 
 
 class OperatorTask(ModelTask):

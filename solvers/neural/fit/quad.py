@@ -27,16 +27,17 @@ from meshonet.solvers.neural.quad.unrolled import TURN, rolled
 PLAN = Plan(
     epochs=24, batch=64, rate=3e-3, schedule="cosine", warm_up=200, weight_decay=1e-3, clip=1.0, device="cpu"
 )
-"""The shipped model's."""
+"""Default sizes of the network: those of the shipped model."""
 
 HELD_OUT = 600  # domains, so that one folded grid is a fraction of 0.2 %
 
 AVERAGED = 0.999  # decay per step of the exponential moving average of the weights, which the file holds
 
 PARTS = {"winslow": 0.2, "variational": 1.0, "angles": 5.0, "widest": 1.0, "folds": 0.8}
-"""Weights of the parts of the loss: distances from Winslow's and from variational grids, then the mean angle,
-the largest angle and the folds of the variational output. The first is small, since Picard steps alone almost
-give Winslow's grids."""
+"""Weights of the parts of the loss: the distances from Winslow's and from variational grids; the mean angle,
+the largest angle and the folds of the variational output. The first weight is small, because the Picard steps
+of the base almost give Winslow's grids.
+"""
 
 FADE_IN = (0.1, 0.3)  # fractions of all steps between which angles and folds are faded into the loss
 NEAR, CLOSE = 0.1, 3e-4  # weight of the logarithm of the distance from Winslow's grids, and where it sets in
@@ -124,7 +125,7 @@ class QuadTask(Task):
         return {"loss": loss["variational"], **loss}
 
     def answers(self) -> Tensor:
-        """Return the grids (m, heads, n, n) of the held-out domains by the averaged weights."""
+        """Return the grids (m, heads, n, n) of the held-out domains, by the network with averaged weights."""
         with torch.no_grad():
             pairs = zip(*(torch.split(z, 100) for z in (self.held_out.base, self.held_out.step)), strict=True)
             parts = [self._answers(self.mean, *(z.to(self.device) for z in pair)).cpu() for pair in pairs]

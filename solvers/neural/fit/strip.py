@@ -22,7 +22,7 @@ from meshonet.solvers.neural.strip.encoding import CHANNELS, SCALARS, decode, en
 PLAN = Plan(
     epochs=24, batch=32, rate=2e-3, schedule="cosine", warm_up=100, weight_decay=1e-4, clip=1.0, device="cpu"
 )
-"""The shipped model's."""
+"""Default sizes of the network: those of the shipped model."""
 
 HELD_OUT = 300  # of the 6,000 shapes: 30 of them lie beyond the 90th percentile
 
@@ -64,7 +64,10 @@ class StripTask(Task):
         return (self.importance[rows] * (error**2).sum(1).mean(1)).mean()[None]
 
     def validate(self) -> dict[str, float]:
-        """Return quantiles of the distance to R over the held-out strips; ``loss`` is the median."""
+        """Return quantiles, over the held-out strips, of the `distance` between predicted and exact R.
+
+        Keys are ``loss`` (the median), ``p90`` (the 90th percentile) and ``worst`` (the maximum).
+        """
         pairs = zip(self.answers(), self.held_out.residual, strict=True)
         errors = [distance(answer, goal) for answer, goal in pairs]
         median, p90, worst = (float(q) for q in np.quantile(errors, list(QUANTILES.values())))
@@ -126,7 +129,7 @@ def run(
 
 
 def distance(answer: Complexes, goal: Complexes) -> float:
-    """Return the root mean square of |answer - goal| (radians) over the strip, from modes (.., LEVELS)."""
+    """Return the root mean square of |answer - goal| over the strip, in radians, from modes (.., LEVELS)."""
     return float(np.sqrt((np.abs(answer - goal) ** 2).sum(axis=0).mean()))
 
 

@@ -25,7 +25,7 @@ class Team:
         return self.rank == 0
 
     def share(self, rows: Tensor) -> tuple[Tensor, float]:
-        """Return this process's part of a batch, and its weight in the mean of the whole batch.
+        """Return this process's part of a batch `rows`, and the weight of this part in the mean of the batch.
 
         A process without a part gets the first row at weight 0, since every process must take part in a step.
         """

@@ -12,14 +12,14 @@ from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.models.architectures import MODELS
 
 OF_VOLUMES = "meshnet-volume"
-"""Name under which ``meshnet`` is trained on volumes."""
+"""Name of ``meshnet`` when it is trained on volumes."""
 
 TRAINERS = {
     "strip": "meshonet.solvers.neural.fit.strip",
     "quad": "meshonet.solvers.neural.fit.quad",
     OF_VOLUMES: "meshonet.solvers.neural.fit.volume",
 }
-"""Modules of models that are not trained as the paper's are."""
+"""Modules with the training of models that have tasks of their own."""
 
 
 def train(
@@ -40,11 +40,19 @@ def train(
     Raises InputError: no such model; too few shapes; a checkpoint of another model, data or settings; choices
     that do not suit the model. Raises SolverError: as `meshonet.solvers.neural.fit.loop.fit`.
 
-    `model` is one of `models.architectures.MODELS`, or `OF_VOLUMES`; `data` are `strip.dataset.Strips` for
-    ``strip``, `fit.quad_grids.Quads` for ``quad``, a list of `SixFaces` for `OF_VOLUMES`, else
-    `samples.Samples`; `plan` as `standard`; `held_out` shapes are never trained on, None for the model's own
-    number; `resume` goes on from a checkpoint beside `output`; `report` is called every `plan.log_every`
-    epochs and at the end; `choices` are what ``run`` of the model's module in `fit` takes.
+    Parameters
+    ----------
+    model : one of `models.architectures.MODELS`, or `OF_VOLUMES`.
+    data : `strip.dataset.Strips` for ``strip``, `fit.quad_grids.Quads` for ``quad``, a list of `SixFaces` for
+        `OF_VOLUMES`, else `samples.Samples`.
+    output : path of the model file.
+    plan : settings of the loop (see `standard`).
+    team : the processes that train together.
+    recipe : settings that are stored in the file.
+    held_out : number of shapes that are not used for training; None: the default of the model.
+    resume : whether to continue from a checkpoint beside `output`.
+    report : called every `plan.log_every` epochs and at the end.
+    choices : further parameters of ``run`` in the model's module in `fit`.
     """
     module = _module(model)
     held_out = module.HELD_OUT if held_out is None else held_out
@@ -60,7 +68,7 @@ def train(
 
 
 def standard(model: str) -> Plan:
-    """Return the default plan of a model: that of the shipped one, or the paper's."""
+    """Return the default plan of a model: that of the shipped model, or that of the paper."""
     plan: Plan = _module(model).PLAN
     return plan
 

@@ -26,7 +26,10 @@ PROJECT = 128  # width of the hidden layer that leads to the nodes
 
 @dataclass(frozen=True)
 class AlongXi(Architecture):
-    """An operator along xi: input channels are lifted, changed by the layers of `hidden`, and projected."""
+    """An operator along xi.
+
+    Input channels are mapped to `width` channels, these pass `hidden`, and are then mapped to outputs.
+    """
 
     width: int = 48  # channels of the hidden state
 

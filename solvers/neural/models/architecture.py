@@ -36,7 +36,10 @@ class Architecture:
 
     @property
     def native(self) -> bool:
-        """Whether it is evaluated only on the nodes of its training grids, and other grids by splines."""
+        """Whether the model can be evaluated only on the nodes of its training grids.
+
+        Splines give other grids.
+        """
         return False
 
     def shapes(self, frame: Frame) -> Shapes:
@@ -62,9 +65,9 @@ class Architecture:
         return None
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return the trunk's input (p, any) at `points` (p, 2) in (xi, eta): themselves, or features of them.
+        """Return the trunk's input (p, features) at `points` (p, 2) in (xi, eta).
 
-        It does not depend on trained parameters, so training computes it once for all nodes.
+        The input does not depend on trained parameters, so training computes it once for all nodes.
         """
         return points
 
