@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Literal, TypeVar
@@ -190,29 +190,30 @@ def names_many(text: str) -> bool:
     return not is_designation(text) and Path(text).is_dir()
 
 
+@dataclass
 class _Records(Iterator[T]):
     """Iterates over the records of a source; adds its name to errors, and converts errors of the system."""
 
-    def __init__(self, source: Source, records: Callable[[], Iterator[T]]) -> None:
-        self._source, self._read = source, records
-        self._records: Iterator[T] | None = None
+    source: Source
+    read: Callable[[], Iterator[T]]
+    records: Iterator[T] | None = None
 
     def __next__(self) -> T:
         try:
-            with in_source(self._source.name):
-                if self._records is None:
-                    self._records = iter(())  # a reader that fails at once is not asked again
-                    self._records = self._read()
-                record = next(self._records)
+            with in_source(self.source.name):
+                if self.records is None:
+                    self.records = iter(())  # a reader that fails at once is not asked again
+                    self.records = self.read()
+                record = next(self.records)
         except MeshonetError:
             raise
         except (OSError, MemoryError) as error:
             reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
             problem = f"cannot be read ({reason})"
-            raise InputError(problem, "check the file", source=self._source.name) from error
+            raise InputError(problem, "check the file", source=self.source.name) from error
         crossing = getattr(record, "crossing", None)  # an error for those who need the curve of an airfoil
         if isinstance(crossing, InputError):
-            crossing.source = crossing.source or self._source.name
+            crossing.source = crossing.source or self.source.name
         return record
 
 

@@ -48,8 +48,8 @@ if TYPE_CHECKING:
     from meshonet.geometry.aircraft.fin import Fin as Fin
     from meshonet.geometry.aircraft.lofted_body import LoftedBody as LoftedBody
     from meshonet.geometry.blocks.boundary import Boundary as Boundary
-    from meshonet.geometry.blocks.connection import Motion as Motion
     from meshonet.geometry.blocks.grid import Grid as Grid
+    from meshonet.geometry.blocks.motion import Motion as Motion
     from meshonet.geometry.blocks.revolve import Revolution as Revolution
     from meshonet.geometry.domain.domain import Domain as Domain
     from meshonet.geometry.errors import InputError as InputError
@@ -95,7 +95,7 @@ _MODULES = {
     "meshonet.geometry.aircraft.fin": ("Fin",),
     "meshonet.geometry.aircraft.lofted_body": ("LoftedBody",),
     "meshonet.geometry.blocks.boundary": ("Boundary",),
-    "meshonet.geometry.blocks.connection": ("Motion",),
+    "meshonet.geometry.blocks.motion": ("Motion",),
     "meshonet.geometry.blocks.grid": ("Grid",),
     "meshonet.geometry.domain.domain": ("Domain",),
     "meshonet.geometry.errors": ("InputError", "MeshonetError", "NoValidGridError", "SolverError"),

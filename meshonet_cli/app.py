@@ -27,7 +27,7 @@ import typer
 import typer.core
 
 from meshonet import __version__
-from meshonet_cli.commands import COMMANDS, Command
+from meshonet_cli.commands import BY_NAME, COMMANDS, Command
 from meshonet_cli.terminal.stopping import LINES, hide_warnings, install
 
 INTERRUPTED, BAD_INPUT = 130, 2
@@ -108,12 +108,13 @@ def run(arguments: Sequence[str]) -> int:
     debug = "--debug" in arguments
     words = list(arguments) or ["--help"]
     completion = "_MESHONET_COMPLETE" in os.environ
-    meant = [command for command in COMMANDS if command.name == words[0] and not completion]
-    name = f"meshonet {meant[0].name}" if meant else "meshonet"
+    alone = words[0] in BY_NAME and not completion
+    name = f"meshonet {words[0]}" if alone else "meshonet"
     try:
-        program = application(meant or COMMANDS, overview=not (meant or completion))
+        meant = [BY_NAME[words[0]]] if alone else COMMANDS
+        program = application(meant, overview=not (alone or completion))
         try:
-            code: Any = program.main(words[len(meant) :], prog_name=name, standalone_mode=False)
+            code: Any = program.main(words[alone:], prog_name=name, standalone_mode=False)
         finally:
             for line in [*LINES]:
                 line.stop()

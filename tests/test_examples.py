@@ -17,8 +17,9 @@ from spatial_shapes import box
 
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.revolve import Revolution, revolved
 from meshonet_cli.commands import COMMANDS

@@ -16,8 +16,9 @@ from meshonet.formats.mesh.names import words
 from meshonet.formats.mesh.periodic import donor_range, patch_on
 from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.block import PLACES, Range
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.screw import screw_of
 
 Integers = NDArray[np.int32]

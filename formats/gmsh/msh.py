@@ -17,8 +17,8 @@ from meshonet.formats.mesh.unstructured import CELLS, Indices, unstructured, wit
 from meshonet.formats.source import printable
 from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 
 INTERIOR = "fluid"
 """Name of the group of all cells."""

@@ -15,8 +15,9 @@ from meshonet.formats.mesh.slices import planar
 from meshonet.formats.source import printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block, Range
-from meshonet.geometry.blocks.connection import Connection, Motion, check_connections
+from meshonet.geometry.blocks.connection import Connection, check_connections
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Kind, Patch
 from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.geometry.errors import InputError

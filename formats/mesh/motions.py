@@ -13,8 +13,9 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, extent_of, norms
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.find_connections import TOLERANCE
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.linear import nearest_rotation

@@ -20,8 +20,9 @@ from meshonet.formats.mesh.cell_faces import cell_numbers, faces_of
 from meshonet.formats.mesh.names import unused
 from meshonet.geometry.arrays import Indices
 from meshonet.geometry.blocks.block import Range, face_of
-from meshonet.geometry.blocks.connection import Connection, Motion, cells_at
+from meshonet.geometry.blocks.connection import Connection, cells_at
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.outer_patches import owners_of
 
 _SAME = 1e-9

@@ -23,9 +23,10 @@ from meshonet.formats.mesh.slices import IndexedNodes, lattices
 from meshonet.formats.mesh.windows import Face, Pair, connection_of, patch_of
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Connection, Motion, check_connections
+from meshonet.geometry.blocks.connection import Connection, check_connections
 from meshonet.geometry.blocks.find_connections import find_connections, order
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Patch, kind_of
 from meshonet.geometry.blocks.shared_nodes import joined_labels, with_equal_nodes
 from meshonet.geometry.blocks.transform import turned_patch

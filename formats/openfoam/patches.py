@@ -10,8 +10,8 @@ from meshonet.formats.mesh.names import kinds, words
 from meshonet.formats.mesh.periodic import NamedFaces, PeriodicPair
 from meshonet.formats.openfoam.files import head
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Kind
 from meshonet.geometry.blocks.screw import screw_of
 

@@ -40,7 +40,7 @@ from meshonet.formats.section_shape import section_shape
 from meshonet.formats.source import Source, open_source
 from meshonet.formats.toml_table import Table
 from meshonet.geometry.arrays import Floats, arc_parts, extent_of
-from meshonet.geometry.blocks.connection import Motion
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.cylinder import on_cylinder

@@ -11,6 +11,7 @@ Unit and position are not changed. https://m-selig.ae.illinois.edu/ads/coord_dat
 
 import re
 from collections.abc import Iterator
+from functools import partial
 from itertools import chain
 from operator import attrgetter
 
@@ -28,6 +29,9 @@ MOST_POINTS = 20_000
 _ASK = "give an airfoil as lines of x y from the trailing edge round to it again, or in Lednicer's order"
 """Remedy for a file that is not an airfoil."""
 
+sniff = partial(mostly_rows, counts=(2,), least=4)
+"""Return whether bytes begin a text in which most lines are pairs of numbers."""
+
 
 def read_shapes(source: Source) -> Iterator[Airfoil]:
     """Yield the airfoil of a file. Raises InputError, with the line: there is none."""
@@ -44,18 +48,13 @@ def parse(text: str, source: str, stem: str = "") -> Airfoil:
         lines = read_lines(text)
         rows, blocks, counts = _data(lines)
         points, order, upper = _once_around(*_columns(rows), blocks)
-        numbers = [rows[k].number for k in order]
+        numbers = list(map(attrgetter("number"), map(rows.__getitem__, order)))
         _check_run(points, numbers)
         notes = left_out(lines)
         if counts is not None:
             notes += _wrong_counts(counts, len(rows), upper)
         name = _name(lines, rows[0].number) or stem or source
         return Airfoil(points, name, list(map("line {}".format, numbers)), notes)
-
-
-def sniff(head: bytes) -> bool:
-    """Return whether `head` is text in which most lines are pairs of numbers."""
-    return mostly_rows(head, (2,), least=4)
 
 
 def _name(lines: list[Line], first: int) -> str:
@@ -77,7 +76,7 @@ def _data(lines: list[Line]) -> tuple[list[Line], list[int], Line | None]:
         raise InputError(problem, f"an airfoil file has a few hundred; give at most {MOST_POINTS}")
     if len(rows) < 3:
         raise InputError(f"{len(rows)} lines of coordinates", _ASK)
-    widths = [len(line.values) for line in rows]
+    widths = list(map(len, map(attrgetter("values"), rows)))
     usual = widths[0]
     if len(set(widths)) > 1:
         usual = max(sorted(set(widths)), key=widths.count)

@@ -19,8 +19,8 @@ from meshonet.formats.mesh.metadata import facts_of
 from meshonet.formats.mesh.structured import grid_of_block
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.number_table import leading_numbers, write_rows
+from meshonet.formats.vtk import points_of
 from meshonet.formats.vtk.arrays import CUT
-from meshonet.formats.vtk.points import points_of
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError

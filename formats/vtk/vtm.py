@@ -18,7 +18,7 @@ from meshonet.formats.mesh.metadata import facts_of
 from meshonet.formats.mesh.structured import FileBlock, described_grids, grids_of_file
 from meshonet.formats.output import final_name, whole_folder
 from meshonet.formats.source import Source, printable
-from meshonet.formats.vtk.points import escaped
+from meshonet.formats.vtk import escaped
 from meshonet.formats.vtk.vts import write
 from meshonet.formats.vtk.vts_read import read_block
 from meshonet.geometry.blocks.extrude import plane_of_extruded

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from meshonet.formats.format import only_one
 from meshonet.formats.mesh.metadata import Facts, facts_of
-from meshonet.formats.vtk.points import escaped, points_of
+from meshonet.formats.vtk import escaped, points_of
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError

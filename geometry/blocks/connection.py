@@ -9,10 +9,9 @@ As in the 1-to-1 interfaces of CGNS (Standard Interface Data Structures, 8.2).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,68 +20,11 @@ from meshonet.geometry.arrays import Floats, Side, Topology
 from meshonet.geometry.blocks.block import Range, face_counts, face_of, part_of, sides_of
 from meshonet.geometry.errors import InputError
 
+if TYPE_CHECKING:
+    from meshonet.geometry.blocks.motion import Motion
+
 Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
 """Returns the nodes of a side of a block, given its number."""
-
-
-@dataclass(frozen=True)
-class Motion:
-    """Rigid motion x -> turn x + shift, for example from one of two periodic sides to the other.
-
-    Parameters
-    ----------
-    shift : tuple of float, optional
-        Translation along each coordinate; empty: no translation.
-    turn : tuple of tuple of float, optional
-        Rows of the rotation matrix; empty: no rotation.
-    """
-
-    shift: tuple[float, ...] = ()
-    turn: tuple[tuple[float, ...], ...] = ()
-
-    def __call__(self, nodes: Floats) -> Floats:
-        """Return `nodes` (..., d) moved; the result for a node is bitwise the same alone or among others."""
-        moved = nodes
-        if self.turn:  # written out: what a matrix product rounds to depends on the count of rows
-            terms = [np.array(row) * nodes for row in self.turn]
-            moved = np.stack([sum(term[..., k] for k in range(term.shape[-1])) for term in terms], axis=-1)
-        return np.asarray(moved + np.array(self.shift) if self.shift else moved)
-
-    @property
-    def translation(self) -> Floats:
-        """The shift (2 or 3,), zero where there is none."""
-        return np.array(self.shift or (0.0,) * (len(self.turn) or 2))
-
-    @property
-    def rotation(self) -> tuple[float, Floats]:
-        """Angle in radians, counter-clockwise, and centre (2,) of a motion in the plane.
-
-        Without a rotation the angle is 0 and the centre is the origin: the motion is its shift.
-        """
-        if not self.turn:
-            return 0.0, np.zeros(2)
-        from meshonet.geometry.linear import solve  # which few grids need
-
-        turn = np.array(self.turn)
-        angle = math.atan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
-        return angle, solve(np.eye(2) - turn, self.translation) if angle else np.zeros(2)
-
-    def alike(self, other: Motion, tolerance: float) -> bool:
-        """Return whether two motions are equal to a relative `tolerance`.
-
-        Differences are compared with the length of the shifts, of rotations with 1.
-        """
-        size = max(1e-300, *map(abs, (*self.shift, *other.shift, float(bool(self.turn or other.turn)))))
-        dimension = max(2, *(len(rows) for rows in (self.shift, self.turn, other.shift, other.turn)))
-        frame = size * np.concatenate([np.zeros((1, dimension)), np.eye(dimension)])
-        return bool(np.abs(self(frame) - other(frame)).max() <= tolerance * size)
-
-    def inverse(self) -> Motion:
-        """Return the inverse motion, to rounding."""
-        turn = np.array(self.turn).T
-        back = Motion(turn=tuple(map(tuple, turn.tolist())) if self.turn else ())
-        shift = back(-np.array(self.shift)) if self.shift else np.empty(0)
-        return replace(back, shift=tuple(float(x) + 0.0 for x in shift))
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,9 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
 from meshonet.geometry.errors import InputError
 

@@ -20,9 +20,9 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, as_planar, extent_of
 from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.block import face_of
-from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.extrude import End, thickened
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError
 

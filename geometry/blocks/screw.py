@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.connection import Motion
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import solve
 

@@ -20,8 +20,9 @@ import numpy as np
 from meshonet.geometry.arrays import SIDES, Floats, Side
 from meshonet.geometry.blocks.block import Block, part_of
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.geometry.errors import InputError, in_place

@@ -76,7 +76,11 @@ def _coincide(a: Floats, b: Floats) -> bool:
 def _shares_end(path: Floats, crossing: Crossing, ends: Floats) -> bool:
     """Return whether two segments have only a node in common, which is one of the `ends` of lines."""
     (a, b), (c, d) = path[crossing.first : crossing.first + 2], path[crossing.second : crossing.second + 2]
-    shared = [(p, q - p, s - p) for p, q in ((a, b), (b, a)) for r, s in ((c, d), (d, c)) if (p == r).all()]
+    shared = []
+    for p, q in ((a, b), (b, a)):
+        for r, s in ((c, d), (d, c)):
+            if (p == r).all():
+                shared.append((p, q - p, s - p))
     if len(shared) != 1:
         return False
     ((at, u, v),) = shared

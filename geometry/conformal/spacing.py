@@ -123,8 +123,10 @@ def _shared_out(marks: Floats, count: int, at: NDArray[np.intp] | None, steps: t
     nodes: Floats | NDArray[np.intp]
     if at is not None:
         nodes = at
+    elif not len(marks):
+        nodes = np.empty(0)
     else:
-        ends = marks[[0, -1]] if len(marks) else np.array([2.0 * np.pi, 0.0])
+        ends = marks[[0, -1]]
         least = min(float(ends[0]), 2.0 * np.pi - float(ends[1])) / (2.0 * np.pi) * cells
         step = first_within(steps, 1.0000001 * least)
         step = step if cells // step > len(marks) else 1

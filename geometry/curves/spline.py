@@ -31,18 +31,17 @@ def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Fl
     curvature, parabolic in the intervals next to a corner; overshoots are then removed (`limited`). A closed
     curve does not repeat its first point.
     """
-    if closed and corners.size == 0:
-        slope = periodic_slopes(*_chords(points, closed=True))
-        start, stop = slope, rolled(slope, -1)
-    elif closed:
-        shift = int(corners[0])
-        ring = rolled(points, -shift)
-        chords = _chords(ring, closed=True)
-        start, stop = open_slopes(*chords, np.append(corners - shift, len(points)))
-        start, stop = rolled(start, shift), rolled(stop, shift)
+    n, shift = len(points), int(corners[0]) if closed and corners.size else 0
+    ring = rolled(points, -shift)
+    chord = np.diff(ring, axis=0, append=ring[:1]) if closed else np.diff(ring, axis=0)
+    h = np.hypot(chord[:, 0], chord[:, 1])
+    if closed and not corners.size:
+        start = periodic_slopes(chord, h)
+        stop = rolled(start, -1)
     else:
-        stops = distinct(np.concatenate([[0], corners, [len(points) - 1]]))
-        start, stop = open_slopes(*_chords(points, closed=False), stops)
+        stops = np.append(corners - shift, n) if closed else distinct(np.concatenate([[0], corners, [n - 1]]))
+        start, stop = open_slopes(chord, h, stops)
+        start, stop = rolled(start, shift), rolled(stop, shift)
     return limited(points, start, stop, closed=closed, corners=corners)
 
 
@@ -84,12 +83,6 @@ def checked_points(points: Floats, what: str, point: str, dimension: int, *, clo
         where = ", ".join(f"{value:.6g}" for value in nodes[same[0]])
         raise InputError(f"{point.format(same[0])} and the next are the same, ({where})", "remove one")
     return nodes
-
-
-def _chords(points: Floats, *, closed: bool) -> tuple[Floats, Floats]:
-    """Return the chords (intervals, 2) between points, and their lengths."""
-    chord = np.diff(points, axis=0, append=points[:1]) if closed else np.diff(points, axis=0)
-    return chord, np.hypot(chord[:, 0], chord[:, 1])
 
 
 def open_slopes(chord: Floats, h: Floats, stops: Indices) -> tuple[Floats, Floats]:

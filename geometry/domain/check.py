@@ -10,7 +10,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, contains, polygon_area
-from meshonet.geometry.polygon.self_intersection import Crossing, shared_point, sweep_spans
+from meshonet.geometry.polygon.self_intersection import Crossing, crossing_of, sweep_spans
 from meshonet.kernels._native import crossing_segments
 
 _BUDGET = 2_000_000_000  # comparisons, some seconds; one body needs about as many as it has points
@@ -87,7 +87,7 @@ def _first_crossing(domain: Domain) -> Crossing | None:
     if not real:
         return None
     i, j = min(real)
-    return Crossing(i, j, *shared_point(p, np.roll(p, -1, axis=0), i, j))
+    return crossing_of(p, np.roll(p, -1, axis=0), i, j)
 
 
 def _turns_back(a: Floats, b: Floats, c: Floats) -> bool:

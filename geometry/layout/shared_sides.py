@@ -7,7 +7,8 @@ from operator import itemgetter
 from typing import TypeAlias
 
 from meshonet.geometry.arrays import Indices, Side
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.motion import Motion
 
 Line: TypeAlias = tuple[int, Side, Indices]
 """Number of a block, one of its sides, and the node numbers along this side."""

@@ -14,8 +14,9 @@ import numpy as np
 
 from meshonet.geometry.arrays import Indices, Side
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Patch, kind_of, may_be_wall
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import matched_nodes, sides_of

@@ -82,11 +82,10 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     bases = _oblique_bases(points, angle) if closed else np.zeros(len(points), dtype=bool)
     corners = np.flatnonzero(sharp | bases)
     hairpin = (angle[corners] > HAIRPIN) | ((angle[corners] > SHARP) & (beside[corners] < ALONE))
-    round_end = [
-        h and not bases[k] and growth_exponent(points, int(k), closed=closed) < 0.75
-        for k, h in zip(corners, hairpin, strict=True)
-    ]
-    return corners[~np.array(round_end, dtype=bool)]
+    kept = np.ones(len(corners), dtype=bool)
+    for n in np.flatnonzero(hairpin & ~bases[corners]):
+        kept[n] = growth_exponent(points, int(corners[n]), closed=closed) >= 0.75
+    return corners[kept]
 
 
 def _oblique_bases(points: Floats, angle: Floats) -> Bools:

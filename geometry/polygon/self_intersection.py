@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
+from itertools import starmap
 from operator import itemgetter
 
 import numpy as np
@@ -66,7 +68,7 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
     pairs, complete = crossing_segments(p, np.argsort(low, kind="stable"), low, top, limit, _BUDGET)
     if not complete:
         pairs = _pairs_by_tree(p, end, closed, limit)
-    return [Crossing(i, j, *shared_point(p, end, i, j)) for i, j in pairs]
+    return list(starmap(partial(crossing_of, p, end), pairs))
 
 
 def sweep_spans(p: Floats, end: Floats) -> tuple[Floats, Floats]:
@@ -99,8 +101,8 @@ def _pairs_by_tree(p: Floats, end: Floats, closed: bool, limit: int) -> list[tup
     return pairs[:limit]
 
 
-def shared_point(p: Floats, end: Floats, i: int, j: int) -> tuple[float, float]:
-    """Return a point (x, y) that lies on both of the segments i and j, which may be collinear.
+def crossing_of(p: Floats, end: Floats, i: int, j: int) -> Crossing:
+    """Return segments i and j, which may be collinear, with a point that lies on both.
 
     Segments run from `p` (m, 2) to `end` (m, 2).
     """
@@ -117,4 +119,4 @@ def shared_point(p: Floats, end: Floats, i: int, j: int) -> tuple[float, float]:
             key=itemgetter(0),
         )
         x, y = inside[1][1]
-    return float(x), float(y)
+    return Crossing(i, j, float(x), float(y))

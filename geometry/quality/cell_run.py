@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, percentiles_of
+from meshonet.geometry.arrays import Floats, as_planar, percentiles_of
 from meshonet.geometry.quality.metrics import QUAD_METRICS, Metric
 from meshonet.geometry.summary import Summary
 from meshonet.geometry.threads import threads_for
@@ -34,15 +34,15 @@ class CellRun(NamedTuple):
     values: Floats
 
 
-def run_over(x: Floats, y: Floats, kept: slice = NONE, *, periodic: bool = False, wake: int = 0) -> CellRun:
-    """Return the statistics of all metrics of nodes x, y (ni, nj).
+def run_over(nodes: Floats, kept: slice = NONE, *, periodic: bool = False, wake: int = 0) -> CellRun:
+    """Return the statistics of all metrics of `nodes` (ni, nj, 2).
 
     For the metrics `kept`, the result also has the values (n, ni-1, nj-1) of all cells.
 
     In a `periodic` block i = ni-1 and i = 0 coincide. The first `wake` cells along south are neighbours of
     the last `wake` cells.
     """
-    metrics = len(QUAD_METRICS)
+    metrics, (x, y) = len(QUAD_METRICS), np.moveaxis(as_planar(nodes), -1, 0)
     table, where = np.empty((metrics, 3)), np.empty((metrics, 2, 2), dtype=np.int64)
     first, last, _ = kept.indices(metrics)
     values = np.empty((last - first, len(x) - 1, x.shape[1] - 1))

@@ -39,7 +39,7 @@ def count_folded(nodes: Floats) -> int:
         return count_folded_solids(nodes)
     if form == "surface":
         return len(folded_cells(nodes))
-    x, y = _planes(nodes)
+    x, y = np.moveaxis(as_planar(nodes), -1, 0)
     return _native.count_folded(x, y, threads_for(x.size))
 
 
@@ -62,7 +62,7 @@ def folded_cells(nodes: Floats) -> NDArray[np.int64]:
         from meshonet.geometry.quality.surfaces import folded_quads
 
         return folded_quads(nodes)
-    return _native.folded_cells(*_planes(nodes))
+    return _native.folded_cells(*np.moveaxis(as_planar(nodes), -1, 0))
 
 
 def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
@@ -145,8 +145,7 @@ def _compiled(grid: Grid, percentiles: bool) -> Quality:
 
 
 def _run(grid: Grid, kept: slice) -> CellRun:
-    x, y = _planes(grid.nodes)
-    return run_over(x, y, kept, periodic=grid.periodic, wake=grid.wake)
+    return run_over(grid.nodes, kept, periodic=grid.periodic, wake=grid.wake)
 
 
 def angles(nodes: Floats) -> tuple[float, float]:
@@ -168,8 +167,7 @@ def widest_cell(nodes: Floats) -> tuple[int, int]:
 
 def _angle_table(nodes: Floats) -> tuple[Floats, NDArray[np.int64]]:
     """Return min, mean, max of the cells' largest angles, and the cells of min and max, without a `Grid`."""
-    x, y = _planes(nodes)
-    run, k = run_over(x, y), NAMES.index("max_angle")
+    run, k = run_over(nodes), NAMES.index("max_angle")
     return run.table[k], run.where[k]
 
 
@@ -208,8 +206,3 @@ def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
     from meshonet.geometry.quality.measure_blocks import metrics_of_blocks
 
     return [cells[NAMES.index(name)] for cells in metrics_of_blocks(grid)]
-
-
-def _planes(nodes: Floats) -> tuple[Floats, Floats]:
-    planar = as_planar(nodes)
-    return planar[..., 0], planar[..., 1]

@@ -39,7 +39,7 @@ def metrics_of_blocks(grid: Grid) -> list[Floats]:
     if grid.form == "surface":
         values = [quad_metrics(each) for each in nodes]
     else:
-        values = [run_over(each[..., 0], each[..., 1], slice(None)).values for each in nodes]
+        values = [run_over(each, slice(None)).values for each in nodes]
     _area_ratios_across(grid, [cells[NAMES.index("area_ratio")] for cells in values])
     return values
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from meshonet.geometry.arrays import norms
-from meshonet.geometry.blocks.connection import Motion
+from meshonet.geometry.blocks.motion import Motion
 
 _ALONG = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 AXES = _ALONG | {f"-{name}": (-x, -y, -z) for name, (x, y, z) in _ALONG.items()}

@@ -10,7 +10,7 @@ from numbers import Integral, Real
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.connection import Motion
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.blade import BladeSurface

@@ -10,8 +10,8 @@ import numpy as np
 from meshonet.api.files import read
 from meshonet.api.notes import noted
 from meshonet.api.quality import single_grid
-from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.deformation.targets import NewWall

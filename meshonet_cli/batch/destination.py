@@ -60,7 +60,7 @@ class Destination:
         part_size: int | None = None, nodes: int | None = None, space: Space | None = None,
     ) -> None:  # fmt: skip
         self.text, self.kind, self._part_size, self._nodes = text, kind, part_size, nodes
-        self.each = bool(_fields(text))
+        self.each = not {"{", "}"}.isdisjoint(text) and bool(_fields(text))
         self.format = format_for_output(text, fmt, kind)
         if space:
             check_space(self.format, space, printable(text))
@@ -187,8 +187,6 @@ def _pattern(text: str, field: str = "stem") -> str:
 
 def _fields(text: str) -> list[str]:
     """Return the fields of a pattern. Raises InputError: an unknown or unsuitable field."""
-    if "{" not in text and "}" not in text:
-        return []
     fields: list[str] = []
     problem, remedy = (
         "has a field that is not known",

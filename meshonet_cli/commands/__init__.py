@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from importlib import import_module
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 
@@ -38,3 +39,4 @@ COMMANDS: tuple[Command, ...] = (
     Command("models", "List the neural operators that are part of meshonet."),
     Command("doctor", "Check the installation and list what is missing."),
 )
+BY_NAME = dict(zip(map(attrgetter("name"), COMMANDS), COMMANDS, strict=True))

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum
+from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated
 
 from meshonet_cli.options.groups import CHECKS, option_of
@@ -13,17 +13,8 @@ if TYPE_CHECKING:
 _option = option_of(CHECKS)
 
 
-class Profile(Enum):
-    """Profiles of `meshonet.geometry.quality.profiles`.
-
-    Typer allows repeated options only for enumerations.
-    """
-
-    openfoam = "openfoam"
-    pointwise = "pointwise"
-    verdict = "verdict"
-    viscous = "viscous"
-
+Profile = StrEnum("Profile", "openfoam pointwise verdict viscous")
+"""Profiles of `meshonet.geometry.quality.profiles`; typer allows repeated options only for enumerations."""
 
 # fmt: off
 AllowInvalid = Annotated[bool, _option(

@@ -35,5 +35,8 @@ class GridOptions(RunOptions, GateOptions, FileOptions):
         for name in ("first_cell", "y_plus"):
             if more[name] is not None:
                 more[name] = at_walls(more[name], name)
-        given = {name: value for name, value in settings.items() if value is not None}
+        given: dict[str, Any] = {}
+        for name, value in settings.items():
+            if value is not None:
+                given[name] = value
         return GridRequest(sampling.placed(more), method, given, threads=self.threads, **more)

@@ -17,19 +17,16 @@ STAGES = ("read", "boundary", "load", "layout", "grid", "guard", "quality", "com
 
 @dataclass
 class Timed:
-    """Report of a member of a batch: the member, its output file, and seconds by stage.
+    """Report of a member of a batch: the member, its output file, and seconds by stage after reading.
 
     `left_out`: its result is not written.
     """
 
     item: Item[Any]
     notes: tuple[str, ...] = field(default=(), kw_only=True)
-    seconds: dict[str, float] = field(init=False)
+    seconds: dict[str, float] = field(default_factory=dict, init=False)
     output: str | None = field(default=None, init=False)
     left_out: bool = field(default=False, init=False)
-
-    def __post_init__(self) -> None:
-        self.seconds = {"read": self.item.seconds}
 
     @property
     def warning(self) -> str:
@@ -59,7 +56,7 @@ class Timed:
     @property
     def total(self) -> float:
         """Seconds of all stages."""
-        return sum(self.seconds.values())
+        return sum(self.seconds.values(), start=self.item.seconds)
 
     def times(self) -> str:
         """Return the times of the stages as text."""
@@ -73,5 +70,5 @@ class Timed:
 
     def _in_order(self) -> dict[str, float]:
         """Return the seconds in the order of `STAGES`; others follow."""
-        order = (*STAGES, *self.seconds)
-        return dict(sorted(self.seconds.items(), key=lambda item: order.index(item[0])))
+        order, spent = (*STAGES, *self.seconds), {"read": self.item.seconds, **self.seconds}
+        return dict(sorted(spent.items(), key=lambda item: order.index(item[0])))

@@ -8,8 +8,8 @@ from functools import partial
 from meshonet.api.deform import rotation
 from meshonet.api.files import only, read_all
 from meshonet.formats.registry import read_grids
-from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.criteria import Criteria
 from meshonet.solvers.deformation.request import DeformRequest

@@ -50,7 +50,7 @@ def reported(
 
     Raises InputError: a gate for a figure that is not defined for these cells.
     """
-    solution, grid = result.solution, result.grid
+    solution, grid = result.solution, result.solution.grid
     counts = grid.blocks[0].counts if len(grid.blocks) == 1 else (None, None)
     report = Report(
         member, method=solution.method, ni=counts[0], nj=counts[1], topology=grid.topology,

@@ -5,7 +5,6 @@ smallest if both are A/2. Solutions of Winslow's equations approach this only as
 shift of phi near the first node of the line achieves it directly, and decays within a few cells.
 """
 
-from functools import partial
 from itertools import repeat
 
 import numpy as np
@@ -14,26 +13,19 @@ from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.conformal.lift import Lift
 from meshonet.geometry.elementary import exp, product, sin
 from meshonet.kernels._native import lift_bisect
-from meshonet.solvers.conformal.evaluate import Shift, StripGrid
+from meshonet.solvers.conformal.evaluate import StripGrid
 
 CELLS = 4.0  # reach of a shift, in cells either way; with 3 some cells fold
 LARGEST = 0.4  # of a cell's width: beyond it the neighbours would suffer
 SWEEPS = 3  # over the corners, which influence each other a little
 
 
-def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> Shift | None:
-    """Return the shift of `grid` by which the first grid lines at `corners` are bisectors in the plane.
-
-    `wall` (n,) are nodes in the plane, counter-clockwise, and `corners` indices into it.
-    """
-    if not corners or len(grid.eta) < 4:
-        return None
-    reach, shift = shifts(grid, lift, wall, corners)
-    return product(reach, shift), partial(fading, first=float(grid.eta[1]))
-
-
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Return the weights (n, corners) of each corner's shift along the wall, and the shifts of phi."""
+    """Return the weights (n, corners) of each corner's shift along the wall, and the shifts of phi.
+
+    With them the first grid lines at `corners` are bisectors in the plane. `wall` (n,) are nodes in the
+    plane, counter-clockwise, and `corners` indices into it.
+    """
     n, step = len(wall), 2.0 * np.pi / len(wall)
     between = np.subtract.outer(corners, corners) % n
     apart = np.minimum(between, n - between) + n * np.eye(len(corners))

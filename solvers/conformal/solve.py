@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from itertools import repeat
 from typing import Literal, TypeAlias
 
@@ -18,9 +19,10 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.conformal.bisector import halve_corners
+from meshonet.solvers.conformal.bisector import fading, shifts
 from meshonet.solvers.conformal.evaluate import StripGrid
 from meshonet.solvers.conformal.strip import across, harmonic, modes, picard
 from meshonet.solvers.conformal.walls import StripWalls, is_rough, sharp_turns, walls
@@ -134,8 +136,11 @@ def _corrections(
 def _evaluated(boundary: Boundary, body: StripWalls, c: Complexes) -> tuple[Floats, bool]:
     """Return the nodes of a strip solution, and whether they are finite."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
-    grid = StripGrid(c, body.wall, body.far, np.linspace(0.0, 1.0, boundary.nj))
-    finite = grid.fill(body.lift, nodes, body.axis, halve_corners(grid, body.lift, body.z, body.corners))
+    grid, shift = StripGrid(c, body.wall, body.far, np.linspace(0.0, 1.0, boundary.nj)), None
+    if body.corners and boundary.nj >= 4:
+        reach, amounts = shifts(grid, body.lift, body.z, body.corners)
+        shift = product(reach, amounts), partial(fading, first=float(grid.eta[1]))
+    finite = grid.fill(body.lift, nodes, body.axis, shift)
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
     return nodes, finite
 

@@ -57,7 +57,7 @@ class Across:
     stiffness: Floats
     """Eigenvalues with one more value at both ends, for the compiled step."""
     smooth: Floats
-    """Result of `smoothing()`."""
+    """Factors by which changes of the modes are filtered: aliasing affects modes near `MODES`."""
 
 
 @lru_cache(maxsize=1)
@@ -79,7 +79,8 @@ def across() -> Across:
     inner[:, 1:-1, 1:-1] = kept[n:], kept[1:n]
     matrices = np.concatenate([[d1, d2], inner]).swapaxes(1, 2).copy()
     stiffness = np.pad(kept[0], 1, constant_values=-1.0)
-    arrays = (s, eta, d1, d2, kept[0], kept[1:n], kept[n:], matrices, stiffness, smoothing())
+    smooth = elementary.exp(-36.0 * elementary.power(np.abs(wavenumbers()) / (MODES + 1), 12.0))
+    arrays = (s, eta, d1, d2, kept[0], kept[1:n], kept[n:], matrices, stiffness, smooth)
     return Across(*map(read_only, arrays))
 
 
@@ -124,14 +125,6 @@ def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
     wall = (exp(-kT * eta) - exp(-kT * (2.0 - eta))) / whole
     far = (exp(-kT * (1.0 - eta)) - exp(-kT * (1.0 + eta))) / whole
     return xp.where(flat, 1.0 - eta, wall), xp.where(flat, eta, far)
-
-
-def smoothing() -> Floats:
-    """Return the factors by which changes of the modes are filtered.
-
-    Modes near `MODES` are affected by aliasing.
-    """
-    return np.asarray(elementary.exp(-36.0 * elementary.power(np.abs(wavenumbers()) / (MODES + 1), 12.0)))
 
 
 def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:

@@ -64,9 +64,9 @@ def _on_airfoil(wall: Floats, old: Airfoil, new: Airfoil) -> tuple[Floats, Notes
     last = _nearest(ring, old.curve.points[-1]) if blunt else 0
     curve = Curve(ring, closed=True, corners=None if rounded else sorted({0, last}))
     middle = farthest_arc(curve, old.trailing_edge)
-    begin, end = (0.0, new.curve.length) if rounded else (new.stations.half_base, new.stations.upper)
+    begin, end = (0.0, new.curve.length) if rounded else (new.half_base, new.upper_end)
     before = [0.0, middle, curve.knots[last] if blunt else curve.length, curve.length]
-    after = [begin, new.stations.nose, end, new.curve.length + begin]
+    after = [begin, new.nose_arc, end, new.curve.length + begin]
     arcs = np.interp(curve.knots, before, after)
     return _closed(new.curve.at(arcs % new.curve.length), first), notes
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Bools, Floats, extent_of
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area

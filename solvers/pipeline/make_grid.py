@@ -213,7 +213,7 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
         _, rows = _with_history(lambda: made)
     notes = (*boundary.notes, *solution.notes)
     with stage("guard", seconds):
-        if request.repairs() and count_folded(solution.grid.nodes):
+        if count_folded(solution.grid.nodes) and request.repairs():
             solution, more = _repaired(solution, boundary, request)
             notes += more
     grid = replace(solution.grid, origin=boundary.origin)

@@ -43,7 +43,8 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
         remedy = "use meshonet.grid, or make a shape of it: meshonet.read or Domain.of_polygons"
         what = "points" if isinstance(shape, np.ndarray) else "a name"
         raise InputError(f"make_grid takes shapes, not {what}", remedy)
-    refuse(filter(IN_SPACE.__contains__, request.chosen), ONE)
+    if not IN_SPACE.isdisjoint(request.chosen):
+        refuse(filter(IN_SPACE.__contains__, request.chosen), ONE)
     if request.sampling.nk is not None:
         problem = f"{request.sampling.nk} nodes along a third direction of a grid in the plane"
         raise InputError(problem, "give NI x NJ", parameter="res")
@@ -55,7 +56,7 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
             default = domain.far_field and request.pitch is None
             return domain.noted(*_far_field_advice(request, "extents of the bodies")) if default else domain
     sampling = request.shape_sampling()
-    if keeps_base(shape, request):
+    if sampling.topology == "c" and keeps_base(shape, request):
         k = 2**request.refine
         _check_refined(sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ, request.refine)
         return _behind_base(shape, _times(sampling, k) if k > 1 else sampling, request)
@@ -102,8 +103,7 @@ def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
     request says so.
     """
     sampling = request.sampling
-    keeps = request.method in MARCHING and sampling.topology == "c" and sampling.te in ("auto", "exact")
-    if not keeps:
+    if request.method not in MARCHING or sampling.te not in ("auto", "exact"):
         return False
     from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 

@@ -16,9 +16,10 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, Side
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.extrude import thick
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.lattice import lattice_quads

@@ -127,11 +127,11 @@ def unit_nodes(section: Section, plan: Around) -> tuple[Floats, str]:
 
 def _airfoil_sides(shape: Airfoil, plan: Around) -> tuple[Floats, Floats]:
     """Return nodes (cells + 1, 2) of the upper and of the lower side, from the base to the nose."""
-    stations, q = shape.stations, np.linspace(0.0, 1.0, plan.cells + 1)
+    q = np.linspace(0.0, 1.0, plan.cells + 1)
     height = shape.gap / shape.unit if shape.blunt else 0.0
-    below, above = stations.nose - stations.half_base, stations.upper - stations.nose
-    lower = stations.half_base + below * plan.law(height, below / shape.unit)(q)
-    upper = stations.upper - above * plan.law(height, above / shape.unit)(q)
+    below, above = shape.nose_arc - shape.half_base, shape.upper_end - shape.nose_arc
+    lower = shape.half_base + below * plan.law(height, below / shape.unit)(q)
+    upper = shape.upper_end - above * plan.law(height, above / shape.unit)(q)
     nodes = shape.curve.at(np.concatenate([upper, lower]))
     sides = nodes[: len(q)], nodes[len(q) :]
     sides[0][-1] = sides[1][-1]

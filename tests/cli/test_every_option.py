@@ -68,9 +68,9 @@ def chosen(base: str, pattern: str, differs: str = "files") -> dict[str, Effect]
 
 
 def engines(base: str) -> dict[str, Effect]:
-    """A run of several inputs, in other processes."""
+    """A run of several inputs: each of these reaches the engine, which refuses some together."""
     return {
-        "--jobs": (base, "OPTION 2", "workers"),
+        "--jobs": (f"{base} --engine mpi", "OPTION 2", "error"),
         "--engine": (base, "OPTION mpi", "code"),
         "--scheduler": (base, "OPTION tcp://a:1", "code"),
     }
@@ -194,6 +194,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--repair-margin": (f"wrench.h5 --tol 1e-6 {MADE}", "OPTION 12", "nodes"),
     },
     "infer": GRIDS | BLOCKS | MARCHED | {
+        "--jobs": (MANY, "OPTION 2", "workers"),
         "--model": (f"{BODY} {MADE}", "OPTION airfoil-o", "nodes"),
         "--polish": (f"{BODY} {MADE}", "OPTION 1", "nodes"),
         "--refine": (f"step.wkt --cells 400 {MADE}", "OPTION 1", "nodes"),

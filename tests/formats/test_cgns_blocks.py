@@ -21,9 +21,9 @@ from meshonet.formats.mesh.unstructured import unstructured
 from meshonet.formats.registry import read_grids as read_any
 from meshonet.formats.source import open_source
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.errors import InputError
 
 Make = Callable[[], Grid]

@@ -13,9 +13,10 @@ from many_blocks import passage, sector, step
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import PLACES, Block
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 

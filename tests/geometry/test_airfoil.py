@@ -94,10 +94,9 @@ def test_a_symmetric_section_gets_symmetric_nodes(ni, spacing, base):
 def test_wall_nodes_are_points_of_the_curve_bitwise():
     airfoil = Airfoil(selig(0.12, 0.02, 0.003))
     boundary = airfoil.boundary(Sampling(ni=101, nj=11, spacing="tanh"))
-    from meshonet.geometry.shapes.airfoil.wall_nodes import Stations, wall_arcs
+    from meshonet.geometry.shapes.airfoil.wall_nodes import wall_arcs
 
-    stations = Stations(airfoil.curve, *airfoil._arcs, airfoil.chord, airfoil.nose_radius)
-    nodes = boundary.wall.at(wall_arcs(stations, 101, Sampling(spacing="tanh")))
+    nodes = boundary.wall.at(wall_arcs(airfoil, 101, Sampling(spacing="tanh")))
     np.testing.assert_array_equal(boundary.south[:-1], nodes[:-1])
     np.testing.assert_array_equal(boundary.south[-1], boundary.south[0])
 

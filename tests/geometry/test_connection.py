@@ -7,8 +7,9 @@ import pytest
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block, face_counts
-from meshonet.geometry.blocks.connection import Connection, Motion, c_wake, o_seam
+from meshonet.geometry.blocks.connection import Connection, c_wake, o_seam
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 

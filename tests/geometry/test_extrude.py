@@ -11,9 +11,9 @@ from block_grids import butterfly, duct, o_ring
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.extrude import extruded, plane_of_extruded
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.screw import screw_of
 from meshonet.geometry.errors import InputError

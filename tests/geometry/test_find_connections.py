@@ -11,9 +11,10 @@ from block_grids import butterfly, duct, o_ring, turned
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Connection, Motion, c_wake, o_seam
+from meshonet.geometry.blocks.connection import Connection, c_wake, o_seam
 from meshonet.geometry.blocks.find_connections import find_connections, order
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 
 MAKES = [butterfly, o_ring, duct]

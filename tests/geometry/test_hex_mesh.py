@@ -7,8 +7,9 @@ import pytest
 from joined_volumes import bend, joined, shell
 
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.volume.hex_mesh import hex_mesh_of, with_nodes
 

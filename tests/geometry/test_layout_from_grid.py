@@ -9,8 +9,9 @@ import pytest
 from block_grids import butterfly, duct, o_ring
 
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.from_grid import layout_of, with_nodes
 

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.copies import copied
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.revolve import AxisLine, Revolution, revolved
 from meshonet.geometry.quality.periodic import periods
 

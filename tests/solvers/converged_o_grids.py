@@ -7,7 +7,7 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.conformal.solve import solve
-from meshonet.solvers.conformal.strip import across, harmonic, picard, smoothing
+from meshonet.solvers.conformal.strip import across, harmonic, picard
 
 STILL = 1e-13
 """Change (radians) in a step at which the iteration ends."""
@@ -24,7 +24,7 @@ def _correction(walls: Complexes, fars: Complexes, _: object) -> Complexes:
 
     The filter applies once to the whole change, in place of once to each step.
     """
-    back = 1.0 - smoothing()[:, None]
+    back = 1.0 - across().smooth[:, None]
     found = []
     for wall, far in zip(walls, fars, strict=True):
         start = c = harmonic(wall, far, across().eta)

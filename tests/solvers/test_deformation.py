@@ -7,8 +7,9 @@ import pytest
 
 import meshonet
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.quality.measure import count_folded

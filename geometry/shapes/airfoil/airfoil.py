@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,9 +29,6 @@ from meshonet.geometry.shapes.airfoil.section_curve import (
 )
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
-
-if TYPE_CHECKING:
-    from meshonet.geometry.shapes.airfoil.wall_nodes import Stations
 
 __all__ = ["SHARP_GAP", "Airfoil"]
 
@@ -75,6 +71,14 @@ class Airfoil:
     """Distance between the ends of the upper and the lower surface."""
     nose_radius: float
     """Radius of the leading edge: that of a parabola which is as thick as the section at 2 % of the chord."""
+    half_base: float
+    """Arc length at which the lower side begins; 0 when the trailing edge is sharp."""
+    nose_arc: float
+    """Arc length of the leading edge."""
+    upper_end: float
+    """Arc length at which the upper side ends."""
+    base_is_round: bool
+    """Whether the base is rounded, without corners."""
     blunt: bool
     """Whether the trailing edge is a straight base; a gap below 2e-4 chords counts as sharp, and is closed at
     its middle.
@@ -93,7 +97,7 @@ class Airfoil:
         places: Sequence[str] = (),
         notes: tuple[str, ...] = (),
     ) -> None:
-        self.name, self._round = name, False
+        self.name, self.base_is_round = name, False
         self._section = section = points if isinstance(points, CleanSection) else clean_section(points)
         self.gap, self.blunt = section.gap, section.blunt
         curve, changes, self.crossing = section_curve(section, places)
@@ -105,7 +109,7 @@ class Airfoil:
         self.leading_edge = curve.at(np.array([arc]))[0]
         self.chord = float(np.hypot(*(self.leading_edge - self.trailing_edge)))
         first, last = (curve.knots[1], curve.knots[-1]) if self.blunt else (0.0, curve.length)
-        self._arcs = float(first), arc, float(last)
+        self.half_base, self.nose_arc, self.upper_end = float(first), arc, float(last)
         self.nose_radius = nose_radius(curve, arc, self.trailing_edge, self.chord)
 
     def __repr__(self) -> str:
@@ -135,7 +139,7 @@ class Airfoil:
     @cached_property
     def wedge(self) -> float:
         """Angle in degrees between the surfaces over the last 1 % of the chord."""
-        first, _, last = self._arcs
+        first, last = self.half_base, self.upper_end
         step = 0.01 * self.chord
         lower, a, b, upper = self.curve.at(np.array([first + step, first, last, last - step]))
         u, v = upper - b, lower - a
@@ -146,12 +150,11 @@ class Airfoil:
         """Notes on the outline: `notes`, an oblique base, a curve that deviates much from the polygon."""
         return self.notes + shape_notes(self._section, self.curve, self.chord)
 
-    @property
-    def stations(self) -> Stations:
-        """Arc lengths at the corners of the base and at the nose."""
-        from meshonet.geometry.shapes.airfoil.wall_nodes import Stations
-
-        return Stations(self.curve, *self._arcs, self.chord, self.nose_radius, self._round)
+    @cached_property
+    def inner_corners(self) -> Floats:
+        """Arc lengths of the corners that are not those of the trailing edge."""
+        corners = self.curve.corners
+        return corners[(corners > self.half_base) & (corners < self.upper_end)]
 
     def normalised(self) -> Airfoil:
         """Return the airfoil rotated, scaled and moved so that its edges are at (0, 0) and (1, 0)."""
@@ -182,10 +185,12 @@ class Airfoil:
         from meshonet.geometry.shapes.airfoil.trailing_edge import rounded_base
 
         body = copy(self)
-        body.__dict__.pop("wedge", None)
+        for name in ("wedge", "inner_corners"):
+            body.__dict__.pop(name, None)
         body.points_curve, end = rounded_base(self.curve, self.chord)
         arc = farthest_arc(body.points_curve, body.trailing_edge)
-        body.blunt, body._round, body._arcs = False, True, (end, arc, body.points_curve.length - end)
+        body.blunt, body.base_is_round = False, True
+        body.half_base, body.nose_arc, body.upper_end = end, arc, body.points_curve.length - end
         return body
 
     def moved_apart(self) -> Airfoil:
@@ -212,7 +217,7 @@ class Airfoil:
     def _nodes(self, ni: int, sampling: Sampling) -> Floats:
         from meshonet.geometry.shapes.airfoil.wall_nodes import wall_arcs  # which not every domain needs
 
-        nodes = self.curve.at(wall_arcs(self.stations, ni, sampling))
+        nodes = self.curve.at(wall_arcs(self, ni, sampling))
         nodes[-1] = nodes[0]
         crossing = find_crossing(nodes[:-1])
         if crossing is not None:
@@ -246,7 +251,7 @@ class Airfoil:
             return self
         from meshonet.geometry.shapes.airfoil.trailing_edge import wedged_base
 
-        first, _, last = self._arcs
+        first, last = self.half_base, self.upper_end
         step = 0.01 * self.chord
         a, b, c, d = self.curve.at(np.array([first, first + step, last - step, last]))
         ways = (a - b) / np.hypot(*(a - b)), (d - c) / np.hypot(*(d - c))
@@ -272,7 +277,9 @@ class Airfoil:
             remedy = "leave {base_nodes} out"
             raise InputError("the trailing edge has no base", remedy, parameter="base_nodes")
         if topology == "auto":
-            sharp = sampling.viscous and not (body.blunt or body._round) and body.wedge <= _WIDEST_WEDGE
+            sharp = (
+                sampling.viscous and not (body.blunt or body.base_is_round) and body.wedge <= _WIDEST_WEDGE
+            )
             topology = "c" if sharp else "o"
         if topology == "o" and (sampling.wake or sampling.wake_nodes):
             remedy = "leave {wake} out, or use {topology} c"
@@ -289,7 +296,7 @@ class Airfoil:
         radius, nj = sampling.radius * body.chord, sampling.nj or DEFAULT_NJ
         notes += replaced
         if body.blunt:
-            first = body._arcs[0]
+            first = body.half_base
             notes += base_note(wall, body.curve.at(np.array([first]))[0], 2.0 * first, body.chord)
         turned = not sampling.viscous
         return o_boundary(wall, nj, centre, radius, body.curve, self.name, self.unit, turned, notes)
@@ -298,7 +305,7 @@ class Airfoil:
         """Return the C boundary around this body, in the units of the `original` airfoil."""
         from meshonet.geometry.shapes.wake import C_EDGE, WakeLine, c_boundary, cells_of_wake, wake_axis
 
-        if self._round:
+        if self.base_is_round:
             remedy = "leave {te} out, close it with {te} wedge, or use {topology} o"
             raise InputError("a C grid has no rounded trailing edge", remedy)
         if self.blunt:

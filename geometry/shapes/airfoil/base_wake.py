@@ -26,7 +26,7 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import expm1
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.self_intersection import find_crossing
-from meshonet.geometry.shapes.airfoil.wall_nodes import arcs_to_corners
+from meshonet.geometry.shapes.airfoil.wall_plan import arcs_to_corners
 from meshonet.geometry.shapes.wake import c_far_field, growing, wake_axis
 from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, MULTIPLES, Sampling, first_within
@@ -130,7 +130,7 @@ def _wall(body: Airfoil, cells: int, sampling: Sampling, first: float, ratio: fl
     if sampling.spacing not in ("auto", "curvature"):
         problem = f"{sampling.spacing} spacing around a base, from which a C grid has two wakes"
         raise InputError(problem, "use curvature, or {te} wedge", parameter="spacing")
-    arcs = arcs_to_corners(body.stations, cells, sampling, first, ratio)
+    arcs = arcs_to_corners(body, cells, sampling, first, ratio)
     nodes = body.curve.at(arcs)
     nodes[0], nodes[-1] = body.curve.points[1], body.curve.points[-1]
     crossing = find_crossing(nodes)

@@ -104,7 +104,7 @@ def clean_section(points: Floats) -> CleanSection:
 def _distinct(points: Floats, tolerance: float) -> Indices:
     """Return indices of points that differ from their neighbours; both ends are kept, in either direction."""
     n = len(points)
-    if n < 2:
+    if (np.hypot(*np.diff(points, axis=0).T) > tolerance).all():
         return np.arange(n)
     half = n // 2
     first = _thinned(points[: half + 1], tolerance)

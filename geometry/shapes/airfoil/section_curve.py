@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -70,7 +71,8 @@ def section_curve(
     for left in reversed(range(8)):
         curve = Curve(points, closed=True, corners=corners, straight=straight)
         crossings = find_crossings(curve.polyline(_CUTS), limit=4096)
-        where = np.array([k // len(_CUTS) for c in crossings for k in (c.first, c.second)], dtype=np.intp)
+        pieces = [*map(attrgetter("first"), crossings), *map(attrgetter("second"), crossings)]
+        where = np.array(pieces, dtype=np.intp) // len(_CUTS)
         if straight[where].all():
             break
         straight[where if left > 1 else slice(None)] = True

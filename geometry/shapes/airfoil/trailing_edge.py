@@ -167,5 +167,5 @@ def opened_base(airfoil: Airfoil, gap: float) -> CleanSection:
     chord = airfoil.trailing_edge - airfoil.leading_edge
     normal = np.array([-chord[1], chord[0]]) / airfoil.chord
     along = np.clip(product(points - airfoil.leading_edge, chord) / airfoil.chord**2, 0.0, None)
-    missing = np.where(knots < airfoil._arcs[1], -0.5, 0.5) * (gap - airfoil.gap)
+    missing = np.where(knots < airfoil.nose_arc, -0.5, 0.5) * (gap - airfoil.gap)
     return CleanSection(points + (missing * along)[:, None] * normal, index, True, gap, corners)

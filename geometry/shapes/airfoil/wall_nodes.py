@@ -1,84 +1,22 @@
-"""Nodes along the wall of an airfoil: the number of cells of each stretch, and their sizes.
+"""Nodes along the wall of an airfoil: at equal angles on a circle, or with cells of planned sizes."""
 
-::
+from __future__ import annotations
 
-    half base | lower side                      nose   upper side                      | half base
-    0 ... lower ................................ nose ................................ upper ... length
-
-Both sides get the same number of cells. If half a cell is left over, one cell lies astride the nose, so that
-a symmetric section has symmetric nodes for every node count. The first cells of the sides are as large as the
-cells of the base next to them.
-"""
-
-import math
-from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, along_and_across
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.conformal.spacing import conformal_knots
-from meshonet.geometry.curves.curve import Curve
-from meshonet.geometry.elementary import geomspace
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.laws import LAWS
-from meshonet.geometry.spacing.sampling import Sampling, first_within
+from meshonet.geometry.spacing.sampling import Sampling
 
-_EDGE_STEP = 20.0
-"""Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O
-grids: with smaller cells they are less orthogonal, with larger ones more of them fold at the edge."""
-_EDGE_PART = 0.24
-"""Length of the same cell for spacing by curvature, the default of marched grids, in mean cells."""
-_BASE_GROWTH = 1.06
-"""Largest ratio of neighbouring cells on a base. With it a base of 8 % of the chord has 46 of 400 cells,
-which also resolve its wake.
-"""
-_MANY = 192
-"""Smallest number of cells of a side for which half a base has at least four, so that a grid coarsened by
-four keeps the corners of the base.
-"""
-_BASE_JUMP = 4.0
-"""Largest ratio of a prescribed cell beside a base to the cells on the base: at 16, cells at the corners
-fold.
-"""
-_ROUND_CELLS = 14  # fewest cells on half a rounded base, if there are 16 times as many in total
-_BASE_SHARE = 0.35  # largest fraction of all cells on the base
-_LEAN = math.radians(0.8)
-"""Largest angle between a surface at a corner of the base and its first cells, those of a grid coarsened
-by `_COARSENED` too."""
-_COARSENED = 4  # two halvings, for a family of three grids
-_LONGER = 1.2  # factor on the length of that many cells, since they grow away from the corner
-_SMALLER = 64.0  # largest factor by which cells beside a base are smaller for this
+if TYPE_CHECKING:
+    from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 
-@dataclass(frozen=True)
-class Stations:
-    """Data of an airfoil from which its nodes are placed: arc lengths on its curve, chord and nose radius."""
-
-    curve: Curve
-    half_base: float
-    """Arc length at which the lower side begins; 0 if the trailing edge is sharp."""
-    nose: float
-    upper: float
-    chord: float
-    nose_radius: float
-    rounded: bool = False
-    """Whether the base is rounded, without corners."""
-
-
-@dataclass(frozen=True)
-class WallCells:
-    """Numbers of cells on half the base and on a side, and the cell sizes at trailing and leading edge."""
-
-    half: int
-    cells: float
-    base_step: float
-    te: float
-    le: float
-    base: tuple[Floats, Floats] | None = None
-    """Distances of the nodes on a rounded base from its middle, on the lower and on the upper half."""
-
-
-def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
+def wall_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
     """Return the arc lengths (ni,) of the wall nodes, from 0 to the length of the curve.
 
     Spacings: ``conformal`` has equal angles on the circle that the section is mapped to
@@ -91,7 +29,7 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
 
     Raises InputError: too few nodes, or steps that cannot be met with them.
     """
-    least = 7 if stations.half_base else 5
+    least = 7 if body.half_base else 5
     if ni < least:
         raise InputError(f"{ni} nodes around an airfoil", f"use at least {least}")
     steps_given = sampling.le_spacing is not None or sampling.te_spacing is not None
@@ -100,239 +38,22 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
         raise InputError(f"{sampling.spacing} spacing leaves no cell size to choose", remedy)
     steps = sampling.corner_steps(ni - 1)
     if sampling.spacing == "conformal":
-        blunt = stations.half_base and not stations.rounded
-        corners = np.array([stations.half_base, stations.upper]) if blunt else np.zeros(0)
-        half = _asked_half(ni - 1, sampling.base_nodes, sampling) if sampling.base_nodes else 0
-        at = np.array([half, ni - 1 - half]) if half else None
-        arcs = conformal_knots(stations.curve, corners, ni, at, steps)
+        blunt = body.half_base and not body.base_is_round
+        corners = np.array([body.half_base, body.upper_end]) if blunt else np.zeros(0)
+        at = None
+        if sampling.base_nodes:
+            from meshonet.geometry.shapes.airfoil.wall_plan import half_of_base
+
+            half = half_of_base(ni - 1, sampling.base_nodes, sampling)
+            at = np.array([half, ni - 1 - half])
+        arcs = conformal_knots(body.curve, corners, ni, at, steps)
     else:
-        arcs = _planned_arcs(stations, ni, sampling)
-    corners = _inner_corners(stations)
-    if not corners.size:
+        from meshonet.geometry.shapes.airfoil.wall_plan import planned_arcs
+
+        arcs = planned_arcs(body, ni, sampling)
+    if not body.inner_corners.size:
         return arcs
     from meshonet.geometry.spacing.along_curve import on_corners
 
-    ends = np.searchsorted(arcs, [stations.half_base, stations.upper])
-    return on_corners(arcs, corners, (int(ends[0]), int(ends[1])), steps[0])
-
-
-def _planned_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
-    """Return arc lengths (ni,) whose cells have the sizes of a plan."""
-    plan = _plan(stations, ni - 1, sampling)
-    if sampling.spacing == "curvature":
-        from meshonet.geometry.spacing.size_field import arcs_by_curvature
-
-        sides = arcs_by_curvature(
-            stations.curve,
-            (stations.half_base, stations.nose, stations.upper),
-            round(2 * plan.cells),
-            chord=stations.chord,
-            steps=(plan.te, plan.le),
-            exact=(sampling.te_spacing is not None or plan.half > 0, sampling.le_spacing is not None),
-            hurried=sampling.te_spacing is not None,
-        )
-    else:
-        q = np.arange(1, math.ceil(plan.cells)) / plan.cells
-        lower = stations.half_base + _side(stations.nose - stations.half_base, plan, sampling, q)
-        upper = stations.upper - _side(stations.upper - stations.nose, plan, sampling, q)
-        nose = [stations.nose] if float(plan.cells).is_integer() else []
-        sides = np.concatenate([[stations.half_base], lower, nose, upper[::-1], [stations.upper]])
-    if plan.half == 0:
-        return sides
-    lower, upper = plan.base or (_half_base(plan, stations.half_base),) * 2
-    return np.concatenate([lower[:-1], sides, stations.curve.length - upper[-2::-1]])
-
-
-def arcs_to_corners(stations: Stations, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
-    """Return arc lengths (cells + 1,) from the lower to the upper corner of a base, by curvature.
-
-    Cells at the two corners have the length `first`, unless `te_spacing` is given, and grow by at most
-    `ratio`. Other corners of the curve are nodes.
-    """
-    from meshonet.geometry.spacing.along_curve import on_corners
-    from meshonet.geometry.spacing.size_field import arcs_by_curvature
-
-    plan = _natural(stations, WallCells(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
-    le = sampling.le_spacing * stations.chord if sampling.le_spacing else plan.le
-    te = sampling.te_spacing * stations.chord if sampling.te_spacing else first
-    arcs = arcs_by_curvature(
-        stations.curve,
-        (stations.half_base, stations.nose, stations.upper),
-        cells,
-        chord=stations.chord,
-        steps=(te, le),
-        exact=(True, sampling.le_spacing is not None),
-        at_edge=math.log(ratio),
-    )
-    return on_corners(arcs, _inner_corners(stations), (), sampling.corner_steps(cells)[0])
-
-
-def _inner_corners(stations: Stations) -> Floats:
-    """Return the arc lengths of the corners of a section that are not those of its trailing edge."""
-    corners = stations.curve.corners
-    return corners[(corners > stations.half_base) & (corners < stations.upper)]
-
-
-def _asked_half(cells: int, nodes: int, sampling: Sampling) -> int:
-    """Return the number of cells on half of a base with `nodes` nodes.
-
-    Raises InputError: there is no node in its middle, or its cells leave too few for the sides.
-    """
-    base = nodes - 1
-    if base % (2 * sampling.refined):
-        every = 2 * sampling.refined
-        less = base // every * every + 1
-        near = f"{less} or {less + every}" if less > 1 else f"{less + every}"
-        problem = f"a base of {base + 1} nodes has none in its middle, where an O grid begins"
-        if base % 2 == 0:
-            halves = f"each half of a base of {base + 1} nodes has {base // 2} cells"
-            problem = f"{halves}, and {{refine}} needs a multiple of {sampling.refined}"
-        raise InputError(problem, f"use {near}", parameter="base_nodes")
-    if base + 4 > cells:
-        problem = f"{base + 1} of {cells + 1} nodes on the base leave too few for the sides"
-        raise InputError(
-            problem, f"use at most {(cells - 4) // 2 * 2 + 1} or a finer {{res}}", parameter="base_nodes"
-        )
-    return base // 2
-
-
-def _plan(stations: Stations, cells: int, sampling: Sampling) -> WallCells:
-    """Return the numbers of cells of base and sides, and the cell sizes at their ends."""
-    wanted_te = sampling.te_spacing and sampling.te_spacing * stations.chord
-    wanted_le = sampling.le_spacing and sampling.le_spacing * stations.chord
-    plan = _natural(stations, WallCells(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
-    if stations.half_base:
-        fixed = bool(wanted_te) or not LAWS[sampling.spacing].sets_ends
-        corner = _corner_step(stations, plan.te, cells, sampling)
-        half, step = _base_cells(stations.half_base, wanted_te or corner, cells, fixed=fixed)
-        if not stations.rounded:
-            nodes = sampling.base_nodes
-            half_cells = _asked_half(cells, nodes, sampling) if nodes else 0
-            half, step = _whole_base(stations.half_base, step, half_cells, half, sampling.corner_steps(cells))
-        if stations.rounded and not wanted_te and half < min(_ROUND_CELLS, cells // 16):
-            half = min(_ROUND_CELLS, cells // 16)
-            step = stations.half_base / half
-        plan = _natural(stations, WallCells(half, 0.5 * cells - half, step, 0.0, 0.0), sampling)
-        plan = replace(plan, te=step)
-        if stations.rounded and half > 2 and not wanted_te:
-            from meshonet.geometry.shapes.airfoil.trailing_edge import half_rounds
-
-            base = half_rounds(stations.curve, stations.half_base, half)
-            te = 0.5 * sum(float(part[-1] - part[-2]) for part in base)
-            left = cells - sum(len(part) - 1 for part in base)
-            plan = replace(plan, cells=0.5 * left, te=te, base=base)
-    plan = replace(plan, te=wanted_te or plan.te, le=wanted_le or plan.le)
-    side = min(stations.nose - stations.half_base, stations.upper - stations.nose)
-    if plan.te + plan.le >= side:
-        raise InputError(
-            f"cells of {plan.te / stations.chord:.3g} and {plan.le / stations.chord:.3g} chords fill a side",
-            "use smaller spacings",
-        )
-    return plan
-
-
-def _natural(stations: Stations, plan: WallCells, sampling: Sampling) -> WallCells:
-    """Return the plan with default cell sizes.
-
-    At the nose, that of equal angles on the circle of the section's conformal map, sqrt(r c / 2) π / n with
-    nose radius r and chord c; for a sharp edge see `_EDGE_STEP`.
-    """
-    n = plan.cells
-    side = 0.5 * (stations.upper - stations.half_base)
-    mean = side / n
-    if sampling.spacing == "uniform":
-        return replace(plan, te=mean, le=mean)
-    le = math.pi / n * math.sqrt(0.5 * stations.nose_radius * stations.chord)
-    if sampling.spacing == "cosine":
-        le = side * math.sin(0.5 * math.pi / n) ** 2
-        return replace(plan, te=le if not stations.half_base else mean * min(0.5, _EDGE_STEP / n), le=le)
-    edge = _EDGE_PART if sampling.spacing == "curvature" else min(0.5, _EDGE_STEP / n)
-    return replace(plan, te=mean * edge, le=min(max(le, 0.05 * mean), 0.7 * mean))
-
-
-def _corner_step(stations: Stations, step: float, cells: int, sampling: Sampling) -> float:
-    """Return the length of cells beside a base: `step`, or less where a surface turns away from its end."""
-    if sampling.spacing != "curvature" or stations.rounded:
-        return step
-    coarser = min(_COARSENED, sampling.corner_steps(cells)[0]) if sampling.refined == 1 else sampling.refined
-    reach = _LONGER * coarser * step
-    straight = min(_straight_length(stations, end, reach) for end in (stations.half_base, stations.upper))
-    return max(min(step, straight / (_LONGER * coarser)), step / _SMALLER)
-
-
-def _straight_length(stations: Stations, corner: float, most: float) -> float:
-    """Return the length, at most `most`, over which a surface leans by at most `_LEAN` off its `corner`."""
-    sign = 1.0 if corner == stations.half_base else -1.0
-    lengths = geomspace(most / _SMALLER, most, 65)
-    tiny = 1e-6 * lengths[0]
-    way = sign * stations.curve.tangent(np.array([corner + sign * tiny]))[0]
-    chords = stations.curve.at(corner + sign * lengths) - stations.curve.at(np.array([corner]))
-    along, across = along_and_across(chords, way)
-    lean = np.flatnonzero(np.abs(across) > math.tan(_LEAN) * along)
-    return most if len(lean) == 0 else float(lengths[max(lean[0] - 1, 0)])
-
-
-def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tuple[int, float]:
-    """Return the number of cells of half a base and the size of the one at the corner.
-
-    At least 2, more for wider bases (measured: with fewer cells fold at the corners, with more the solver is
-    slow), and as many as `step` requires with a growth of 15 % towards the middle. If the cell size next to
-    the base is `fixed`, cells on it are not much smaller: cells fold at a corner between very different
-    sizes.
-    """
-    enough = cells >= 48
-    fewest = 4 if cells >= _MANY else 2
-    least = max(fewest, round(2 * math.cbrt(half_base / 1.2e-4))) if enough else 1
-    least = min(least, max(cells // 24, 1), 12)
-    if fixed:
-        least = min(least, math.ceil(_BASE_JUMP * half_base / step))
-    most = max(least, int(0.5 * _BASE_SHARE * cells))
-    if not fixed:
-        step = min(step, half_base / least)
-    if half_base <= 6 * step:
-        half = min(max(least, round(half_base / step)), most)
-        return half, half_base / half
-    from meshonet.geometry.spacing.tanh_law import TanhLaw
-
-    for half in range(4, most):
-        # cell sizes vary like sech², whose ratio is largest at the corner
-        d = TanhLaw(2 * half * 0.5 * step / half_base, 2 * half * 0.5 * step / half_base).stretch
-        if d / half * math.tanh(0.5 * d) < math.log(_BASE_GROWTH):
-            return half, step
-    return most, step
-
-
-def _whole_base(
-    half_base: float, step: float, asked: int, half: int, steps: tuple[int, ...]
-) -> tuple[int, float]:
-    """Return the cells of half a base, `asked` or a multiple of a step, and the corner cell's size."""
-    every = first_within(steps, half)
-    cells = asked or max(every, round(half / every) * every)
-    return cells, min(step, half_base / cells) if cells > 1 else half_base
-
-
-def _half_base(plan: WallCells, half_base: float) -> Floats:
-    """Return distances (half + 1,) from the middle of the base to its corner."""
-    part = plan.base_step / (2 * half_base)
-    if abs(part * 2 * plan.half - 1.0) < 1e-9:
-        return np.linspace(0.0, half_base, plan.half + 1)
-    from meshonet.geometry.spacing.tanh_law import TanhLaw
-
-    law = TanhLaw.fitted(2 * plan.half, part, part)
-    out = half_base - 2 * half_base * law(np.arange(plan.half + 1) / (2 * plan.half))[::-1]
-    out[0], out[-1] = 0.0, half_base
-    return np.asarray(out)
-
-
-def _side(length: float, plan: WallCells, sampling: Sampling, q: Floats) -> Floats:
-    """Return the distances along a side from its trailing edge at parameters `q` from 0 to 1."""
-    ends_set = sampling.te_spacing is not None or sampling.le_spacing is not None
-    if plan.cells < 4 and not ends_set:
-        return np.asarray(length * q)
-    law = LAWS[sampling.spacing]
-    if law.place and not (law.sets_ends and (ends_set or plan.half)):
-        return np.asarray(length * law.place(q))
-    from meshonet.geometry.spacing.tanh_law import TanhLaw
-
-    part = 1.0 if float(plan.cells).is_integer() else 0.5
-    return np.asarray(length * TanhLaw.fitted(plan.cells, plan.te / length, plan.le / length, part)(q))
+    ends = np.searchsorted(arcs, [body.half_base, body.upper_end])
+    return on_corners(arcs, body.inner_corners, (int(ends[0]), int(ends[1])), steps[0])

@@ -14,7 +14,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.conformal import strip
 from meshonet.solvers.conformal.bisector import LARGEST, fading, shifts
 from meshonet.solvers.conformal.evaluate import StripGrid
-from meshonet.solvers.conformal.strip import MODES, across, smoothing, wavenumbers
+from meshonet.solvers.conformal.strip import MODES, across, wavenumbers
 from meshonet.solvers.neural.differentiable.arguments import batched, check_sides
 from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls
 from meshonet.solvers.neural.differentiable.recorded import recorded
@@ -135,7 +135,7 @@ class _Correction:
             image = torch.zeros_like(answer)
             image[even] = self._answer(wall[even].conj(), far[even].conj()).conj()
             answer = torch.where(even[:, None, None], 0.5 * (answer + image), answer)
-        return answer * torch.as_tensor(smoothing(), device=answer.device)[:, None]
+        return answer * torch.as_tensor(np.array(across().smooth), device=answer.device)[:, None]
 
     def _answer(self, wall: Tensor, far: Tensor) -> Tensor:
         channels, scalars, size = encode(wall, far, torch)

@@ -13,7 +13,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.compare import compare
 from meshonet.solvers.conformal import solve as conformal
 from meshonet.solvers.conformal.solve import Polish
-from meshonet.solvers.conformal.strip import LEVELS, smoothing
+from meshonet.solvers.conformal.strip import LEVELS, across
 from meshonet.solvers.neural.confidence import Goal
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.strip.encoding import CHANNELS, SCALARS, decode, encode
@@ -62,7 +62,7 @@ class StripOperator(Operator):
         answer.imag[flip[:, 0]] *= -1.0
         if hand is not None:
             answer.imag[hand == 0] = 0.0
-        return answer * smoothing()[:, None]
+        return answer * across().smooth[:, None]
 
     def solve(self, boundaries: Sequence[Boundary], polish: Polish = "auto", **_: Any) -> list[Solution]:
         """Return a grid inside each O boundary; its boundary nodes are bitwise those of the boundary."""
