@@ -1,7 +1,7 @@
 """Conversion between formats: changes of grids, and the choice of what is written."""
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.revolve import AxisLine, Revolution, revolution, revolved
 from meshonet.geometry.blocks.transform import coarser_grid, normalised, scaled, turned
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import UNJUDGED
 from meshonet.geometry.spacing.sampling import Sampling
 
 
@@ -68,6 +69,8 @@ class Conversion:
         """Return a grid with the changes that keep its dimension; a boundary unchanged: `read` changes it."""
         if isinstance(grid, Boundary):
             return grid
+        if replace(self, planes=None, axis=None) != Conversion():
+            grid = grid.with_provenance(**UNJUDGED)
         grid = coarser_grid(grid, self.coarsen) if self.coarsen > 1 else grid
         grid = turned(grid) if self.swap else grid
         grid = normalised(grid) if self.normalise else grid

@@ -159,10 +159,16 @@ def size_of(sample: Boundary | Grid) -> str:
     return f"{sample.ni}x{sample.nj} {sample.topology}"
 
 
-def size_remedy(sample: Boundary | Grid) -> str:
-    """Return what gives samples of a dataset the size and topology of the first, as text."""
-    if not isinstance(sample, Grid) or sample.topology != "blocks":
+def size_remedy(own: str, first: str) -> str:
+    """Return what gives samples of a dataset the size and topology of the first, from texts of `size_of`."""
+    kinds = {size.partition(" of ")[0].rpartition(" ")[2] for size in (own, first)}
+    if "blocks" not in kinds:
         return "set {res} and {topology}"
-    if sample.form == "plane":  # shapes that differ much may still have other counts inside
-        return "try one {layout} with the {count} of every side"
-    return "use the same numbers of nodes"
+    if "x3," in f"{own},{first},":
+        return "use the same numbers of nodes"
+    # a base makes two blocks of a C grid, with as many nodes on and behind it as it needs
+    given = "{base} T, {base_nodes}, {res} and {wake_nodes}"
+    bases = f"close bases of airfoils with {{te}} wedge, or give all of them one with {given}"
+    # variants of a domain that differ much may still have other counts inside
+    domains = "; for domains try one {layout} with the {count} of every side"
+    return bases if "c" in kinds else bases + domains

@@ -2,6 +2,9 @@
 
 from collections.abc import Iterable
 
+UNJUDGED = {"verdict": None, "limits_exceeded": None}
+"""Facts of a grid's provenance that hold for the nodes that were judged, and are removed with them."""
+
 
 class Change(str):
     """A note that says how a shape was changed, or which part of its file was left out."""

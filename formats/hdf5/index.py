@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from meshonet.formats.format import size_remedy
 from meshonet.formats.hdf5.check import Checked, check_heaps, opened, own
 from meshonet.formats.hdf5.file import created
 from meshonet.formats.source import Source, printable
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     import h5py
 
 
-OF_PARTS = ("request", "part_size", "size")
+OF_PARTS = ("request", "part_size", "size", "common")
 """Attributes that parts have and the index does not."""
 _AGAIN = "repeat the command that made it, with {skip_existing}"
 """Remedy for parts that do not match their index."""
@@ -37,6 +38,7 @@ class PartFacts:
     """Description of a part, read from its file.
 
     `size` must be the same in all parts; `columns` are its datasets: length, shape of a row, and type.
+    `common` are digests of the facts that all its grids share, by name.
     """
 
     path: Path
@@ -48,6 +50,7 @@ class PartFacts:
     failed: list[Failed] = field(default_factory=list)
     columns: dict[str, tuple[int, tuple[int, ...], Any]] = field(default_factory=dict)
     parameter_names: Any = None
+    common: dict[str, str] = field(default_factory=dict)
 
 
 def part_facts(path: Path) -> PartFacts:
@@ -56,6 +59,8 @@ def part_facts(path: Path) -> PartFacts:
     source = Source(printable(str(path)), path=path)
     with opened(source, texts=False) as file:
         facts.request, facts.size = _fixed(file, "request"), _fixed(file, "size")
+        common = json.loads(_fixed(file, "common") or "{}")
+        facts.common = common if isinstance(common, dict) else {}
         digits = _fixed(file, "part_size")
         facts.part_size = int(digits) if digits.isascii() and digits.isdigit() and len(digits) < 10 else 0
         for name, data in _datasets(file):
@@ -145,18 +150,21 @@ def _parts(mappings: Any, index: Path, split: str) -> Iterator[Part]:
 
 
 def write_index(file: Path, index: Path, parts: Sequence[PartFacts]) -> None:
-    """Write the index of `parts`, which hold samples, to `file`, which is later renamed to `index`.
+    """Write the index of `parts` to `file`, which is later renamed to `index`; some of them hold samples.
 
     Raises InputError: the parts differ in size or settings.
     """
-    first = parts[0]
-    for facts in parts[1:]:
+    filled = [facts for facts in parts if facts.count]
+    first = filled[0]
+    for facts in filled[1:]:
         _check_same(facts, first)
     columns = {name: column for facts in reversed(parts) for name, column in facts.columns.items()}
     with opened(Source(printable(str(first.path)), path=first.path)) as model:
         attributes = dict(model.attrs)
+    shared = set.intersection(*(set(facts.common.items()) for facts in filled))
+    left = {*OF_PARTS, *first.common}.difference(name for name, _ in shared)
     with created(file) as made:
-        made.attrs.update({name: value for name, value in attributes.items() if name not in OF_PARTS})
+        made.attrs.update({name: value for name, value in attributes.items() if name not in left})
         for name, (_, row, kind) in sorted(columns.items()):
             _add_column(made, name, row, kind, parts, index.parent)
         if first.parameter_names is not None:
@@ -169,7 +177,7 @@ def _check_same(facts: PartFacts, first: PartFacts) -> None:
         problem = "was made with other options"
     elif facts.size != first.size:
         problem = f"holds {facts.size}, and {first.path.name} {first.size}"
-        remedy = "one dataset has one size and topology: set {res} and {topology}"
+        remedy = f"one dataset has one size and topology: {size_remedy(facts.size, first.size)}"
     if problem:
         raise InputError(problem, remedy, source=printable(str(facts.path)))
 

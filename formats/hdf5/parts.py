@@ -160,7 +160,7 @@ class PartFiles:
         """
         numbers, count = None, 0
         while numbers != (numbers := self.numbers()):
-            parts = [facts for number in numbers if (facts := part_facts(self.path(number))).count]
+            parts = [part_facts(self.path(number)) for number in numbers]
             count = sum(facts.count for facts in parts)
             if count:
                 with whole_file(str(self.index)) as file:

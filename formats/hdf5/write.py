@@ -22,6 +22,8 @@ from meshonet.geometry.errors import InputError
 if TYPE_CHECKING:
     import h5py
 
+    from meshonet.formats.hdf5.index import Failed
+
 BLOCK = 1 << 22
 """Bytes of samples that are collected before they are written together."""
 TEXTS = ("names", "titles", "split", "parts", "provenance")
@@ -46,16 +48,16 @@ class Writer:
         self._bytes = 0
         self._count = 0
         self._first: tuple[str, ...] = ()
+        self._common: dict[str, Any] = {}  # what the provenances of all grids say
 
     def append(self, sample: Boundary | Grid) -> None:
         """Add a grid to a dataset of grids, or a boundary to one of boundaries."""
         self._check_size(sample)
         arrays = _arrays_of(sample)
-        if self._count == 0 and isinstance(sample, Grid):
-            for key, fact in sample.provenance.items():  # as attributes too, for reading by eye
-                name = f"meshonet_{key}" if key in ("format", "version", "topology") else key
-                simple = isinstance(fact, str | int | float)
-                self._file.attrs[name] = fact if simple else json.dumps(fact, default=plain)
+        if isinstance(sample, Grid):
+            facts = {name: _simple(fact) for name, fact in sample.provenance.items()}
+            known = facts if self._count == 0 else self._common
+            self._common = {name: fact for name, fact in known.items() if facts.get(name) == fact}
         if sample.origin.parameters:
             names, numbers = zip(*sample.origin.parameters, strict=True)
             arrays["parameters"] = np.array(numbers)
@@ -89,9 +91,10 @@ class Writer:
             self._file.attrs.update(more)
         if (size, connections) != self._first:
             first = self._first[0] if size != self._first[0] else "connected otherwise"
+            problem = f"sample {self._count} is {size} and the first is {first}"
+            remedy = size_remedy(size, self._first[0])
             raise InputError(
-                f"sample {self._count} is {size} and the first is {first}",
-                f"one dataset has one size and topology: {size_remedy(sample)}, or write one file each",
+                problem, f"one dataset has one size and topology: {remedy}, or write one file each"
             )
 
     def _hold(self, name: str, value: Floats | str) -> None:
@@ -111,15 +114,25 @@ class Writer:
 
         Attributes are texts of fixed length, which are read without a search for damage.
         """
-        import h5py
-
         size, connections = self._first or ("", "")
-        joined = f", connected as {zlib.crc32(connections.encode()):08x}" if connections else ""
-        every = {**facts, "size": f"{size}{joined}"[-500:]}
+        joined = f", connected as {_digest(connections)}" if connections else ""
+        common = {_attribute(name): _digest(str(fact)) for name, fact in self._common.items()}
+        every = {**facts, "size": f"{size}{joined}"[-500:], "common": json.dumps(common)}
         self._file.attrs.update({name: np.bytes_(fact.encode()) for name, fact in every.items()})
         self._file.create_dataset("inputs", data=np.array(digests, dtype=np.bytes_))
+        self.note_failed(failed)
+
+    def note_failed(self, failed: Sequence[str]) -> None:
+        """Write texts about failed samples, if there are any."""
+        import h5py
+
         if failed:
             self._file.create_dataset("failed", data=list(failed), dtype=h5py.string_dtype())
+
+    def close(self) -> None:
+        """Write what is collected, and what all provenances say as attributes, for reading by eye."""
+        self.flush()
+        self._file.attrs.update({_attribute(name): fact for name, fact in self._common.items()})
 
     def flush(self) -> None:
         """Write the collected samples."""
@@ -171,27 +184,43 @@ def writing(path: Path, kind: Kind) -> Iterator[Writer]:
         try:
             yield writer
         finally:
-            writer.flush()
+            writer.close()
 
 
-def write_boundaries(path: Path, boundaries: Iterable[Boundary]) -> None:
-    """Write boundaries of the same size and topology, one at a time."""
-    _write(path, "meshonet-boundary", boundaries)
+def write_boundaries(path: Path, boundaries: Iterable[Boundary], failed: Sequence[Failed] = ()) -> None:
+    """Write boundaries of the same size and topology, one at a time.
+
+    `failed`, which may grow while samples are made, are those that could not be made or are left out.
+    """
+    _write(path, "meshonet-boundary", boundaries, failed)
 
 
-def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write grids of the same size and topology, one at a time."""
-    _write(path, "meshonet-grid", grids)
+def write_grids(path: Path, grids: Iterable[Grid], failed: Sequence[Failed] = ()) -> None:
+    """Write grids of the same size and topology, one at a time; for `failed` see `write_boundaries`."""
+    _write(path, "meshonet-grid", grids, failed)
 
 
-def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid]) -> None:
+def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid], failed: Sequence[Failed]) -> None:
     empty = True
     with writing(path, kind) as writer:
         for sample in samples:
             writer.append(sample)
             empty = False
+        writer.note_failed(list(map(json.dumps, failed)))
     if empty:
         raise InputError(f"there is no {kind.removeprefix('meshonet-')} to write", "check the input")
+
+
+def _simple(fact: Any) -> str | int | float:
+    return fact if isinstance(fact, str | int | float) else json.dumps(fact, default=plain)
+
+
+def _digest(text: str) -> str:
+    return f"{zlib.crc32(text.encode()):08x}"
+
+
+def _attribute(name: str) -> str:
+    return f"meshonet_{name}" if name in ("format", "version", "topology") else name
 
 
 def _is_of_blocks(sample: Boundary | Grid) -> bool:

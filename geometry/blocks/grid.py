@@ -266,8 +266,12 @@ class Grid(Connected):
         return replace(self, blocks=(Block(nodes, finite),))
 
     def with_provenance(self, **facts: Any) -> Grid:
-        """Return the same grid with `facts` added to its provenance."""
-        return replace(self, provenance={**self.provenance, **facts})
+        """Return the same grid with `facts` added to its provenance; those that are None are removed."""
+        known = {**self.provenance, **facts}
+        for name, fact in facts.items():
+            if fact is None:
+                del known[name]
+        return replace(self, provenance=known)
 
     def quality(self) -> Quality:
         """Return the summaries of all metrics (`meshonet.geometry.quality.measure.measure`).

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from meshonet.formats.inputs import Inputs
     from meshonet.geometry.layout.layout import Layout
     from meshonet_cli.batch.drawn import DrawnInputs
+    from meshonet_cli.terminal.session import Failures
 
 FIELDS = ("stem", "index", "name")
 """Fields of a pattern for output names."""
@@ -67,6 +68,10 @@ class Destination:
         self._put = put or getattr(self.format, f"write_{kind}")
         self._taken: dict[str, str] = {}
         self.is_dataset = self.format.name == "hdf5"
+        self.failed: Failures | None = None
+        """What a dataset lists as failed, filled while it is written; None for formats without a list."""
+        if self.is_dataset and not put:
+            self.failed = []
         self.can_have_parts = self.is_dataset and not self.each and text != "-"
         if part_size is not None and not self.can_have_parts:
             remedy = "write one .h5 file, or leave it out"
@@ -151,7 +156,7 @@ class Destination:
         """Write `what` to `path` atomically."""
         folder = self.format.fills_folder
         with whole_file(path, make_folder=self.each or folder, beside=folder or self.format.beside) as part:
-            self._put(part, what)
+            self._put(part, what, *([] if self.failed is None else [self.failed]))
 
 
 def _size_there(index: Path) -> int:
@@ -216,5 +221,5 @@ def same_size(what: Grid | Boundary | Layout, size: str) -> str:
     own = size_of(what)
     if size and own != size:
         problem = f"{own} does not fit a dataset of {size}"
-        raise InputError(problem, f"{size_remedy(what)}, or write one file each: -o '{{{{stem}}}}.h5'")
+        raise InputError(problem, f"{size_remedy(own, size)}, or write one file each: -o '{{{{stem}}}}.h5'")
     return own

@@ -104,6 +104,7 @@ class PartMaker:
             try:
                 what, report = made(outcome)
                 if report.left_out:
+                    failed.append(Failed(*report.failure))
                     done.members.append((item, report))
                     continue
                 what = keys.named(item, what)

@@ -99,6 +99,7 @@ class Batch:
             self._deliver_parts(task, destination, size, written)
             return
         else:
+            session.failures = None if destination.each else destination.failed
             members = members_of(self.inputs, task.read, session)
         leading = next(members, None)
         if leading is None:

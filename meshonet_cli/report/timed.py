@@ -37,6 +37,13 @@ class Timed:
         """Return its row in a table, if it was judged."""
         return None
 
+    @property
+    def failure(self) -> tuple[str, str, str, bool]:
+        """Input, member, reason and whether to try again, for the list of a dataset that lacks the result."""
+        row = self.row()
+        limits = ", ".join(row.judgement.beyond) if row and row.judgement else ""
+        return self.item.source, self.item.label, f"left out, as it fails: {limits}", False
+
     def as_json(self) -> dict[str, Any]:
         """Return the data for ``--json``."""
         raise NotImplementedError

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.notes import UNJUDGED
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ
 from meshonet.solvers.pipeline.choose_method import method_of
@@ -59,7 +60,7 @@ def reported(
         confidence=solution.confidence, dimensions=solution.dimensions,
     )  # fmt: skip
     report.seconds |= result.seconds
-    facts = provenance()
+    facts: dict[str, str | None] = {**UNJUDGED, **provenance()}
     with stage("quality", report.seconds):
         if grid.topology == "blocks":
             from meshonet.geometry.quality.blocks import block_counts, block_figures

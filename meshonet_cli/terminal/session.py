@@ -11,7 +11,7 @@ import threading
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError, MeshonetError
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from meshonet_cli.terminal.stage_line import StageLine
     from meshonet_cli.terminal.summary import BatchSummary, MemberRow
 
+Failures: TypeAlias = list[tuple[str, str, str, bool]]
+"""Inputs, members, errors, and whether to try again: rows of `meshonet.formats.hdf5.index.Failed`."""
 GATE_NOT_MET = 1
 """Exit code if a gate has failed."""
 SAME_ERRORS = 3
@@ -49,6 +51,8 @@ class Session:
         """Whether grids are judged by gates or profiles."""
         self.dataset = ""
         """The one file that all members go into."""
+        self.failures: Failures | None = None
+        """Where failed members, and those that are left out, are listed for the dataset."""
         self.rows: list[MemberRow] = []
         self._stdout_is_taken = False
         self._errors: Counter[str] = Counter()
@@ -84,6 +88,8 @@ class Session:
         self.worst = max(self.worst, code)
         self.rows.append(MemberRow(label))
         line = explained(error, label)
+        if self.failures is not None:
+            self.failures.append((source, label, line, not isinstance(error, MeshonetError)))
         if self.debug:
             import traceback
 
@@ -115,6 +121,8 @@ class Session:
             self.warn(report.warning)
         self.done += not report.left_out
         self.left_out += report.left_out
+        if report.left_out and self.failures is not None:
+            self.failures.append(report.failure)
         if self._line and not self.batch:
             self._unwatch()
         if self.as_json:

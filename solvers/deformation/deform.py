@@ -15,6 +15,7 @@ import numpy as np
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError
+from meshonet.geometry.notes import UNJUDGED
 from meshonet.geometry.quality.measure import count_folded_in, worst_cells_of
 from meshonet.solvers.deformation.crossings import check_apart
 from meshonet.solvers.deformation.follow import Follow, sliding_notes
@@ -44,7 +45,7 @@ def deform(grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> Solution:
     made, path = _made(follow, targets)
     outcome = Outcome.FOLDED if count_folded_in(made) else Outcome.DONE
     notes = (*targets.notes, *sliding_notes(follow, targets.nodes), *_layers(table, made, targets))
-    made = made.with_provenance(method=METHOD, walls=",".join(targets.names))
+    made = made.with_provenance(method=METHOD, walls=",".join(targets.names), **UNJUDGED)
     return Solution(made, METHOD, path=path, notes=notes, outcome=outcome)
 
 

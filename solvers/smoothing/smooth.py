@@ -19,6 +19,7 @@ import numpy as np
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.layout.from_grid import layout_of, with_nodes
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.notes import UNJUDGED
 from meshonet.geometry.ties import first_least
 from meshonet.solvers.energy.quads import FREE, optimise
 from meshonet.solvers.smoothing.hold_back import held_back
@@ -55,7 +56,7 @@ def smooth(grid: Grid, *, slide: bool = False, iterations: int = ITERATIONS) -> 
     notes = () if better else (_AS_GOOD,)
     best = best if better else grid
     outcome = Outcome.FOLDED if (better and least.folded) or (not better and before.folded) else Outcome.DONE
-    facts = best.with_provenance(method=METHOD, slide=slide)
+    facts = best.with_provenance(method=METHOD, slide=slide, **UNJUDGED)
     return Solution(facts, METHOD, notes=notes, outcome=outcome)
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.notes import UNJUDGED
 from meshonet.geometry.volume.hex_mesh import HexMesh, any_corner, corners_of, hex_mesh_of, with_nodes
 from meshonet.solvers.energy.hex_tables import Targets
 from meshonet.solvers.energy.hexes import HexProblem, Slides, optimise
@@ -64,7 +65,7 @@ def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = Fa
     notes = () if made is not given else (_AS_GOOD,)
     result = with_nodes(grid, made) if made is not given else grid
     return Solution(
-        result.with_provenance(method=METHOD, slide=slide),
+        result.with_provenance(method=METHOD, slide=slide, **UNJUDGED),
         METHOD,
         notes=notes,
         outcome=Outcome.FOLDED if after.folded else Outcome.DONE,

@@ -1,8 +1,10 @@
 """Grids judged as they are made: one mechanism for gates and profiles, in every command that makes grids."""
 
+import json
 import re
 from pathlib import Path
 
+import h5py
 import pytest
 from command_line import Meshonet, Process
 
@@ -144,3 +146,72 @@ def test_nothing_is_left_out_where_there_is_no_gate(meshonet: Meshonet) -> None:
     done = meshonet("tfi", "naca:0012", "--leave-out-failed", "-o", "g.h5")
     assert done.code == 2
     assert done.err.startswith("error: --leave-out-failed: there is nothing that a grid could fail; give ")
+
+
+@pytest.mark.parametrize("parts", [(), ("--part-size", "1")])
+def test_a_dataset_lists_what_is_left_out_and_what_failed(meshonet: Meshonet, parts: tuple[str, ...]) -> None:
+    gate = ("--res", "41x15", "--fail-on", "max_angle>150", "--leave-out-failed")
+    meshonet("infer", "naca:0012-sharp", "naca:2412", "missing.dat", *gate, "-o", "all.h5", *parts)
+    with h5py.File("all.h5") as file:
+        rows = [json.loads(text) for text in file["failed"].asstr()]
+    assert sorted(row[0] for row in rows) == ["missing.dat", "naca:0012-sharp"]
+    reasons = {row[0]: row[2] for row in rows}
+    assert reasons["naca:0012-sharp"].startswith("left out, as it fails: max_angle.max 1")
+    assert "no such file" in reasons["missing.dat"]
+    again = ("infer", "naca:0012-sharp", "naca:2412", "missing.dat", *gate, "-o", "all.h5", *parts)
+    assert not parts or "there already" in meshonet(*again, "--skip-existing").err
+
+
+@pytest.mark.parametrize("parts", [(), ("--part-size", "1")])
+def test_attributes_of_a_dataset_hold_for_all_its_grids(meshonet: Meshonet, parts: tuple[str, ...]) -> None:
+    foils = ("naca:2412", "naca:0012-sharp", "naca:0010", "naca:2410")
+    words = ("--res", "60x30", "--topology", "c", "--fail-on", "max_angle>140")
+    meshonet("infer", *foils, *words, "-o", "all.h5", *parts)
+    grids = list(read_grids("all.h5"))
+    assert len({grid.provenance["method"] for grid in grids}) == 1
+    assert len({grid.provenance.get("changes") for grid in grids}) > 1
+    with h5py.File("all.h5") as file:
+        assert file.attrs["method"] == grids[0].provenance["method"]
+        assert "command" in file.attrs
+        for name, fact in file.attrs.items():
+            if name not in ("format", "version", "topology", "inputs"):
+                assert {grid.provenance.get(name) for grid in grids} == {fact}
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("deform", "--rotate", "wall=5@0.25,0"),
+        ("convert", "--coarsen", "2"),
+        ("convert", "--normalise"),
+        ("convert", "--extrude", "1"),
+        ("convert", "--revolve", "90", "--axis", "0,-40,1,0"),
+    ],
+    ids=lambda words: " ".join(words[:2]),
+)
+@pytest.mark.parametrize("ending", [".h5", ".cgns", ".vts"])
+def test_a_verdict_is_that_of_the_grid_and_not_of_the_one_it_is_made_from(
+    meshonet: Meshonet, words: tuple[str, ...], ending: str
+) -> None:
+    made = ("infer", "naca:0012-sharp", "--res", "61x33", "--topology", "c", "--fail-on", "max_angle>170")
+    assert meshonet(*made, "-o", f"a{ending}").code == 0
+    assert meshonet("convert", f"a{ending}", "same.h5").code == 0
+    command, *options = words
+    assert meshonet(command, f"a{ending}", *options, "-o", "b.h5").code == 0
+    for path, judged in (("same.h5", True), ("b.h5", False)):
+        facts = next(read_grids(path)).provenance
+        assert ("verdict" in facts, "limits_exceeded" in facts) == (judged, judged)
+
+
+def test_the_remedy_for_bases_of_a_dataset_is_named_and_works(meshonet: Meshonet) -> None:
+    """A base makes a grid of two blocks, with nodes as many as it needs; a sharp edge one of one block."""
+    words = ("--topology", "c", "--res", "201x41", "--first-cell", "1e-4", "-o", "all.h5")
+    sharp, thin, thick = foils = ("naca:0012-sharp", "naca:0008", "naca:0030")
+    for pair in ((thin, thick), (thin, sharp), (sharp, thin)):
+        err = meshonet("infer", *pair, *words).err
+        assert "close bases of airfoils with --te wedge, or give all of them one with --base T, --b" in err
+        assert "--topology" not in err
+    assert len(list(read_grids("all.h5"))) == 1
+    for more in (("--te", "wedge"), ("--base", "0.01", "--base-nodes", "41", "--wake-nodes", "61")):
+        assert meshonet("infer", *foils, *words, *more).code == 0
+        assert len(list(read_grids("all.h5"))) == len(foils)
