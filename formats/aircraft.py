@@ -1,4 +1,4 @@
-"""Aircraft in TOML: what ``meshonet stack`` reads where ``kind = "aircraft"``.
+"""Aircraft in TOML, an input of ``meshonet stack`` with ``kind = "aircraft"``.
 
 ::
 
@@ -61,10 +61,10 @@ from meshonet.geometry.sections.stack import Stack
 
 
 def read_aircraft(data: Table, source: Source) -> Aircraft:
-    """Return the aircraft that a table of TOML describes, in a `source` beside which its files are.
+    """Return the aircraft that a table of TOML describes; paths are relative to the folder of `source`.
 
-    Raises InputError: a key that is not known, a value that does not fit, with its place; files that cannot
-    be read; other than one body.
+    Raises InputError, with the place: an unknown key; an invalid value; a file that cannot be read; no body,
+    or more than one.
     """
     data.only("kind", "name", "bodies", "wings", "half")
     folder = source.path.parent if source.path else Path()

@@ -23,7 +23,7 @@ from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.notes import Change
 
 KEYS = "surface", "patches"
-"""Keys of a body or wing that is a surface."""
+"""Keys in the table of a body or wing that is a surface."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,11 +53,12 @@ class _Patches:
 
 
 def surface_body(row: Table, folder: Path) -> tuple[Body, AircraftAxes, tuple[str, ...]]:
-    """Return the body that a row names, the axes of its file, and notes.
+    """Return the body that the table `row` describes, the axes of its file, and notes.
 
-    Without `patches` these are the patches of the file with a side in the plane of symmetry.
+    The body consists of the patches that the key ``patches`` names. Without this key, it consists of all
+    patches of the file that have a side in the plane of symmetry. Paths are relative to `folder`.
 
-    Raises InputError: a file that holds no surface; a body that is none of half an aircraft, or has holes.
+    Raises InputError: a file without a surface; a body that is not that of half an aircraft, or has holes.
     """
     row.only("name", *KEYS)
     file = _read(row, folder)
@@ -92,11 +93,12 @@ def _lofted(cuts: BodyCuts, name: str) -> LoftedBody:
 
 
 def surface_wing(row: Table, folder: Path, axes: AircraftAxes) -> SurfaceWing:
-    """Return the wing that a row names, turned from the axes of the file to those of the aircraft.
+    """Return the wing that the table `row` describes, in the axes of the aircraft.
 
-    Without `patches` these are the patches of the file without a side in the plane of symmetry.
+    The wing consists of the patches that the key ``patches`` names. Without this key, it consists of all
+    patches of the file that have no side in the plane of symmetry. Paths are relative to `folder`.
 
-    Raises InputError: a file that holds no surface; patches that do not lie around a wing.
+    Raises InputError: a file without a surface; patches that do not enclose a wing.
     """
     row.only("on", "name", *KEYS)
     file = _read(row, folder)

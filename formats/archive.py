@@ -1,7 +1,7 @@
 """Zip archives, whose members are read one by one without unpacking them.
 
-Nothing is written under the names in an archive, a member is refused by the size that it claims before it is
-unpacked, and no more is unpacked than that. Errors do not name the archive; callers do.
+No file is written under a name in an archive. A member that claims too large a size is refused before it is
+unpacked, and at most the claimed size is unpacked. Errors do not name the archive; callers do.
 https://pkware.cachefly.net/webdocs/casestudies/APPNOTE.TXT
 """
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 LARGEST_MEMBER = 1 << 28
 """Largest uncompressed size of a member, in bytes."""
 _IN_ARCHIVE = re.compile(r"\.zip/", re.IGNORECASE)
-"""Where the name of an archive ends and that of a member begins."""
+"""Pattern that finds the end of the archive's name in a path, where the name of a member begins."""
 
 
 def member_names(path: str) -> Iterator[str]:
     """Return an iterator over the names of an archive's files, in order.
 
-    Raises InputError: it is no zip archive, or may not be read.
+    Raises InputError: the file is not a zip archive, or cannot be read.
     """
     return iter(sorted(name for name in _archive(path).NameToInfo if not name.endswith("/")))
 

@@ -4,11 +4,11 @@ from meshonet.formats.format import Format
 from meshonet.formats.table import TABLE
 
 _HEAD = ("format", "endings", "reads", "writes", "names", "3D", "blocks", "many", "what it is", "options")
-"""Headings of the table's columns."""
+"""Headings of the columns of the table."""
 
 
 def rows() -> list[dict[str, str]]:
-    """Return a row for each format, by the table's headings."""
+    """Return a row for each format, as texts by heading."""
     return [dict(zip(_HEAD, _row(record), strict=True)) for record in TABLE.values()]
 
 

@@ -26,12 +26,13 @@ class Conversion:
     Parameters
     ----------
     extrude : height in z to which planar grids are extruded; None leaves them planar.
-    planes : planes of nodes in z, or about the axis; None stands for two, or those that `Revolution` says.
+    planes : number of planes of nodes in z, or about the axis; None stands for two in z, and for the default
+        of `Revolution` about the axis.
     swap : exchange xi and eta.
     normalise : scale to unit chord or unit length.
     coarsen : keep every `coarsen`-th node.
     revolve : angle in degrees by which planar grids are revolved about `axis`; None leaves them planar.
-    axis : line in the plane; None is the x axis.
+    axis : axis of `revolve`, a line in the plane of the grid; None is the x axis.
     copies : number of copies of a periodic grid beside each other, along each of its periods.
     scale : factor on all lengths.
     """
@@ -47,14 +48,14 @@ class Conversion:
     scale: float = 1.0
 
     def turn(self) -> Revolution | None:
-        """Return how grids are turned about an axis, None if they are not."""
+        """Return the revolution about the axis, None if grids are not revolved."""
         turn = revolution(self.revolve, self.planes, self.axis)
         if turn is not None and self.extrude is not None:
             raise InputError("{extrude} and {revolve} both make grids 3D", "give one of them")
         return turn
 
     def heights(self) -> tuple[float, ...]:
-        """Return z of each plane, () for a planar grid. Raises InputError: a height that is not positive."""
+        """Return z of each plane, () without extrusion. Raises InputError: a height that is not positive."""
         if self.extrude is None:
             if self.planes is not None and self.revolve is None:
                 remedy = "give {extrude} or {revolve} as well"
@@ -66,7 +67,10 @@ class Conversion:
         return tuple(self.extrude * k / (planes - 1) for k in range(planes))
 
     def __call__(self, grid: Grid | Boundary) -> Grid | Boundary:
-        """Return a grid with the changes that keep its dimension; a boundary unchanged: `read` changes it."""
+        """Return a grid with the changes that keep its dimension.
+
+        A boundary is returned unchanged, see `read`.
+        """
         if isinstance(grid, Boundary):
             return grid
         if replace(self, planes=None, axis=None) != Conversion():
@@ -77,14 +81,14 @@ class Conversion:
         return copied(scaled(grid, self.scale) if self.scale != 1.0 else grid, self.copies)
 
     def read(self, source: str, fmt: str | None, *, boundaries: bool) -> Iterator[Grid | Boundary]:
-        """Yield the boundaries of `source`, or else its grids."""
+        """Yield the boundaries of `source`, with the changes, if `boundaries` is set; otherwise its grids."""
         if not boundaries:
             return read_grids(source, fmt)
         sampling = Sampling(normalise=self.normalise)
         return (shape.boundary(sampling) for shape in read_shapes(source, fmt))
 
     def of_boundaries(self, source: str, output: str, from_format: str | None, to_format: str | None) -> bool:
-        """Return whether boundaries are written: grids are not changed, and one of the formats has none."""
+        """Return whether boundaries are written: no change needs grids, and a format has no grids."""
         changed = self.swap or self.coarsen > 1 or self.copies != 1 or self.scale != 1.0
         if changed or self.heights() or self.turn():
             return False
@@ -113,9 +117,9 @@ class Conversion:
 def plot3d_variant(
     words: str | None, output: str, from_format: str | None, to_format: str | None
 ) -> tuple[str | None, str | None]:
-    """Return the formats to read and to write, where the options `words` are added to that of Plot3D.
+    """Return the formats to read and to write; the options `words` are added to the one that is Plot3D.
 
-    Raises InputError: unknown options, or neither format is Plot3D.
+    If `output` is not a Plot3D file, the input is taken for one. Raises InputError: an unknown option.
     """
     if words is None:
         return from_format, to_format
@@ -126,7 +130,7 @@ def plot3d_variant(
 
 
 def unused_iblank(grid: Grid | Boundary) -> str | None:
-    """Return a note on nodes marked by an iblank array, whose marks are lost; None where there are none."""
+    """Return a note on nodes marked by an iblank array, whose marks are lost; None if no nodes are marked."""
     counts = grid.provenance.get("iblank") if isinstance(grid, Grid) else None
     marked = [f"{count} with {value}" for value, count in (counts or {}).items() if value != "1"]
     if not marked:

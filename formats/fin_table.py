@@ -1,4 +1,4 @@
-"""The sections of a fin in a table of TOML: as those of a wing, but upwards along y."""
+"""The sections of a fin in a table of TOML: like those of a wing, but upwards along y."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from meshonet.geometry.sections.stack import Stack
 
 
 def fin_table(data: Table, folder: Path, more: tuple[str, ...]) -> Fin:
-    """Return the fin of a table, whose files are looked for in a `folder`; it may have `more` keys.
+    """Return the fin of a table, which may also have the keys `more`; paths are relative to `folder`.
 
-    Raises InputError: as `meshonet.formats.stack_table.stack_table`, a section that is not symmetric.
+    Raises InputError: a section that is not symmetric; see also `meshonet.formats.stack_table.stack_table`.
     """
     options = stack_options(data, "fin", more)
     sections: list[Section] = []
@@ -26,7 +26,7 @@ def fin_table(data: Table, folder: Path, more: tuple[str, ...]) -> Fin:
 
 
 def fin_of(wing: Stack, name: str) -> Fin:
-    """Return a wing from a file as a fin, whose span is upwards."""
+    """Return a wing as a fin, whose span is along y; `name` is that of the fin."""
     values = {field.name: getattr(wing, field.name) for field in fields(wing)}
     return Fin(**(values | {"name": name}))
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Space: TypeAlias = Literal["volumes", "surfaces"]
 """Kinds of three-dimensional grids: blocks of volumes, or patches of surfaces."""
 Options: TypeAlias = frozenset[str]
-"""Words behind a format's name, ``plot3d:big,float32``."""
+"""Options of a format: the words after its name, as in ``plot3d:big,float32``."""
 
 
 @dataclass(frozen=True)
@@ -30,23 +30,25 @@ class Format:
 
     Parameters
     ----------
-    name, suffixes, description : for users; extensions in lower case with the dot. read_shapes : function
-    that yields shapes, which can be sampled into boundaries; None when the format holds
-        grids (whose outer edges are then used) or cannot be read.
-    read_grids, write_grids, write_boundaries, write_layouts : functions; None when the format cannot. sniff :
-    function that recognises a file by its first `HEAD_BYTES` bytes. names_patches : whether it stores names
-    of patches and the topology. blocks : how a planar multi-block grid is written: blocks ``kept``, or
-    ``merged`` to one unstructured mesh;
-        empty if it cannot be.
-    space : kinds of three-dimensional grids that `write_grids` takes and `read_grids` returns. many : whether
-    one file can hold several grids or boundaries. one_size : whether all samples of a file must have the same
-    node counts and topology. beside : whether other files are written next to the file, so that it cannot be
-    written to a stream. fills_folder : whether the file stands for a folder that is written with it, so that
-    a folder holds one grid,
-        and it cannot be written to a stream.
-    choices : groups of options; after the name there may be one word of each group.
+    name : name of the format for users.
+    suffixes : extensions in lower case, with the dot.
+    description : short description for users.
+    read_shapes : function that yields shapes, which can be sampled into boundaries; None if the format
+        contains grids, whose outer edges are then used, or cannot be read.
+    read_grids, write_grids, write_boundaries, write_layouts : functions; None if the format cannot do this.
+    sniff : function that recognises a file by its first `HEAD_BYTES` bytes.
+    names_patches : whether the format stores names of patches and the topology.
+    blocks : how a planar multi-block grid is written: blocks ``kept``, or ``merged`` into one unstructured
+        mesh; empty if it cannot be written.
+    space : kinds of three-dimensional grids that `write_grids` takes and `read_grids` returns.
+    many : whether one file can contain several grids or boundaries.
+    one_size : whether all samples of a file must have the same node counts and topology.
+    beside : whether other files are written next to the file, so that it cannot be written to a stream.
+    fills_folder : whether the file stands for a folder that is written with it. A folder then contains one
+        grid, and the file cannot be written to a stream.
+    choices : groups of options; one word of each group may follow the name.
     reads_options : whether `read_grids` takes ``options`` as `write_grids` does.
-    suffix_options : the options that an extension implies when a file is written.
+    suffix_options : option that an extension implies when a file is written.
     """
 
     name: str
@@ -160,7 +162,7 @@ def size_of(sample: Boundary | Grid) -> str:
 
 
 def size_remedy(own: str, first: str) -> str:
-    """Return what gives samples of a dataset the size and topology of the first, from texts of `size_of`."""
+    """Return the options that give a sample of size `own` the size `first`; sizes are texts of `size_of`."""
     kinds = {size.partition(" of ")[0].rpartition(" ")[2] for size in (own, first)}
     if "blocks" not in kinds:
         return "set {res} and {topology}"

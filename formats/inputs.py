@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from meshonet.formats.hdf5.read import DatasetSamples
 
 _BEGINNING = 10_001
-"""Inputs that are counted before work begins."""
+"""Number of inputs at which counting before the work ends."""
 _IS_DATASET = re.compile(r"\.(?:h5|hdf5)(?:#[a-z0-9,:]+)?$", re.IGNORECASE)
 
 
 class Numbered(NamedTuple):
-    """An input, the number of its first member among those of all inputs, and the step between its members.
+    """An input, the number of its first member among the members of all inputs, and the step between members.
 
-    Without a number the members are counted; a step of 0 stands for a single member.
+    If the number is None, members are counted; a step of 0 stands for a single member.
     """
 
     text: str | InputError
@@ -117,12 +117,12 @@ class Inputs:
             yield number, tuple(entries)
 
     def more_than(self, count: int) -> bool:
-        """Return whether there are more than `count` inputs; the search stops there."""
+        """Return whether there are more than `count` inputs; no further inputs are searched for."""
         return (self._begun if count < _BEGINNING else sum(1 for _ in islice(self, count + 1))) > count
 
     @cached_property
     def _begun(self) -> int:
-        """Number of inputs; counting stops at `_BEGINNING`."""
+        """Number of inputs; counting stops at 10001."""
         return len(list(islice(self, _BEGINNING)))
 
     def count(self) -> int | None:

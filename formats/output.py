@@ -19,7 +19,7 @@ PART_SUFFIX = ".meshonet-part"
 _PART = re.compile(
     rf"\.(?P<final>.*)\.(?P<machine>[0-9a-f]*-\d*)-(?P<process>\d+)-[0-9a-f]{{8}}{re.escape(PART_SUFFIX)}"
 )
-"""Name of an unfinished file: that of the finished one, and the machine and process that write it."""
+"""Name of an unfinished file: the name of the finished file, the machine, and the process that writes it."""
 _swept: set[Path] = set()
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
 """Errors of a disk that is full or read-only."""

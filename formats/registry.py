@@ -56,7 +56,7 @@ def format_named(name: str) -> Format:
 def format_of(source: Source, fmt: str | None = None) -> Format:
     """Return the format of a source to be read.
 
-    Raises InputError: neither extension nor content determines it.
+    Raises InputError: neither extension nor content determines the format.
     """
     if fmt:
         return format_named(fmt)
@@ -112,11 +112,11 @@ def picture_format(output: str, to_format: str | None = None) -> Format:
 
 
 def read_shapes(text: str, fmt: str | None = None, *, surfaces: bool = False) -> Iterator[Shape]:
-    """Return what can be sampled into boundaries: from a path, from ``-``, or a designation ``naca:2412``.
+    """Return an iterator over the shapes of a path, of ``-``, or of a designation such as ``naca:2412``.
 
-    The outer edges of a grid are boundaries, so a grid file serves too. Behind a record that cannot be read,
-    for which it raises, the iterator goes on with those that formats can still reach. With `surfaces` flat
-    patches of grids in space are surfaces, not grids in the plane.
+    Shapes can be sampled into boundaries; from a file of grids they are the outer edges. If a record cannot
+    be read, the iterator raises InputError and continues with the next record that can still be found. With
+    `surfaces`, flat patches of grids in space are surfaces, not planar grids.
 
     Raises InputError, with the place: a source that cannot be opened, has an unknown format or is invalid.
     """
@@ -148,7 +148,7 @@ def _surfaces(read: Callable[[Source], Iterator[Grid]], source: Source) -> Itera
 
 
 def is_cad(text: str, fmt: str | None = None) -> bool:
-    """Return whether a path is a CAD file, whose faces become patches; of ``-`` only the format says so."""
+    """Return whether a path is a CAD file, whose faces become patches; for ``-`` only `fmt` decides."""
     if is_designation(text) or (text == "-" and fmt is None):  # a stream is read once
         return False
     return (format_named(fmt) if fmt else format_of(source_of(text))).name in ("step", "brep")
@@ -157,7 +157,7 @@ def is_cad(text: str, fmt: str | None = None) -> bool:
 def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
     """Return an iterator over the grids of a path or of ``-``; like `read_shapes` it continues after errors.
 
-    Raises InputError: as `read_shapes`; also a file that has boundaries only.
+    Raises InputError: a file that contains only boundaries; see also `read_shapes`.
     """
     if is_designation(text):
         remedy = f"make a grid of it first: meshonet infer {text} -o grid.vts"
@@ -232,10 +232,10 @@ def _known() -> str:
 
 
 def source_of(text: str) -> Source:
-    """Return the source with the given name, as `open_source`.
+    """Return the source with the given name (see `open_source`).
 
-    Raises InputError: as `open_source`; with a special message for designations without a colon, and for
-    formats that can only be written.
+    Raises InputError: see `open_source`; designations without a colon, and formats that can only be written,
+    have messages of their own.
     """
     try:
         return open_source(text)

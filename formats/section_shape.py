@@ -1,4 +1,4 @@
-"""The airfoil or closed curve that a table of TOML names for a section."""
+"""The airfoil or closed curve of a section that a table of TOML describes."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from meshonet.geometry.shapes.outline import Outline
 
 
 def section_shape(row: Table, folder: Path) -> Airfoil | Outline:
-    """Return the shape of the file or designation that a section names, files looked for in a `folder`.
+    """Return the shape of the file or designation in the table of a section; paths are relative to `folder`.
 
-    Raises InputError: none or two are named, or a file that holds no airfoil or closed curve.
+    Raises InputError: not exactly one of the keys is given; a file without an airfoil or closed curve.
     """
     keys = [key for key in ("airfoil", "outline") if key in row.data]
     remedy = "name one file, or a designation such as naca:2412"

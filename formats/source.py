@@ -74,7 +74,7 @@ class Source:
         return self.data if self.data is not None else self.head(-1)
 
     def text_bytes(self) -> bytes:
-        """Return all bytes of a text file. Raises InputError, having read no more: more than `_MOST_TEXT`."""
+        """Return all bytes of a text file. Raises InputError: it is larger than 16 MB."""
         data = self.head(_MOST_TEXT + 1)
         if len(data) > _MOST_TEXT:
             problem = f"{self.size >> 20} MB are too much for a text of points"

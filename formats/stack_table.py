@@ -17,9 +17,9 @@ _STEEPEST = 85.0
 
 
 def stack_table(data: Table, folder: Path, name: str, more: tuple[str, ...] = ()) -> Stack:
-    """Return the stack of a table, whose files are looked for in a `folder`; it may have `more` keys.
+    """Return the stack of a table, which may also have the keys `more`; paths are relative to `folder`.
 
-    Raises InputError: as `meshonet.formats.stack.stack_of`.
+    Raises InputError: see `meshonet.formats.stack.stack_of`.
     """
     options = stack_options(data, name, ("about", *more))
     about = data.pair("about", QUARTER)
@@ -30,9 +30,9 @@ def stack_table(data: Table, folder: Path, name: str, more: tuple[str, ...] = ()
 
 
 def stack_options(data: Table, name: str, more: tuple[str, ...]) -> dict[str, Any]:
-    """Return what a table says of a stack beside its sections; it may have `more` keys.
+    """Return the arguments of `Stack`, except its sections, of a table; the keys `more` are also allowed.
 
-    Raises InputError: another key, a value that is not known.
+    Raises InputError: any other key; an unknown word; a value that is not a number.
     """
     data.only("kind", "tip", "between", *_SPACINGS, "name", "sections", *more)
     words = (("kind", KINDS, "wing"), ("tip", TIPS, "round"), ("between", BETWEEN, "linear"))
@@ -60,7 +60,13 @@ def _section(row: Table, about: tuple[float, float], before: list[Section], fold
 
 
 def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) -> float:
-    """Return x or y of a section: the given value, or that given by an angle to the previous section."""
+    """Return x or y of the section in `row`, an entry of ``sections``.
+
+    `z` is the section's z, and `before` are the sections that precede it. The value is given by the key
+    `direct` (``x`` or ``y``; default: as in the previous section, 0 in the first) or by the key `angle`
+    (``sweep`` or ``dihedral``), the angle in degrees between the z axis and the line from the previous
+    section. Raises InputError: both keys; an angle in the first section; an angle of more than 85 degrees.
+    """
     if angle not in row.data:
         return row.number(direct, getattr(before[-1], direct) if before else 0.0)
     if direct in row.data:

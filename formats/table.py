@@ -194,9 +194,8 @@ TABLE: dict[str, Format] = {}
 BY_SUFFIX: dict[str, list[Format]] = {}
 """Formats by extension.
 
-If several share an extension, the first one that can write is used for output. For input,
-
-each checks the content, strict formats first; the last one is used if none recognises it.
+If several formats share an extension, the first one that can write is used for output. For input, each format
+checks the content, strict formats first; the last one is used if none recognises it.
 """
 for _record in _FORMATS:
     TABLE[_record.name] = _record

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 MOST_NESTED = 8
 """Largest depth of lists that name lists."""
 LONGEST_LINE = 8192
-"""Bytes; a path has at most 4096."""
+"""Largest length of a line of a list, in bytes; a path has at most 4096."""
 _WITH_FOLDER = (".h5", ".hdf5", ".vtm")
 """Extensions of files to which a folder of the same name belongs."""
 
@@ -58,7 +58,10 @@ class Walk:
         self._example = ""
 
     def files(self) -> Iterator[str | InputError]:
-        """Yield the files that the inputs stand for, or errors; the last one says that none is picked."""
+        """Yield the files that the inputs stand for, or errors.
+
+        If no file is picked, the last error says so.
+        """
         yield from self._of(self._inputs.words)
         if self._patterns and not self._taken:
             pattern = " or ".join(map(printable, self._inputs.pick))

@@ -53,8 +53,8 @@ class Solution:
     boundary : boundary of the grid if it differs from the given one: marching ends at its own far field.
     confidence : expected error of a network's answer.
     first_cells : prescribed first-cell heights by side, in the unit of the boundary.
-    dimensions : those of the blade row whose passage the grid fills, or of the aircraft around which it is.
-    growth : largest ratio of neighbouring cells that the method was to keep to along lines from walls.
+    dimensions : dimensions of the blade row or of the aircraft, if the grid belongs to one.
+    growth : prescribed largest ratio of neighbouring cells along lines from walls.
     """
 
     grid: Grid

@@ -71,9 +71,10 @@ def stage(name: str, seconds: Timings) -> Iterator[None]:
 
 @contextlib.contextmanager
 def filling(name: str, unit: str, marks: Floats) -> Iterator[None]:
-    """Return a context in which a kernel overwrites `marks` (steps,) one by one; watchers are called.
+    """Return a context in which a kernel overwrites the values of `marks` (steps,) one after the other.
 
-    Until then the marks are NaN. After the context `done` does not read them any more.
+    Values that are not overwritten yet are NaN; watchers are called with the number of the others. The
+    context does not read `marks` after its end.
     """
     if not (watchers := _watchers.get()):
         yield

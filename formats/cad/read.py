@@ -20,21 +20,21 @@ _MILLIMETRES = {
 }  # fmt: skip
 """Units of length as STEP files name them."""
 SECONDS, _BYTES_PER_SECOND = 60.0, 1e5
-"""Time limit of reading a file: seconds, and bytes in each further one."""
+"""Time limit for reading a file: seconds, and the number of bytes that extend it by a second."""
 _SEWN = 1e-6
-"""Distance over the size of a file within which edges of separate faces are joined."""
+"""Largest distance at which edges of separate faces are joined, relative to the extent of the model."""
 
 
 def read_step(source: Source) -> Iterator[CadModel]:
     """Yield the model of all faces of a STEP file.
 
-    Raises InputError: Open Cascade is not installed; no STEP file; a file without faces.
+    Raises InputError: Open Cascade is not installed; the file is not a STEP file; it has no faces.
     """
     yield _model(source, _step_shape, "STEP")
 
 
 def read_brep(source: Source) -> Iterator[CadModel]:
-    """Yield the model of all faces of a B-rep file of Open Cascade; errors as `read_step`."""
+    """Yield the model of all faces of a B-rep file of Open Cascade. Raises InputError: see `read_step`."""
     yield _model(source, _brep_shape, "B-rep")
 
 

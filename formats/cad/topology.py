@@ -36,7 +36,7 @@ class _Numbers:
 
 
 def model_of(shape: Any, name: str, notes: tuple[str, ...]) -> CadModel:
-    """Return the faces of a shape. Raises InputError: it has none, or an edge without a vertex."""
+    """Return the faces of a shape. Raises InputError: there are no faces, or an edge has no vertex."""
     vertices, edges = _Numbers(), _Numbers()
     faces = tuple(_face(TopoDS.Face(face), edges) for face in _parts(shape, TopAbs_FACE))
     if not faces:
@@ -48,7 +48,7 @@ def model_of(shape: Any, name: str, notes: tuple[str, ...]) -> CadModel:
 
 
 def open_edges(shape: Any) -> int:
-    """Return the number of edges that bound one face only, once."""
+    """Return the number of edges that occur exactly once in the boundaries of all faces."""
     numbers, uses = _Numbers(), []
     for face in _parts(shape, TopAbs_FACE):
         for edge in _parts(face, TopAbs_EDGE):

@@ -73,7 +73,10 @@ def interfaces(
 
 
 def window_of(block: int, points: Points, counts: Triple) -> FaceWindow | None:
-    """Return the window between two `points` (2, 3) of a block of `counts` nodes; None if outside of it."""
+    """Return the window between two `points` (2, 3) of a block of `counts` nodes.
+
+    None if a point is outside.
+    """
     return _window(block, points) if _inside(points, counts) else None
 
 

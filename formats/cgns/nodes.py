@@ -23,7 +23,7 @@ from meshonet.geometry.errors import InputError
 Node: TypeAlias = h5py.Group
 
 NAME_LENGTH = 32
-"""Most characters of a node's name."""
+"""Largest number of characters of a node's name."""
 VERSIONS = "earliest", "v108"
 """Oldest and newest HDF5 version with which the objects of a file must be compatible."""
 
@@ -74,7 +74,7 @@ def children(node: Node, label: str) -> Iterator[tuple[str, Node]]:
 
 
 def array(node: Node, ndim: int) -> NDArray[Any]:
-    """Return a node's numbers, of rank `ndim`. Raises InputError: none, or of wrong type, rank or size."""
+    """Return a node's numbers, of rank `ndim`. Raises InputError: no numbers; a wrong type, rank or size."""
     place = printable(str(node.name))
     data = own(node, _DATA)
     if not isinstance(data, h5py.Dataset) or data.is_virtual or data.external:
@@ -87,7 +87,7 @@ def array(node: Node, ndim: int) -> NDArray[Any]:
 
 
 def text(node: Node) -> str:
-    """Return a node's text. Raises InputError as `array`."""
+    """Return a node's text. Raises InputError: see `array`."""
     codes = array(node, 1)
     if codes.dtype.itemsize != 1:
         raise InputError("node holds no text", "write the file again", place=printable(str(node.name)))

@@ -28,7 +28,9 @@ _CONDITIONS: dict[Kind, str] = {
 }  # fmt: skip
 """CGNS's names of boundary conditions; other kinds become BCGeneral."""
 _IN_MEMORY = 1 << 24
-"""Most coordinates of a multi-block grid, thousands of small HDF5 objects, whose file is built in memory."""
+"""Largest number of coordinates of a multi-block grid whose file is built in memory, since it consists of
+thousands of small HDF5 objects.
+"""
 _METRE = np.array([0, 1, 0, 0, 0], np.float64)
 """Exponents of mass, length, time, temperature and angle in a coordinate."""
 

@@ -66,8 +66,9 @@ class Colouring:
 
 
 _EVEN = 5e-3
-"""Values that differ less from their middle, as a part of it, get a scale of this half width: the labels of a
-narrower one would differ in digits that nobody reads."""
+"""Smallest half width of the colour scale relative to its middle, so that its labels differ in the first
+digits.
+"""
 
 
 def limits_of(colouring: Colouring | None, shown: Sequence[NDArray[Any]]) -> tuple[float, float]:
@@ -87,7 +88,7 @@ def limits_of(colouring: Colouring | None, shown: Sequence[NDArray[Any]]) -> tup
 
 
 class CellsInView(NamedTuple):
-    """Index ranges of the cells in view, and a mask (i1-i0, j1-j0) of those that are."""
+    """Index ranges that contain the cells in view, and a mask (i1-i0, j1-j0) of the cells in view."""
 
     i0: int
     i1: int
@@ -201,7 +202,7 @@ def _extents(nodes: Floats, mask: Bools, axis: int) -> Floats:
 
 
 def _blocks(sizes: Floats) -> NDArray[np.intp]:
-    """Return node indices, including both ends, that divide `sizes` (n,) into groups of about `_BLOCK`."""
+    """Return node indices, including both ends, that divide `sizes` (n,) into groups of about a pixel."""
     marks = np.floor(np.concatenate([[0.0], np.cumsum(np.minimum(sizes, _BLOCK))]) / _BLOCK)
     # size 0 is out of view, and never in a block with others, whose corners it would drag away
     new = (np.diff(marks[:-1]) > 0) | np.diff(sizes > 0)
@@ -209,7 +210,10 @@ def _blocks(sizes: Floats) -> NDArray[np.intp]:
 
 
 def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
-    """Return the distances (n,) of neighbouring lines i = const and j = const, and the areas of the cells."""
+    """Return lengths (n,) of cells along i and along j, each with the areas (n,) of these cells.
+
+    The cells are a sample of those in view.
+    """
     i, j = np.nonzero(part.mask)
     stride = max(1, len(i) // _SAMPLE)
     i, j = i[::stride] + part.i0, j[::stride] + part.j0
@@ -220,9 +224,10 @@ def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tup
 
 
 def line_step(length: Floats, area: Floats, pixels: float) -> int:
-    """Return the step k between drawn lines that keeps them `_LINE_GAP` apart in half of the coloured area.
+    """Return the step k between drawn lines with which they are 6 pixels apart in half of the coloured area.
 
-    k is one of 1, 2, 5, 10, 20, 50 ...; `length` and `area` are those of `line_gaps`.
+    k is one of 1, 2, 5, 10, 20, 50 ...; `length` and `area` are those of `line_gaps`; `pixels` is the number
+    of pixels in a unit of length.
     """
     length = length * pixels
     order = np.argsort(length)

@@ -27,7 +27,7 @@ them.
 
 
 def steps_of(sheet: CellSheet, axes: Floats, pixels: float, every: int | None) -> tuple[int, int]:
-    """Return how many cells along each direction are drawn as one."""
+    """Return the numbers of cells along both directions of a sheet that are drawn as one."""
     if every:
         return every, every
     flat = sheet.nodes @ axes[:2].T * pixels

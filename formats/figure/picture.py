@@ -31,14 +31,14 @@ _RELATED = {
     "far_field": "the whole grid",
     "irregular": "any metric: these vertices are marked",
 }
-"""What shows where a figure of the whole grid comes from."""
+"""Metrics whose picture shows where a figure of the whole grid occurs, by the figure."""
 
 
 @dataclass(frozen=True)
 class Picture(View):
-    """How a grid is drawn: the view, and the `metric` that colours its cells; None draws lines only.
+    """Settings of a picture: the view, and the `metric` that colours the cells; None draws lines only.
 
-    Raises InputError: as `View`; an unknown metric.
+    Raises InputError: an unknown metric; see also `View`.
     """
 
     metric: str | None = "max_angle"

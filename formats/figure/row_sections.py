@@ -29,23 +29,25 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.linear import symmetric_eigen
 
 _POINTS = 200
-"""Points of the curves of hub and shroud."""
+"""Number of points of the curves of hub and shroud."""
 _STEP = 8
-"""Points of a curve from one of its rough points to the next."""
+"""Number of points of a curve between two of its first, coarse points."""
 _NEWTON = 8
 _BALANCED = 1e-6
-"""Relative difference of the moments of inertia of a ring's nodes across its axis, at most."""
+"""Largest relative difference of the two moments of inertia, about axes normal to the axis, of the nodes of a
+full ring.
+"""
 _ALONG = 1.0 - 1e-9
-"""Least component of the direction of an axis that is one of the coordinates."""
+"""Smallest component, along a coordinate axis, of the direction of an axis that counts as parallel to it."""
 _AT_ONCE = 1 << 13
-"""Nodes that are looked up together."""
+"""Number of nodes that are looked up together."""
 
 
 @dataclass(frozen=True, eq=False)
 class RowSections:
-    """The sections of a grid about the axis of its periodic sides, of a ring, or else x.
+    """Sections of a grid about the axis of its periodic sides, otherwise of a full ring, otherwise x.
 
-    Raises InputError: a grid that is no volume with patches `hub` and `shroud`.
+    Raises InputError: a grid that is not a volume with patches `hub` and `shroud`.
     """
 
     grid: Grid
@@ -58,7 +60,7 @@ class RowSections:
 
     @cached_property
     def pitch(self) -> float:
-        """Angle in radians from a periodic side to the other, a whole turn without these."""
+        """Angle in radians between the periodic sides; 2 pi without periodic sides."""
         return self._axis[0]
 
     @cached_property
@@ -73,7 +75,7 @@ class RowSections:
 
     @property
     def axis_name(self) -> str:
-        """Name of the axis, ``x`` or ``z``, or ``axis`` if it is none of these."""
+        """Name of the axis: ``x``, ``y``, ``z``, or ``axis`` if it is not parallel to any of these."""
         direction = np.abs(self._axis[2])
         k = int(direction.argmax())
         return "xyz"[k] if direction[k] > _ALONG else "axis"
@@ -93,7 +95,7 @@ class RowSections:
 
     @cached_property
     def places(self) -> list[Floats]:
-        """For each block its nodes' distances along the axis and from it, and angles (ni, nj, nk, 3)."""
+        """For each block (ni, nj, nk, 3): position along the axis, radius and angle of its nodes."""
         return [self._cylindrical(block.nodes) for block in self.grid.blocks]
 
     def _cylindrical(self, nodes: Floats) -> Floats:
@@ -148,9 +150,9 @@ class RowSections:
         return found
 
     def at(self, span: float, values: list[Floats] | None) -> Cut:
-        """Return the section at a part of the way from hub to shroud.
+        """Return the section at the fraction `span` of the way from hub to shroud.
 
-        Raises InputError: no cell is there.
+        `values` are cell values of each block. Raises InputError: the section contains no cell.
         """
         hub, shroud = self._curves
         line = hub + span * (shroud - hub)

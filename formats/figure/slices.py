@@ -24,7 +24,7 @@ from meshonet.geometry.errors import InputError
 _SPEC = re.compile(r"\s*([ijkxyz])\s*=\s*([-+.\w]+)\s*", re.ASCII)
 """A slice as text: a direction and a number."""
 _MOST = 12
-"""Number of edges of a cell, each of which a plane may cross."""
+"""Number of edges of a cell, the largest number of corners of a polygon."""
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ def cut_where(distances: Sequence[Floats], flat: Sequence[Floats], values: list[
     ----------
     distances : for each block the signed distances (ni, nj, nk) of its nodes from the surface.
     flat : for each block the coordinates (ni, nj, nk, 2) in which polygons are drawn.
-    values : for each block those of its cells.
+    values : for each block the values of its cells.
     """
     polygons, shown = [], []
     for number, (distance, plane) in enumerate(zip(distances, flat, strict=True)):

@@ -27,7 +27,8 @@ class View:
     slice : slice of a volume: ``i=10``, ``k=-1`` or ``x=.5``; None draws the walls, or the whole boundary of
         a volume without walls.
     seen_from : azimuth and elevation in degrees, for pictures in space; None is `SEEN_FROM`.
-    up : the axis that points upwards there, ``x``, ``y`` or ``z``; azimuth and elevation refer to it.
+    up : axis that points upwards in pictures in space, ``x``, ``y`` or ``z``; azimuth and elevation refer to
+        it.
     span : parts of the span of a blade row, 0 to 1 from hub to shroud, at which its sections are drawn.
     meridional : draw the meridional section of a blade row.
 
@@ -80,7 +81,7 @@ class View:
     def axes(self) -> Floats:
         """Unit vectors (3, 3) that point to the right, upwards and towards the viewer.
 
-        The azimuth is 0 at the first of the two level axes in the order x, y, z, x.
+        The azimuth is 0 on the axis that follows `up` in the cyclic order x, y, z.
         """
         azimuth, elevation = np.radians(self.seen_from or SEEN_FROM)
         level = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
@@ -105,7 +106,7 @@ def check_flat(view: View) -> None:
 def flat_box(zoom: tuple[float, ...] | None, across: int | None = None) -> Box | None:
     """Return the box of a planar picture.
 
-    From a box in space, its extent in the directions other than `across`.
+    A box in space is reduced to its extents in the directions other than `across`, the number of an axis.
 
     Raises InputError: a box in space for a planar grid.
     """

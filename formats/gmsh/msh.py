@@ -69,7 +69,7 @@ def _affine(motion: Motion) -> list[float]:
 
 
 def quotable(name: str) -> str:
-    """Return a name that can stand between double quotes."""
+    """Return `name` with characters replaced that cannot stand between double quotes."""
     return printable(name).replace('"', "'")
 
 

@@ -31,8 +31,8 @@ _AGAIN = "write the file again"
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Yield the shapes that the lines of a mesh enclose.
 
-    Raises InputError: no such mesh, another version, one of three dimensions, lines that are no closed
-    curves.
+    Raises InputError: the file is not a Gmsh mesh, has another version or is three-dimensional; lines do not
+    form closed curves.
     """
     data = source.read_bytes()
     version, binary, order = _format(data)

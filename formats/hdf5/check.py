@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import h5py
 
 TOGETHER = 1 << 17
-"""Bytes of small samples that are read together."""
+"""Number of bytes of small samples that are read together."""
 
 LARGE = 1 << 22
 """Largest sample, in bytes, that is not read in parts."""
@@ -39,11 +39,11 @@ _MOST_SEARCHED = 1 << 28
 _DAMAGE = (OSError, RuntimeError, LookupError, TypeError, ValueError, ArithmeticError)
 """Exceptions that h5py raises for damaged data."""
 _TEXT = np.dtype([("length", "<u4"), ("heap", "<u8"), ("index", "<u4")])
-"""How HDF5 stores a text of variable length: its length, and its place in a heap."""
+"""Storage of a text of variable length in HDF5: length of the text, and position in a heap."""
 
 
 class Checked:
-    """An open dataset: `count` samples of one `topology`, in version 2 of `blocks` blocks."""
+    """An open dataset: `count` samples with the same `topology`; in version 2 with `blocks` blocks each."""
 
     def __init__(self, file: h5py.File, source: Source) -> None:
         self._file, self._source = file, source
@@ -114,7 +114,7 @@ class Checked:
         return np.array(rows[k - first], dtype=np.float64)
 
     def nodes(self, name: str, k: int) -> Floats:
-        """Return row `k` of a checked dataset of nodes; a large one in planar layout, read in parts."""
+        """Return row `k` of a checked dataset of nodes. Large rows are read in parts, into planar layout."""
         data = self._file[name]
         if 8 * int(np.prod(data.shape[1:])) <= LARGE:
             return self.sample(name, k)
@@ -134,7 +134,7 @@ class Checked:
             return data[k : k + 1]
 
     def text(self, name: str, k: int) -> str:
-        """Return text `k` of dataset `name`, empty when there is none."""
+        """Return text `k` of dataset `name`; empty if it does not exist."""
         import h5py
 
         if name not in self._texts:
@@ -151,7 +151,7 @@ class Checked:
         return printable(text) if name in ("names", "titles", "split") else text
 
     def parameter_names(self) -> tuple[str, ...]:
-        """Return the names that go with the columns of 'parameters'."""
+        """Return the names of the columns of the dataset ``parameters``."""
         names = np.atleast_1d(self._dataset("parameters").attrs.get("names", []))
         return tuple(printable(_text(name)) for name in names)
 
@@ -215,7 +215,8 @@ def checked(source: Source) -> Iterator[Checked]:
 def opened(source: Source, *, texts: bool = True) -> Iterator[h5py.File]:
     """Open `source` for reading; errors of the HDF5 library inside the context become InputError.
 
-    Without `texts` no text of variable length may be read, and the file is not searched for damaged ones.
+    If `texts` is False, the file is not searched for damaged texts, and no text of variable length may be
+    read.
     """
     import h5py
 
@@ -253,7 +254,7 @@ def _short(error: Exception) -> str:
 
 
 def check_heaps(source: Source) -> None:
-    """Raise InputError where the sizes in a heap of texts do not lead from its start to its end."""
+    """Raise InputError if the sizes of objects in a heap of texts do not add up to the size of the heap."""
     if source.size > _MOST_SEARCHED:
         return
     with source.open() as stream, contextlib.ExitStack() as stack:

@@ -1,8 +1,8 @@
 """Creation of HDF5 files on disks that may run full.
 
-The HDF5 library cannot close a file that it failed to write to: it tries again when the program ends, and
-crashes. So errors are hidden from it, further writes are ignored, and the first error is raised after it has
-closed the file.
+After a failed write, the HDF5 library cannot close a file: it tries to write again when the program ends, and
+crashes. Errors are therefore hidden from the library and further writes are ignored; the first error is
+raised after the library has closed the file.
 """
 
 from __future__ import annotations

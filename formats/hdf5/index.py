@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 
 OF_PARTS = ("request", "part_size", "size", "common")
-"""Attributes that parts have and the index does not."""
+"""Attributes of parts that the index does not have."""
 _AGAIN = "repeat the command that made it, with {skip_existing}"
 """Remedy for parts that do not match their index."""
 
 
 class Failed(NamedTuple):
-    """A sample that could not be made: its input, its name, the error, and whether to try it again."""
+    """A sample that could not be made: input, name, error, and whether another try may succeed."""
 
     text: str
     member: str
@@ -94,14 +94,14 @@ def _datasets(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a dataset: samples `start` to `stop` of all that the index shows."""
+    """A part of a dataset: samples `start` to `stop` of the index."""
 
     source: Source
     start: int
     stop: int
 
     def check(self, data: Checked) -> None:
-        """Raise InputError where the part holds fewer samples than the index shows."""
+        """Raise InputError if the part contains fewer samples than the index says."""
         shown = self.stop - self.start
         if data.count < shown:
             raise InputError(f"holds {data.count} samples, where the index shows {shown}", _AGAIN)
@@ -150,7 +150,7 @@ def _parts(mappings: Any, index: Path, split: str) -> Iterator[Part]:
 
 
 def write_index(file: Path, index: Path, parts: Sequence[PartFacts]) -> None:
-    """Write the index of `parts` to `file`, which is later renamed to `index`; some of them hold samples.
+    """Write the index of `parts` to `file`, which is later renamed to `index`; some parts have samples.
 
     Raises InputError: the parts differ in size or settings.
     """

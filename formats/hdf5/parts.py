@@ -43,7 +43,7 @@ State = Literal["missing", "complete", "extended"]
 
 
 class Input(NamedTuple):
-    """An input as it was named, and a digest of its content."""
+    """The name of an input as given, and a digest of its content."""
 
     text: str
     digest: str
@@ -95,7 +95,7 @@ class PartFiles:
         raise OtherPartsError("is there already", remedy, source=printable(str(self.path(number))))
 
     def facts(self, number: int) -> PartFacts:
-        """Return the description of a part. Raises as `state`."""
+        """Return the description of a part. Raises InputError: it cannot be read."""
         facts = part_facts(self.path(number))
         if facts.request != self.request:
             self._refuse(facts.path, "was made with other options or another size of parts")

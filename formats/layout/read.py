@@ -34,7 +34,7 @@ MOST_BYTES = 256 << 20
 def read_layout(source: Source) -> Layout:
     """Return the layout of a file.
 
-    Raises InputError, with the place in the file: no JSON, no layout, or parts that do not fit together.
+    Raises InputError, with the place in the file: the file is not JSON or not a layout; parts do not match.
     """
     if source.size > MOST_BYTES:
         raise InputError(f"{source.size >> 20} MB are too much for a layout", "give a file below 256 MB")
@@ -59,7 +59,7 @@ def read_layout(source: Source) -> Layout:
 def layout_of(text: str) -> Layout:
     """Return the layout of the file `text`, or of standard input for ``-``.
 
-    Raises InputError as `read_layout`.
+    Raises InputError: see `read_layout`.
     """
     source = open_source(text)
     with in_source(source.name):

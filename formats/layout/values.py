@@ -82,7 +82,7 @@ class Values:
         return value
 
     def array(self, values: Any, what: str) -> Floats:
-        """Return finite numbers (n,), or pairs of them (n, 2)."""
+        """Return `values` as finite numbers (n,) or (n, 2); `what` names them in errors."""
         try:
             array = np.array(values if values is not None else [None], dtype=np.float64)
         except (ValueError, TypeError, OverflowError):

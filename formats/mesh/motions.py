@@ -47,7 +47,9 @@ def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
 
 
 def like_others(connection: Connection, motions: list[Motion]) -> Connection:
-    """Return a periodic connection with the nearly equal motion of `motions`; without one its own is added.
+    """Return a periodic connection with the nearly equal motion of `motions`.
+
+    If there is none, its motion is added.
 
     All periodic sides with the same motion, or its inverse, thus have bitwise the same motion, so that they
     agree where they meet.

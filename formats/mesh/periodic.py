@@ -137,7 +137,10 @@ def _parts(
 
 
 def cells_beside(connection: Connection, cells: Sequence[Indices]) -> tuple[Indices, Indices]:
-    """Return what `cells` of all blocks are beside both sides of a connection, in one order."""
+    """Return the numbers, from `cells` of all blocks, of the cells on both sides of a connection.
+
+    Cells that touch each other have the same position in both arrays.
+    """
     own, donor = cells_at(connection, lambda block, side: face_of(cells[block][..., None], side))
     return own[..., 0], donor[..., 0]
 

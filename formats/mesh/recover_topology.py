@@ -18,12 +18,11 @@ _SEAM = 1e-6
 def boundary_of(grid: Grid) -> Shape:
     """Return the four outer edges of `grid`, with its topology, patches and name.
 
-    For many blocks, their domain.
+    For a multi-block grid, the domain is returned; its blocks can be used again if they share complete sides.
+    A three-dimensional grid is returned as a shape.
 
-    The blocks can be used again if all of them share whole sides. A three-dimensional grid is a shape itself.
-
-    Raises InputError: the edges are not a boundary, for example because two neighbouring nodes coincide; as
-    `layout_of`.
+    Raises InputError: the edges are not a boundary, for example because two neighbouring nodes coincide; see
+    also `layout_of`.
     """
     if grid.form != "plane":
         return SpatialShape(grid)
@@ -97,7 +96,7 @@ def is_left_handed(nodes: Floats) -> bool:
 
 
 def known_topology(text: str) -> Topology:
-    """Return `text` as a topology. Raises InputError: it is none."""
+    """Return `text` as a topology. Raises InputError: it is not the name of a topology."""
     for topology in TOPOLOGIES:
         if text == topology:
             return topology

@@ -35,7 +35,7 @@ _SURFACES = ContextVar("_SURFACES", default=False)
 
 @contextmanager
 def surfaces_wanted() -> Iterator[None]:
-    """Within it flat patches are read as surfaces, with all three coordinates."""
+    """Return a context in which flat patches are read as surfaces, with all three coordinates."""
     token = _SURFACES.set(True)
     try:
         yield

@@ -69,7 +69,7 @@ def _described(block: FileBlock) -> Floats:
 def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Grid:
     """Return the grid of a file with one block, using its facts if there are any.
 
-    Raises InputError: as `grids_of_file`; facts that do not match the nodes.
+    Raises InputError: facts that do not match the nodes; see also `grids_of_file`.
     """
     if facts.get("topology"):
         return grid_with(nodes_by_facts(coordinates, facts), facts, name)

@@ -30,7 +30,7 @@ from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, 
 from meshonet.geometry.shapes.shape import Shape
 
 MOST_EDGES = 400_000
-"""Largest number of edges; a longer boundary is taken for a mistake."""
+"""Largest number of edges; more edges are taken for a mistake."""
 NAMELESS = "boundary"
 """Name of edges without a name if other edges have names."""
 
@@ -54,16 +54,16 @@ class MeshBoundary:
 def shapes_of(surface: MeshBoundary, name: str) -> Iterator[Shape]:
     """Yield the shapes that the closed curves of `surface` form.
 
-    The nodes of a four-sided domain are kept if opposite sides have equal counts, without cells if none is of
-    two points; so are those of a body and
-    a far field with an O grid between them. Corners come from the cells, or from names that change four
-    times; the south side contains the first edge of the file.
+    The nodes of a four-sided domain are kept if opposite sides have equal counts and, in a file without
+    cells, each side has three nodes or more. The nodes of a body and a far field with an O grid between them
+    are also kept. Corners come from the cells, or from names that change four times; the south side contains
+    the first edge of the file.
 
-    Raises InputError: edges that do not form closed curves; curves inside a hole.
+    Raises InputError: too few or too many edges; edges that do not form closed curves; curves inside a hole.
     """
     edges = surface.edges or {"": _free_edges(surface.cells)}
     count = sum(map(len, edges.values()))
-    if not 3 <= count <= MOST_EDGES:
+    if not 1 <= count <= MOST_EDGES:
         raise InputError(f"has {count} boundary edges", f"give a mesh with 3 to {MOST_EDGES} of them")
     for rows in (*edges.values(), *surface.cells):
         if rows.size and not 0 <= rows.min() <= rows.max() < len(surface.points):
@@ -72,6 +72,8 @@ def shapes_of(surface: MeshBoundary, name: str) -> Iterator[Shape]:
     if not (np.abs(surface.points[used]) < LARGEST).all():
         raise InputError("a coordinate is not finite or far too large", "check its numbers")
     loops = closed_loops(edges, surface.points)
+    if count < 3:
+        raise InputError(f"has {count} edges", "a closed curve needs at least 3")
     groups = nested([surface.points[loop.nodes] for loop in loops])
     for number, (outer, holes) in enumerate(groups, start=1):
         called = name if len(groups) == 1 else f"{name}-{number}"
@@ -95,7 +97,7 @@ def noted(shape: Shape, notes: tuple[str, ...]) -> Shape:
 
 
 def left_out(kinds: Iterable[str]) -> tuple[str, ...]:
-    """Return the note on elements of a drawing, of these kinds, that are no curves."""
+    """Return the note on elements of a drawing that are left out because their `kinds` are not curves."""
     counts = Counter(kinds)
     if not counts:
         return ()
@@ -237,7 +239,7 @@ def _labelled(shape: Shape, loops: list[EdgeLoop], points: Floats) -> Shape:
 def flat(points: Floats) -> Floats:
     """Return x, y (n, 2) of points (n, 2 or 3).
 
-    Raises InputError: they do not lie in a plane z = constant.
+    Raises InputError: the points are not in a plane z = constant.
     """
     if points.shape[1] > 2 and len(points):
         z = points[:, 2]

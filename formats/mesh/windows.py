@@ -93,7 +93,7 @@ def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | 
 
 
 def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
-    """Return the patch that a face describes; None and errors as for `part_of`."""
+    """Return the patch that a face describes. None and errors: see `part_of`."""
     part = part_of(face.window, lattices)
     if part is None:
         return None
@@ -103,7 +103,7 @@ def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
 
 
 def connection_of(pair: Pair, lattices: Sequence[IndexedNodes]) -> Connection | None:
-    """Return the connection that a pair describes, without a motion; None and errors as for `part_of`.
+    """Return the connection that a pair describes, without a motion. None and errors: see `part_of`.
 
     Also raises InputError: indices that do not correspond.
     """

@@ -72,7 +72,10 @@ def all_faces(grid: Grid, numbers: Sequence[Indices], parts: Mapping[str, NamedF
 
 
 def whole(nodes: NDArray[np.integer[Any]]) -> Bools:
-    """Return which faces (f, 4) have an area: three different nodes, and no equal opposite ones."""
+    """Return a mask (f,) of the faces (f, 4) with an area.
+
+    These have three different nodes, and no equal opposite nodes.
+    """
     several = (nodes != np.roll(nodes, -1, axis=1)).sum(axis=1) >= _LEAST
     return np.asarray(several & (nodes[:, 0] != nodes[:, 2]) & (nodes[:, 1] != nodes[:, 3]))
 

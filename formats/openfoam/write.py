@@ -41,8 +41,8 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
 
     The planes of a planar grid, or of one layer of cells between symmetry planes, become a patch of type
     ``empty``. Cells at sides that collapse to a line or point are prisms and pyramids. An existing mesh is
-    replaced when the new one is complete. If periodic sides are turned, all cells are a zone with the name of
-    the grid, for a frame that turns with them.
+    replaced when the new one is complete. If periodic sides are connected by a rotation, all cells form a
+    zone with the name of the grid, for use with a rotating frame.
     """
     grid = only_one(grids, "a case")
     low, high = grid.box

@@ -9,7 +9,7 @@ from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.errors import InputError
 
 MOST_BYTES = 64 << 20
-"""Largest drawing that is read; no outline needs as many curves."""
+"""Largest drawing that is read, in bytes."""
 SAG = 1e-5
 """Largest distance of a chord from its curve, relative to the extent."""
 MEET = 1e-6
@@ -25,7 +25,9 @@ def extent_checked(points: Floats) -> float:
 
 
 def joined(lines: list[tuple[str, Floats]]) -> MeshBoundary:
-    """Return curves, each a name and points (n, 2), as edges between points; coincident ends are one point.
+    """Return curves, each a name and points (n, 2), as edges between points.
+
+    Coincident ends become one point.
 
     Raises InputError: too many points.
     """

@@ -138,7 +138,7 @@ def _arc(a: Floats, b: Floats, rx: float, ry: float, degrees: float, large: bool
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Yield the shapes that the curves of a drawing enclose.
 
-    Raises InputError: no SVG drawing; curves that are not closed.
+    Raises InputError: the file is not an SVG drawing; curves that are not closed.
     """
     from xml.etree.ElementTree import ParseError, fromstring
 

@@ -22,8 +22,8 @@ _ORDERS = {"<": "little", ">": "big"}
 def candidates(data: memoryview, wanted: Options = frozenset()) -> list[Candidate]:
     """Return all layouts with exactly the length of the file, including planes only if they are `wanted`.
 
-    Fortran records of one plane each are recognised as planes without that. Raises InputError: no layout
-    fits.
+    Fortran records of one plane each are recognised as planes even if these are not wanted. Raises
+    InputError: no layout fits.
     """
     fitting: list[Candidate] = []
     tried: list[tuple[int, str]] = []

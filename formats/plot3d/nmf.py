@@ -1,6 +1,6 @@
 """NASA's neutral map file, ``.nmf``: boundary conditions and connections of the blocks of a Plot3D file.
 
-It belongs to a Plot3D file of the same grid, planar or in space. Faces have numbers: 1 and 2 at k = 1 and
+A map belongs to a Plot3D file of the same grid, planar or in space. Faces have numbers: 1 and 2 at k = 1 and
 kmax, 3 and 4 at i = 1 and imax, 5 and 6 at j = 1 and jmax. The two ranges of a face run along the following
 indices in cyclic order: (i, j), (j, k), (k, i). The ranges of the second of two connected faces are in the
 order of the first, or exchanged. Names of patches are in comments before their rows. The format does not
@@ -134,7 +134,7 @@ class Map(NamedTuple):
 def read_map(path: Path, dims: Sequence[tuple[int, int, int]]) -> Map:
     """Return the content of the map at `path`, for blocks with node counts `dims`.
 
-    Raises InputError: it cannot be read, or belongs to blocks of other sizes.
+    Raises InputError: the map cannot be read, or belongs to blocks of other sizes.
     """
     name = printable(path.name)
     try:

@@ -1,1 +1,1 @@
-"""Files of blade rows: profiles, hub and shroud, and what TOML says of them."""
+"""Files of blade rows: profiles, hub and shroud, and their description in TOML."""

@@ -1,8 +1,8 @@
-"""Points in space, in blocks: profiles of blades, hub and shroud.
+"""Text files with blocks of points in space: profiles of blades, hub and shroud.
 
-TurboGrid's ``.curve`` files, lists as NASA's of Rotor 37, and CSV: three numbers a line, blocks divided by
-blank lines or lines of text such as ``# Profile 1 at 0.00%``. Marks of edges (``le1``, ``te2``) are left out,
-since edges are looked for.
+These are TurboGrid's ``.curve`` files, lists such as NASA's of Rotor 37, and CSV. A line has three numbers;
+blank lines, or lines of text such as ``# Profile 1 at 0.00%``, divide blocks. Marks of leading and trailing
+edges (``le1``, ``te2``) are ignored, since the edges are computed.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError, in_source
 
 MOST_POINTS = 200_000
-"""More are a mistake."""
+"""Largest number of points; more points are taken for a mistake."""
 _SPLITTER = re.compile(r"\bsplitter\b", re.IGNORECASE)
-"""In the heading of a second blade in a file of TurboGrid."""
+"""Word in the heading of a second blade in a file of TurboGrid."""
 _BETWEEN = re.compile(r"[\s,;|]+")
 _UNIT = re.compile(r"[\[(][^\])]*[\])]")
 _MARK = re.compile(r"[\s,;]+(?:le|te)\d*[\s,;]*$", re.IGNORECASE | re.MULTILINE)
@@ -36,16 +36,17 @@ def point_blocks(source: Source, orders: Sequence[str]) -> list[Floats]:
     Parameters
     ----------
     source : the file.
-    orders : the columns that it may have, ``x, y, z``, ``x, r, theta`` or ``x, r``, of different counts.
+    orders : possible orders of the columns, ``x, y, z``, ``x, r, theta`` or ``x, r``; each with another
+        number of columns.
 
-    Raises InputError: a line of another count of numbers, with its place; no block; a line that names the
+    Raises InputError, with the place: a line with another number of columns; no block; a line that names the
     columns in another order; the heading of a splitter.
     """
     return [points for points, _ in placed_blocks(source, orders)]
 
 
 def placed_blocks(source: Source, orders: Sequence[str]) -> list[tuple[Floats, str]]:
-    """Return the blocks of a file as `point_blocks`, and where each is: ``lines 2 to 161 of a.curve``."""
+    """Return the blocks of a file (see `point_blocks`), each with its place: ``lines 2 to 9 of a.curve``."""
     with in_source(source.name):
         text = decode(source.text_bytes())
         lines = read_lines(_MARK.sub("", text))

@@ -1,4 +1,4 @@
-"""Blade rows in TOML: what ``meshonet stack`` reads where ``kind = "row"``.
+"""Blade rows in TOML, an input of ``meshonet stack`` with ``kind = "row"``.
 
 ::
 
@@ -60,10 +60,10 @@ _PERCENT = re.compile(r"\s*([0-9.eE+-]+)\s*%\s*")
 
 
 def read_row(data: Table, source: Source) -> Row:
-    """Return the row that a table of TOML describes, in a `source` beside which its files are.
+    """Return the row that a table of TOML describes; paths are relative to the folder of `source`.
 
-    Raises InputError: a key that is not known, a value that does not fit, with its place; files that cannot
-    be read; what `Row` raises.
+    Raises InputError, with the place: an unknown key; an invalid value; a file that cannot be read; see also
+    `Row`.
     """
     data.only(*KEYS)
     folder = source.path.parent if source.path else Path()

@@ -34,7 +34,7 @@ sniff = partial(mostly_rows, counts=(2,), least=4)
 
 
 def read_shapes(source: Source) -> Iterator[Airfoil]:
-    """Yield the airfoil of a file. Raises InputError, with the line: there is none."""
+    """Yield the airfoil of a file. Raises InputError, with the line: the file is not an airfoil."""
     yield parse(decode(source.text_bytes()), source.name, source.stem)
 
 

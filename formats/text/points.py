@@ -40,7 +40,7 @@ MOST_POINTS = 100_000
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Yield the shapes of a file. Raises InputError, with the line: there is none."""
+    """Yield the shapes of a file. Raises InputError, with the line: the file contains no shape."""
     yield from parse(decode(source.text_bytes()), source.name, source.stem)
 
 

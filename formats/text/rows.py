@@ -41,8 +41,8 @@ _MEANT = re.compile(
     r"[+-]?(?:nan|inf(?:inity)?|\*{2,}|(?=[^.]*\.?\w*\d)[\dOolI]*\.[\w.]*(?:e[+-]?\w+)?|\d+(?:_\d+)+)",
     re.IGNORECASE,
 )
-"""A word that was probably meant as a number: not finite, Fortran's stars, or digits with other
-characters.
+"""A word that was probably meant as a number: a number that is not finite, Fortran's stars, or digits mixed
+with other characters.
 """
 _HTML = re.compile(r"</?[a-z!][^<>]*>|&#?\w+;", re.IGNORECASE)
 """A tag or an entity."""
@@ -116,7 +116,7 @@ def _lines(text: str) -> tuple[Line, ...]:
 
 
 def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
-    """Return whether four fifths of the rows of `head`, at least `least`, have `counts` of values."""
+    """Return whether four fifths of the rows of `head`, at least `least`, have one of these `counts`."""
     try:
         lines = read_lines(decode(head))
     except InputError:
@@ -131,8 +131,8 @@ def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
 def table(lines: list[Line]) -> list[list[Line]]:
     """Return the rows of a text in blocks, which are separated by blank lines and prose.
 
-    Two numbers followed by words are a row if they are next to one. `left_out` lists the lines next to rows
-    that are ignored.
+    Two numbers followed by words count as a row if a row precedes or follows. `left_out` lists the ignored
+    lines next to rows.
 
     Raises InputError: a damaged line without prose between it and the next row; a broken line between two
     rows.

@@ -17,11 +17,9 @@ from meshonet.geometry.quality.metrics import metrics_of as metrics_of_cells
 
 
 def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> None:
-    """Write the only grid of `grids` to `path`.
+    """Write the only grid of `grids` to `path`, a ``.vts`` file, or with `many` a ``.vtm`` file.
 
-    With `many` to a ``.vtm`` file, which may have several blocks.
-
-    Raises InputError: several blocks for a file of one.
+    Raises InputError: a grid of several blocks for a ``.vts`` file.
     """
     if many:
         vtm.write_grids(path, grids, cell_data=metrics_of)

@@ -35,7 +35,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
 
 def read_block(source: Source) -> tuple[list[Floats], Facts]:
-    """Return x, y, z, each (ni, nj, nk), and the texts of the file. Raises as `read_grids`."""
+    """Return x, y, z, each (ni, nj, nk), and the texts of the file. Raises InputError: see `read_grids`."""
     raw = source.buffer()
     root, start, end = _parsed(raw)
     dataset = _child(root, "StructuredGrid")

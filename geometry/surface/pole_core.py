@@ -28,8 +28,10 @@ _SIZE = 0.35
 _ROUNDING = 0.5
 """Exponent of the map from the square to the core: 0 keeps the square's corners, 1 makes a disc's rim."""
 _EVEN = 0.25
-"""Share a of the map x sqrt(1 - a y^2), y sqrt(1 - a x^2) from the square to an even core: with 0 it is the
-square, with 1/2 a disc, whose corners are flat. Here they have 127 degrees, as with `_ROUNDING`."""
+"""Constant a of the map x sqrt(1 - a y^2), y sqrt(1 - a x^2) from the square to an even core: a = 0 keeps the
+square, a = 1/2 makes a disc, whose corners are flat. With this value corners have 127 degrees, as in cores
+that are not even.
+"""
 _NOSE = 0.65
 """Smallest ratio of the width of a column to its distance from the pole, relative to the largest: behind it
 ends the nose.

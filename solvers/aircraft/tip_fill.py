@@ -16,7 +16,10 @@ _MOST_ROWS = 200
 
 
 def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
-    """Return nodes of the ring (n, rows + 1, 3) and of the core (m, k, 3) inside a closed `loop` (n, 3).
+    """Return nodes of the ring (n, rows + 1, 3) and of the core (m, k, 3) inside a closed `loop`.
+
+    `loop` (n, 3) repeats its first node at its end; it runs from the trailing edge along the upper side
+    first.
 
     The outermost cells of the ring are `first` long, so that they match those of a collar outside, or shorter
     where the section is too thin for them.
@@ -38,8 +41,8 @@ def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
 def half_tip_patches(half: Floats, first: float) -> tuple[Floats, Floats]:
     """Return half the patches inside the tip of a fin.
 
-    `half` (n, 3) are the nodes of half its section, from nose to edge. The patches are those of a wing,
-    rotated.
+    `half` (n, 3) are the nodes of half its section, from nose to trailing edge, in the plane of symmetry at
+    y = 0. The patches are computed as those of a wing with y and z exchanged.
     """
     flat = half[:, [0, 2, 1]]
     loop = np.concatenate([flat[::-1], flat[1:] * [1.0, -1.0, 1.0]])

@@ -19,14 +19,14 @@ _REMEDY = "use more nodes {around}, or a larger {first_cell}"  # where cells fol
 _HIGHEST = 0.1
 """Largest height of first cells, in chords of the smallest section."""
 _REACH = 0.8
-"""Largest distance of the tip of a wing from the middle of the body, over that of the far field."""
+"""Largest distance of the tip of a wing from the middle of the body, relative to that of the far field."""
 
 
 def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) -> Result:
     """Return the grid around an aircraft or its half, measured.
 
-    Raises InputError: a wing that does not begin in the body, does not leave it or reaches the far field;
-    NoValidGridError: cells are folded, and that was not allowed.
+    Raises InputError: a wing that does not begin in the body, does not leave it or reaches the far field.
+    Raises NoValidGridError: cells are folded, unless folded cells are allowed.
     """
     request = request or aircraft_request()
     seconds: dict[str, float] = {}

@@ -1,4 +1,4 @@
-"""Decides which shapes become multi-block grids, and which options apply to these."""
+"""Decides which shapes become multi-block grids, and which options apply to multi-block grids."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def smooths(shape: DomainShape, request: GridRequest) -> bool:
 def smoothed(grid: Grid, request: GridRequest) -> Solution:
     """Return a given multi-block grid smoothed, then `request.refine` times refined and smoothed again.
 
-    Raises InputError: as `smooth`; with refinement, a connection that covers only a part of a side.
+    Raises InputError: see `smooth`; with refinement, also a connection that covers only a part of a side.
     """
     from meshonet.solvers.smoothing.refine import refined
     from meshonet.solvers.smoothing.smooth import ITERATIONS, smooth
@@ -68,7 +68,7 @@ def smoothed(grid: Grid, request: GridRequest) -> Solution:
 
 
 def check_asked(request: GridRequest) -> None:
-    """Raise InputError for invalid options of multi-block grids, or options of single blocks beside them."""
+    """Raise InputError for invalid options of multi-block grids, or for options of single blocks."""
     if not request.asks_for_blocks:  # names of walls alone, maybe of a single block of any counts
         _block_request(request, None)
         return
@@ -79,8 +79,8 @@ def check_asked(request: GridRequest) -> None:
 def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str, float]]:
     """Return the blocks that `request` makes of a shape, and the seconds of each stage.
 
-    Without a requested number of cells, the layout keeps that of the decomposition. Raises InputError: as
-    `as_blocks`; SolverError: the decomposition fails.
+    If the request has no number of cells, the layout has the number of cells of the decomposition. Raises
+    InputError: see `as_blocks`. Raises SolverError: the decomposition fails.
     """
     seconds: dict[str, float] = {}
     with stage("load", seconds):
@@ -92,7 +92,7 @@ def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str
 
 
 def block_request(request: GridRequest) -> BlockRequest:
-    """Return the options of `request` for multi-block grids. Raises InputError: as `BlockRequest`."""
+    """Return the options of `request` for multi-block grids. Raises InputError: see `BlockRequest`."""
     sampling = request.sampling
     if sampling.nj not in (None, sampling.ni):
         problem = f"{sampling.ni} x {sampling.nj} nodes for many blocks"

@@ -36,8 +36,8 @@ def solve_coarse(
 
     With `smooth`, sweeps of Winslow's equations at full resolution follow near kinks of the boundary: always
     for solutions of these equations and for folded grids, otherwise if they improve angles. The edges equal
-    those of `boundary` bitwise; residual and cycles are those of the coarse solution. Raises InputError: n <
-    9.
+    those of `boundary` bitwise; residual and cycles are those of the coarse solution. Raises InputError: `n`
+    is below 9.
     """
     check_coarse(n)
     counts = min(n, boundary.ni), min(n, boundary.nj)

@@ -18,7 +18,7 @@ _REMEDY = "go part of the way first, or make the grid of the new shape anew"  # 
 def make_deformed(
     grid: Grid, walls: Mapping[str, NewWall] | NewWall, request: DeformRequest | None = None
 ) -> Result:
-    """Return `grid` deformed to its new walls, with its quality.
+    """Return `grid` deformed to the new walls `walls`, with its quality.
 
     Raises InputError: see `meshonet.solvers.deformation.deform.deform`; NoValidGridError: folded cells,
     unless these are allowed.

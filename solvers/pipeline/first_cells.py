@@ -1,4 +1,4 @@
-"""First-cell heights of a request off the sides of a block: around a body, or off the walls of four sides."""
+"""First-cell heights of a request: at a body, or at the walls of a four-sided domain."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class FirstCells:
     multiple: int = 1  # of which the number of rows is one then
 
     def in_chords(self) -> float:
-        """Return the height off a body. Raises InputError: none, or heights of single walls."""
+        """Return the height at a body. Raises InputError: no height, or heights of single walls."""
         return self.prescribed.height() or 0.0
 
     def heights(self, boundary: Boundary) -> Heights:
@@ -53,7 +53,7 @@ class FirstCells:
         )
 
     def note(self, boundary: Boundary) -> str:
-        """Return how the heights follow from y+, as text; empty without one."""
+        """Return a text that explains how the heights follow from y+; empty without y+."""
         if boundary.around_body:
             where = f"and x/c {self.prescribed.chord_fraction:g}"
             return self.prescribed.height_note(where, in_unit=" chords")
@@ -67,10 +67,11 @@ def sides_called(boundary: Boundary, name: str) -> list[Side]:
 
 
 def wall_sides(boundary: Boundary) -> list[Side]:
-    """Return the sides of a four-sided boundary that have layers where no walls are named.
+    """Return the sides of a four-sided boundary that get layers if the request names no walls.
 
-    They are south and north, except those whose names say that they are no walls, and sides that are all
-    called walls; or else west and east, with the same exception. Raises InputError: there are none.
+    South and north get layers, except sides whose names exclude a wall, such as ``inlet``; sides with the
+    name of a wall along their whole length also get layers. If there is no such side, west and east are tried
+    with the same exception. Raises InputError: no side is left.
     """
     patches = {side: [p for p in boundary.patches if p.side == side] for side in SIDES}
     possible = [side for side in SIDES if any(patch.may_be_wall for patch in patches[side])]
@@ -95,8 +96,8 @@ def along_walls(boundary: Boundary, request: OneBlock) -> bool:
 def has_walls_on_sides(shape: Shape, request: GridRequest) -> bool:
     """Return whether the walls that a request names are whole sides of a four-sided domain made as one block.
 
-    They are opposite unless the request has counts of nodes in both directions or asks for one block. Any
-    other domain becomes many blocks; so does one that is to be refined, which blocks with layers can be.
+    If the request neither asks for one block nor has node counts in both directions, the walls must also be
+    opposite sides, and the request must not refine; otherwise the domain becomes many blocks.
 
     Raises InputError: a four-sided domain has no wall of such a name, or not along a whole side of the block.
     """

@@ -2,7 +2,7 @@
 
 ::
 
-    blade   O grids marched from the sections, between two walls, ``hub`` and ``shroud``. Twist and scaling,
+    blade   O grids marched from the sections, between the walls ``hub`` and ``shroud``. Twist and scaling,
             and the differences between the grids, decrease away from the blade, so that the far field is a
             straight cylinder.
     duct    one block if all sections have four sides, else five; ``inlet`` and ``outlet`` at the ends.

@@ -112,9 +112,9 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
 def make_grids_of(
     keys: Iterable[K], request: GridRequest, shape_of: Callable[[K], Shape]
 ) -> Iterator[tuple[K, Result | Exception]]:
-    """Yield each of the keys with the grid of its shape, or with the error, as `make_grids`.
+    """Yield each of the keys with the grid of its shape, or with the error (see `make_grids`).
 
-    Raises InputError: the method does not have such settings.
+    `shape_of` returns the shape of a key. Raises InputError: a setting that the method does not have.
     """
     method = method_of(request)
     keys = iter(keys)

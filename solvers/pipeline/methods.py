@@ -132,12 +132,12 @@ class MethodEntry(NamedTuple):
 
     @property
     def solves(self) -> bool:
-        """Whether it solves equations, minimises a functional or marches."""
+        """Whether the method solves equations, minimises a functional or marches."""
         return self.kind == "solved"
 
     @property
     def algebraic(self) -> bool:
-        """Whether its grids are explicit formulas of the boundary."""
+        """Whether the grids of the method are explicit formulas of the boundary."""
         return self.kind == "algebraic"
 
     @property
@@ -188,7 +188,7 @@ METHODS: Mapping[str, MethodEntry] = MappingProxyType(
 def method_named(name: str, **settings: Any) -> Method:
     """Return the method with the given name and settings.
 
-    Raises InputError: an unknown method; a setting that it does not have.
+    Raises InputError: an unknown method; a setting that the method does not have.
 
     >>> method_named("winslow", tol=1e-8).settings
     {'tol': 1e-08}

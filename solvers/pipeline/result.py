@@ -81,7 +81,7 @@ def judged(
 ) -> Result:
     """Return a solution with its quality; the time of the measurement is added to `seconds`.
 
-    The grid's provenance has the changes of the shape. A note says where cells grow by more than the limit of
+    The provenance of the grid lists the changes of the shape. A note says where cells grow by more than the
     the solution, or by more than `JUMP` along a wall if it has none. Raises NoValidGridError: folded cells,
     unless these are allowed; the error has the given `remedy`.
     """

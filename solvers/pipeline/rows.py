@@ -37,8 +37,8 @@ _REMEDY = "use more {cells}, or a larger {first_cell}"  # where cells fold
 def make_row(row: Row, request: RowRequest | None = None) -> Result:
     """Return the grid of a row's passage, measured.
 
-    Raises InputError: parameters and row do not go together; NoValidGridError: cells are folded, and that was
-    not allowed.
+    Raises InputError: parameters that do not suit the row. Raises NoValidGridError: cells are folded, unless
+    folded cells are allowed.
     """
     request = request or RowRequest()
     if not 1 <= request.copies <= row.blades:

@@ -24,16 +24,16 @@ if TYPE_CHECKING:
     from meshonet.geometry.shapes.domain_shape import DomainShape
 
 MARCHING = ("best", "auto", "hyperbolic")
-"""Methods by which grids with layers around airfoils are marched."""
+"""Method names with which grids with layers around airfoils are marched."""
 THIN_BASE = 0.005
-"""Base in chords up to which C grids without layers close it with a wedge, unless it is asked for."""
+"""Largest height of a base, in chords, that C grids without layers close with a wedge by default."""
 
 _TURNED = "xi runs along the walls with layers, which are the sides south and north"
-"""Note on a four-sided domain whose walls, by their names, are at its left or right."""
+"""Note on a four-sided domain whose walls, according to the names of its sides, are west or east."""
 
 
 def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainShape | SpatialShape:
-    """Return the boundary of a shape; a three-dimensional or multi-block shape is returned itself.
+    """Return the boundary of a shape; three-dimensional and multi-block shapes are returned unchanged.
 
     For an airfoil whose blunt base is kept in a C grid, the result is the line around the base and its wake.
     """
@@ -99,8 +99,8 @@ def _check_refined(ni: int, nj: int, halvings: int) -> None:
 def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
     """Return whether the request is a marched C grid that keeps the blunt base of an airfoil.
 
-    Without layers, a thin base and the base of a grid that is solved for and refined are kept only if the
-    request says so.
+    Without layers, thin bases, and bases of grids that are refined after the first solution, are kept only if
+    the request says so.
     """
     sampling = request.sampling
     if request.method not in MARCHING or sampling.te not in ("auto", "exact"):

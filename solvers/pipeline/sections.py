@@ -40,10 +40,10 @@ def section_grid(
     """Return the planar grid inside a closed curve or domain, and notes; a given grid is returned unchanged.
 
     A circle gets five blocks, a four-sided outline one, and other shapes those of the decomposition. All
-    sides are walls with a first cell, or those that the request names. `around` is the number of cells around
-    a circle.
+    sides, or those that the request names, are walls with a first cell. `around` is the number of cells
+    along a circle.
 
-    Raises InputError: parameters that do not suit the shape; as `make_grid`.
+    Raises InputError: parameters that do not suit the shape; see also `make_grid`.
     """
     five_blocks = isinstance(shape, Circle) and not (
         request.cell_size or request.layout or request.walls or request.by_wall

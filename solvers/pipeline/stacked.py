@@ -1,4 +1,4 @@
-"""Which grid sections become: around a wing or blade, in a duct or a blade row, around an aircraft."""
+"""Selects the kind of grid for sections: around a wing, a blade or an aircraft, in a duct or a blade row."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from meshonet.solvers.rows.request import row_request
 from meshonet.solvers.stacking.request import stack_request
 
 Sections: TypeAlias = Stack | Row | Aircraft
-"""What `meshonet stack` takes."""
+"""Inputs of `meshonet stack`."""
 
 
 def with_tip(what: Sections, tip: Tip | None, *, surface: bool = False) -> Sections:
-    """Return what is given, a stack with a tip of this shape if it is not None.
+    """Return `what`; if it is a stack and `tip` is not None, with a tip of this shape.
 
-    Raises InputError: a tip of a row or an aircraft; a `surface` of a row, which has none.
+    Raises InputError: a tip for a row or an aircraft; `surface` for a row, which has no surface grid.
     """
     if isinstance(what, Stack):
         return what.with_tip(tip)
@@ -35,9 +35,11 @@ def with_tip(what: Sections, tip: Tip | None, *, surface: bool = False) -> Secti
 
 
 def stacked_surface(what: Stack | Aircraft, **parameters: Any) -> tuple[Grid, tuple[str, ...]]:
-    """Return the surface patches of a wing or an aircraft, and notes; the parameters are those of its kind.
+    """Return the surface patches of a wing or an aircraft, and notes.
 
-    Raises InputError: as `stack_surface` and `make_aircraft`; NoValidGridError: as the latter.
+    Parameters are the fields of `StackRequest` or `AircraftRequest`.
+
+    Raises InputError: see `stack_surface` and `make_aircraft`. Raises NoValidGridError: see `make_aircraft`.
     """
     if isinstance(what, Stack):
         return stack_surface(what, stack_request(**parameters))
@@ -46,10 +48,12 @@ def stacked_surface(what: Stack | Aircraft, **parameters: Any) -> tuple[Grid, tu
 
 
 def make_stacked(what: Sections, **parameters: Any) -> Result:
-    """Return the volume grid of what is given, measured; the parameters are those of its kind.
+    """Return the volume grid of a stack, a row or an aircraft, measured.
 
-    Raises InputError: a parameter that this kind does not have, or as `make_stack`, `make_row` and
-    `make_aircraft`; NoValidGridError: as these.
+    Parameters are the fields of `StackRequest`, `RowRequest` or `AircraftRequest`.
+
+    Raises InputError: a parameter that the request does not have; see also `make_stack`, `make_row` and
+    `make_aircraft`. Raises NoValidGridError: see these functions.
     """
     if isinstance(what, Aircraft):
         return make_aircraft(what, aircraft_request(**parameters))

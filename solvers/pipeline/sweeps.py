@@ -16,7 +16,8 @@ from meshonet.solvers.stages import stage
 from meshonet.solvers.sweeping.sweep import Sweep, check_planes, reach_of, self_crossing, sweep, walled
 
 SMALL = 0.1
-"""Size of the last section relative to the first, or the other way round, below which it may be a mistake."""
+"""Ratio of the sizes of the smaller and the larger end section below which a note asks whether this is meant.
+"""
 _REMEDY = "use a wider bend, a smaller section or more {planes}"  # where cells fold
 
 

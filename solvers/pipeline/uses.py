@@ -19,13 +19,15 @@ def _row(*options: str) -> frozenset[str]:
 COUNTED = ("ni", "nj", "nk")
 """Fields of `Sampling` that form the option ``res``."""
 Counts: TypeAlias = int | tuple[int] | tuple[int, int] | tuple[int, int, int]
-"""Number of nodes along all directions, or along each of them; of one where the others are open."""
+"""Number of nodes along all directions, along each direction, or only along the first if rows follow from a
+growth ratio.
+"""
 _OFF_WALLS = _row("first_cell y_plus spacing_south spacing_north")
-"""Options that prescribe first cells at the ends of lines along eta."""
+"""Options that prescribe first cells at the ends of grid lines along eta."""
 ALWAYS = _row("sampling method settings repair allow_invalid percentiles history threads")
 """Fields of `GridRequest` that apply to all kinds of grids."""
 SETTINGS = {"polish": "auto", "answer": "valid", "blending": "arclength"}
-"""Defaults of settings; that of other settings is None."""
+"""Defaults of settings; the default of all other settings is None."""
 
 
 _SHAPE = "topology spacing le_spacing te_spacing far_field corners normalise te wake wake_nodes "
@@ -68,15 +70,18 @@ USES: dict[str, frozenset[str]] = {
 """Options that apply, by the kind of grid."""
 
 FOR_MANY = tuple(sorted(USES[MANY] - USES[ONE]))
-"""Options any of which asks for many blocks."""
+"""Options of which each asks for many blocks."""
 OF_SURFACE = _row("layers symmetry poles")
-"""Options that only marching from a surface has a use for."""
+"""Options that only apply to marching from a surface."""
 IN_SPACE = OF_SURFACE | _row("energy")
-"""Options that no grid in the plane has a use for."""
+"""Options that do not apply to planar grids."""
 
 
 def counted(res: Counts | None, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields of `Sampling` for counts `res`; one number leaves rows to a growth of `options`."""
+    """Return the fields of `Sampling` for counts `res`.
+
+    A single number is the count along xi only if `options` contain a growth ratio, from which rows follow.
+    """
     if isinstance(res, int):
         by_growth = options.get("growth") and any(map(options.get, _OFF_WALLS))
         res = (res,) if by_growth else (res, res)

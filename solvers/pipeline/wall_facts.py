@@ -13,7 +13,7 @@ from meshonet.geometry.quality.walls import wall_rows
 from meshonet.geometry.summary import named
 
 _SAME = 1e-6
-"""Relative tolerance for equal first cells, and for growth above its limit."""
+"""Relative tolerances for equal first cells and for growth above the limit."""
 
 
 def wall_facts(grid: Grid) -> tuple[str, ...]:
@@ -28,12 +28,11 @@ def wall_facts(grid: Grid) -> tuple[str, ...]:
 
 
 def growth_note(grid: Grid, limit: float, run: Lines | None = None) -> tuple[str, ...]:
-    """Return a note with the largest ratio of neighbouring cells and its node, if it is above a limit.
+    """Return a note with the largest ratio of neighbouring cells and its node, if the ratio exceeds `limit`.
 
-    `run` are the lines of multi-block grids, measured unless they are given.
-
-    It is that along all grid lines, as `quality` reports it. If it is not along a line from a wall, for which
-    the limit is meant, the note has the largest ratio along those, too.
+    The ratio is the largest one along all grid lines, as in `quality`. The limit is meant for lines from
+    walls: if the ratio occurs on another line, the note also has the largest ratio along lines from walls.
+    `run` are the measures of the lines of a multi-block grid; None: they are computed.
     """
     ratios, leaving = _growth(grid, run)
     largest = most_of(ratios.families().values())

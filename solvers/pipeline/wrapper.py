@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Wrapper(OneByOne):
-    """Solves by another method, and has its name."""
+    """Base class of methods that solve by another method and have the name of this method."""
 
     method: Method
 

@@ -1,4 +1,4 @@
-"""Which places on both sides of the channel between two blades are opposite each other, in all sections."""
+"""Pairs of places opposite each other across the channel between two blades, as a mean over sections."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _FROM = -0.25  # least place: u = 0, the leading edge, is between others
 
 @dataclass(frozen=True, eq=False)
 class ChannelLines:
-    """Lines across the channel, at right angles to the fronts of layers, in the mean of sections.
+    """Lines across the channel, normal to the outer edges of the layers, as a mean over sections.
 
     Parameters
     ----------
     upper : (n,) places u on the upper side, from 0 to 0.5.
-    lower : (n,) what is opposite these on the lower side of the next blade, 1 - u.
-    slant : (n,) tangent of the angle by which a line leans one of whose ends is moved by a unit of u; 0 where
-        nothing is opposite.
+    lower : (n,) 1 - u of the places opposite them, on the lower side of the next blade.
+    slant : (n,) tangent of the angle between a line and the normal, per unit of u by which one of its ends is
+        moved; 0 where no place is opposite.
     """
 
     upper: Floats
@@ -32,7 +32,7 @@ class ChannelLines:
 
     @classmethod
     def of(cls, planes: Sequence[SectionPlane]) -> ChannelLines:
-        """Return the lines of some sections."""
+        """Return the mean lines of the sections `planes`."""
         upper = ON_SIDE
         squares, sums = np.zeros(len(upper)), np.zeros(len(upper))
         for lower, slant in (plane.across for plane in planes):
@@ -45,9 +45,10 @@ class ChannelLines:
         return cls(upper, upper, squares)
 
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
-        """Return by how much more lines between `pairs` (p, 2) of places (k,) lean than those at `start`.
+        """Return the tangents by which lines lean more with places u (k,) than with the places `start` (k,).
 
-        They are linear near `u` (k,), and multiplied by a weight.
+        `pairs` (p, 2) are the numbers of the places that lines join. The result is linearised at `u` and
+        multiplied by `weight`.
         """
         one = u[pairs[:, 0]]
         slope = np.interp(one, self.upper, np.gradient(self.lower, self.upper))
@@ -57,7 +58,7 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square of tangents by which lines between `pairs` (p, 2) of places u (k,) lean."""
+        """Return the mean square tangent by which lines between `pairs` (p, 2) of places u (k,) lean."""
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
@@ -65,6 +66,9 @@ class ChannelLines:
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return by how much u on the lower side (p,) is aside of what is opposite that on the upper one."""
+        """Return the distances (p,), in u, of the lower ends of `pairs` (p, 2) from their ideal places.
+
+        The ideal place is the one opposite the upper end.
+        """
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

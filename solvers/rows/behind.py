@@ -1,8 +1,8 @@
-"""Nodes behind the blade whose places change evenly along the span.
+"""Nodes behind the blade whose positions change evenly along the span.
 
-The optimum of a section changes little if its nodes move with the flow, so that those of neighbouring
-sections differ by more than the sections do. Where the span is short, lines along it would lean far behind
-the blade.
+The functional of a section changes little if nodes move in the direction of the flow. Nodes of neighbouring
+sections therefore differ by more than the sections do, and where the span is short, lines along the span
+would lean strongly behind the blade.
 """
 
 from __future__ import annotations
@@ -19,24 +19,25 @@ from meshonet.solvers.rows.key_sections import KeySection
 from meshonet.solvers.rows.span_lines import SpanLines, key_heights
 
 _DEGREE = 2
-"""Of polynomials of the height."""
+"""Degree of the polynomials of the height."""
 _FROM, _TO = 1.0, 1.15
-"""Shares of the way along the blade from which on nodes are moved, and from which on by all."""
+"""Shares of the way along the blade from which on nodes are moved, and from which on they are moved fully."""
 _CELLS = 4
-"""Cells beyond the layers from which on nodes are moved by all."""
+"""Number of cells beyond the layers from which on nodes are moved fully."""
 
 _PARTS = 1.0, 0.5, 0.25
-"""Of the way to these polynomials, tried in turn."""
+"""Fractions of the way to the polynomials, tried in turn."""
 _KEPT = 0.4
-"""Least part of the smallest Jacobian of a cell that is left to it."""
+"""Smallest accepted ratio of a cell's smallest Jacobian after the move to the one before it."""
 
 
 def even_behind(sections: Sequence[KeySection], columns: Indices) -> tuple[KeySection, ...]:
     """Return sections at `key_heights` with nodes behind the blade on polynomials of the height.
 
-    These are of the share of the way, and of theta from that of the trailing edge. Nodes of layers, which are
-    in `columns` (k, m), stay; those near them and near the blade move by a part. Where cells would shrink
-    much, all move by less.
+    The polynomials are those of the share of the way (see `SectionPlane.shares`) and of the difference of
+    theta from the trailing edge. Nodes of layers, which are in `columns` (k, m), stay; nodes near the layers
+    and near the trailing edge move by a fraction. If a Jacobian would become too small, all nodes move by
+    less.
     """
     mesh = sections[0].layout.mesh
     values = []
@@ -77,7 +78,7 @@ def _smooth(t: Floats) -> Floats:
 
 
 def _cells_from(mesh: QuadMesh, columns: Indices) -> Floats:
-    """Return how many edges (n,) nodes are away from the layers, up to `_CELLS`."""
+    """Return the number of edges (n,), at most 4, between each node and the layers."""
     away = np.full(len(mesh.nodes), float(_CELLS))
     away[columns] = 0.0
     partner = mesh.places.partner

@@ -1,4 +1,4 @@
-"""Layers of a section in space: respaced so that the first cell has its height there, not in (m', theta)."""
+"""Layers of a section in space: respaced so that first cells have the prescribed height in space."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from meshonet.solvers.algebraic.resample.lines import sampled
 
 _NEWTON = 12
 _STRAIGHT, _MARCHED = 0.5, 1.5
-"""Distances from a corner in thicknesses of the layers, up to which columns are straight, and marched."""
+"""Distances from a corner, in thicknesses of the layers, up to which columns are straight, and from which on
+they are as marched.
+"""
 
 
 def layer_columns(layout: Layout) -> Indices:
@@ -25,10 +27,12 @@ def layer_columns(layout: Layout) -> Indices:
 
 
 def straight_near(lines: Floats, away: Floats) -> Floats:
-    """Return columns (k, m, 2) that are straight where distances `away` (k,) from corners are short.
+    """Return the columns `lines` (k, m, 2), straightened where they are close to a corner.
 
-    Marched columns spread around a corner close to it. Steps between straight ones change evenly from those
-    at the wall to those of the front, at each height.
+    `away` (k,) are the distances from the nearest corner.
+
+    Marched columns diverge around a corner. Distances between straight columns change linearly from the wall
+    to the outer edge of the layers.
     """
     thickness = norms(np.diff(lines, axis=1)).sum(axis=1).max()
     t = np.clip((_MARCHED - away / thickness) / (_MARCHED - _STRAIGHT), 0.0, 1.0)
@@ -38,16 +42,20 @@ def straight_near(lines: Floats, away: Floats) -> Floats:
 
 
 def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
-    """Return values (k, m, 2) along columns whose positions are `space` (k, m, 3), moved along them.
+    """Return the coordinates `values` (k, m, 2) of columns of nodes, moved along the columns.
 
-    First cells become `first` high, the outer ends stay, and the change dies out on the way to them.
+    `space` (k, m, 3) are the positions of the nodes in space. First cells get the height `first`; the outer
+    ends stay, and the displacement decreases to zero towards them.
     """
     steps = norms(np.diff(space, axis=1))
     return resampled(values, steps, with_first(steps, np.full(len(steps), first)))
 
 
 def resampled(values: Floats, steps: Floats, new: Floats) -> Floats:
-    """Return values (k, m, 2) along lines of `steps` (k, m - 1) at other steps of the same sums."""
+    """Return values (k, m, 2) along lines with `steps` (k, m - 1), interpolated at other steps.
+
+    The `new` steps (k, m - 1) have the same sums.
+    """
     arcs = arcs_of(steps)
     return sampled(values, arcs, arcs_of(new))
 
@@ -58,7 +66,7 @@ def arcs_of(steps: Floats) -> Floats:
 
 
 def with_first(steps: Floats, first: Floats) -> Floats:
-    """Return steps (k, m) of the same sums, the first `first` (k,), by a factor that changes gradually."""
+    """Return steps (k, m) with equal sums whose first ones are `first` (k,); factors change gradually."""
     t = np.linspace(0.0, 1.0, steps.shape[1])
     begin = steps * exp(log(first[:, None] / steps[:, :1]) * (1.0 - t) ** 2)
     total = steps.sum(axis=1)

@@ -1,4 +1,4 @@
-"""Blocks in a gap: what is filled inside the blade's outline at both of its ends, and nodes between."""
+"""Blocks in a gap, inside the outline of the blade: nodes at both ends of the gap, and between them."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _ROUNDS = 4
 
 @dataclass(frozen=True, eq=False)
 class GapEnds:
-    """The inside of the outline of the blade where a gap begins and where it ends.
+    """Nodes inside the outline of the blade at both ends of a gap.
 
     Parameters
     ----------
-    fill : its numbering; nodes of the outline come first.
-    low, high : s, theta (n, 2) at both.
+    fill : numbering of the nodes; nodes of the outline come first.
+    low, high : (n, 2) s and theta of the nodes at the lower and at the upper end.
     """
 
     fill: GapFill
@@ -41,9 +41,9 @@ class GapBlocks:
 
     Parameters
     ----------
-    fill : their numbering; nodes of the outline come first.
-    outline : (k,) these among the nodes of the row's sections.
-    space : (levels, n, 3) x, y, z.
+    fill : numbering of the nodes; nodes of the outline come first.
+    outline : (k,) numbers of the nodes of the outline in the sections of the row.
+    space : (levels, n, 3) x, y, z of the nodes.
     """
 
     fill: GapFill
@@ -54,14 +54,15 @@ class GapBlocks:
 def gap_ends(
     row: Row, beside: Callable[[float], Floats], lead: int, zone: Zone, first: float, growth: float
 ) -> GapEnds:
-    """Return both ends of a gap.
+    """Return the nodes inside the outline of the blade at both ends of a gap.
 
     Parameters
     ----------
-    beside : nodes of the blade, clockwise, and those next to them, (k, 2, 3) s, theta, h, at a height.
-    lead : number of that at the leading edge.
+    beside : function from a height to (k, 2, 3) s, theta, h of the nodes of the blade, clockwise, and of the
+        nodes next to them.
+    lead : index of the node at the leading edge.
     zone : the gap.
-    first, growth : height of cells inside the outline next to it, and their largest ratio.
+    first, growth : height of the cells inside next to the outline, and largest ratio of neighbouring cells.
 
     Raises NoValidGridError: cells stay folded.
     """
@@ -89,8 +90,8 @@ def gap_blocks(
 ) -> GapBlocks:
     """Return the blocks of a gap between its ends.
 
-    `around` (k,) are the nodes of the blade, clockwise around it, and `outline` (levels, k, 3) where these
-    are, s, theta, h, in the levels of the gap.
+    `around` (k,) are the numbers of the nodes of the blade, clockwise around it; `outline` (levels, k, 3) are
+    s, theta and h of these nodes in the levels of the gap.
     """
     fill = ends.fill
     blade = row.channel.in_space(outline[:, fill.outline])

@@ -38,24 +38,26 @@ _BISECTIONS = 50
 _ROUND = 0.4  # of the width of an edge behind it, at which it ends
 _FEWER = 0.8
 FLAT, SMOOTH, MARGIN = 0.95, 1e-3, 0.93
-"""Weights of the functional, as in `key_sections`."""
+"""Weights w and beta of the functional, and the fraction of the limit of growth from which on growth counts.
+"""
 STEEP, STEEPEST = 0.7, 6.0
-"""Least and largest weight of the growth of cells."""
+"""Smallest and largest weight of the growth of cells."""
 UNEVEN = 3.3, 3.9
-"""Logarithm of the largest growth with the least weight, over that of its limit, from which on the weight is
-larger, and the largest.
+"""Ratios of the logarithm of the largest growth, with the smallest weight, to that of its limit: from the
+first on the weight is larger than the smallest, from the second on it is the largest.
 
-Cells grow so much behind narrow edges, whose angles the largest weight hardly changes; elsewhere it does.
+Cells grow that much behind narrow edges, where the largest weight hardly changes angles.
 """
 
 
 @dataclass(frozen=True, eq=False)
 class GapFill:
-    """The inside of an outline.
+    """Blocks inside the outline of a blade.
 
     Parameters
     ----------
-    outline : (k,) numbers of its nodes, clockwise from the first of side 0; these come first in `layout`.
+    outline : (k,) indices, in the given outline, of the nodes clockwise from the first node of side 0. In
+        `layout` these nodes come first, in this order.
     layout : the five blocks, the core last.
     """
 
@@ -98,8 +100,9 @@ def _counts(outline: Floats, lead: int, first: float, growth: float) -> tuple[in
 def filled_outline(outline: Floats, outside: Floats, lead: int, first: float, growth: float) -> GapFill:
     """Return the five blocks inside an outline (k, 2), clockwise, at whose edge cells are about `first` high.
 
-    `outside` (k, 2) are the nodes next to those of the outline on its other side. Raises NoValidGridError:
-    cells are folded.
+    `outside` (k, 2) are the nodes next to the outline on its outer side; `lead` is the index of the node at
+    the leading edge; `growth` is the largest ratio of neighbouring cells. Raises NoValidGridError: cells are
+    folded.
     """
     aside, rows = _counts(outline, lead, first, growth)
     sides = outline_sides(len(outline), lead, aside)

@@ -12,8 +12,8 @@ from meshonet.solvers.sparse import SparsePattern
 class HarmonicMoves:
     """Harmonic displacements of the nodes of meshes of the same quads, with the same nodes prescribed.
 
-    Neighbours weigh as the inverse square of their distance, so that small cells keep their form. Nodes with
-    a partner move as that does.
+    Neighbours are weighted by the inverse square of their distance, so that small cells keep their form.
+    Nodes with a periodic partner move as the partner does.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class HarmonicMoves:
         self.pattern = SparsePattern(len(self.free), *(np.concatenate([diagonal, each]) for each in inner))
 
     def of(self, mesh: QuadMesh, moves: Floats) -> Floats:
-        """Return displacements (n, 2): `moves` (n, 2) where prescribed, elsewhere means of neighbours."""
+        """Return displacements (n, 2): `moves` (n, 2) where prescribed, elsewhere weighted means."""
         moves = np.where(self.prescribed[:, None], moves, 0.0)
         (a, b), count = self.edges, len(moves)
         off = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]

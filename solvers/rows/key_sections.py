@@ -1,4 +1,4 @@
-"""Key sections of a row: the same blocks and counts in all, each from the nodes of its neighbour.
+"""Key sections of a row: all have the same blocks and counts; each starts from the nodes of its neighbour.
 
 ::
 
@@ -37,26 +37,28 @@ FINE, FROM_NEIGHBOUR = 40, 25
 FLAT, SMOOTH = 0.95, 1e-3
 """Weights w and β of the functional."""
 BEND = 0.3
-"""Part of the way to the outlet in which lines bend into the direction of the wake."""
+"""Fraction of the way to the outlet over which lines turn into the direction of the wake."""
 STEEP, MARGIN = 3.0, 0.93
-"""Weight of the growth of cells, and the part of its logarithm from which on it counts."""
+"""Weight of the growth of cells, and the fraction of the logarithm of its limit from which on growth counts.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class SectionPlan:
-    """What all sections have in common.
+    """Data that all sections share.
 
     Parameters
     ----------
     growth : largest ratio of neighbouring cells.
-    columns : (k, rows + 1) nodes of the layers, from the blade, clockwise around it.
-    outward : (k,) nodes beyond the layers of each column.
-    ends : nodes of inlet and outlet.
-    held : (n,) whether nodes are in layers or at the ends.
-    moves : of the others, where those are moved.
-    places : of the first node of each column.
-    wake : theta by which wakes would be aside at the outlet, straight from the trailing edge, at half the
-        height, and its slope along the height.
+    columns : (k, rows + 1) nodes of the layers; each column runs from the blade outwards, and columns follow
+        each other clockwise around it.
+    outward : (k,) node next to each column beyond the layers.
+    ends : nodes at inlet and outlet.
+    held : (n,) mask of the nodes in layers or at inlet and outlet.
+    moves : displacements of the other nodes that follow from those of the held ones.
+    places : places u of the first nodes of the columns.
+    wake : difference of theta between the outlet and the trailing edge along a straight wake, at half the
+        height; and its derivative with respect to the height.
     """
 
     growth: float
@@ -69,7 +71,7 @@ class SectionPlan:
     wake: tuple[float, float]
 
     def bent(self, plane: SectionPlane, nodes: Floats) -> Floats:
-        """Return nodes (n, 2) in (m', theta) of a section, those behind the blade moved with the wake."""
+        """Return nodes (n, 2) in (m', theta) of a section, moved in theta with the wake behind the blade."""
         most = self.wake[0] + self.wake[1] * (plane.height - 0.5)
         start = float(plane.edges[1, 0])
         t = np.maximum(nodes[:, 0] - start, 0.0) / (plane.map.length - start)
@@ -83,9 +85,9 @@ class LayerColumns:
 
     Parameters
     ----------
-    walls : (k,) arc lengths of the blade where they begin.
-    lines : (k, m, 2) nodes along them.
-    ends : (k, 2) where they end, at the front.
+    walls : (k,) arc lengths on the blade at which columns begin.
+    lines : (k, m, 2) nodes along the columns.
+    ends : (k, 2) points at which columns end, on the outer edge of the layers.
     """
 
     walls: Floats
@@ -107,9 +109,9 @@ class KeySection:
 
     Parameters
     ----------
-    plane : of the section.
-    layout : its blocks in (m', theta). Its domain is that of the middle section.
-    places : (k,) where the first node of each column of layers is, u.
+    plane : the section as a plane cascade.
+    layout : its blocks in (m', theta). The domain of the layout is that of the middle section.
+    places : (k,) places u of the first nodes of the columns of layers.
     """
 
     plane: SectionPlane
@@ -121,12 +123,11 @@ def planned(
     planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], wake: tuple[float, float],
     gaps: tuple[bool, bool],
 ) -> tuple[SectionPlan, list[LayerColumns | None], KeySection]:  # fmt: skip
-    """Return the plan for sections of about so many `cells` each, and the middle one of `planes`.
+    """Return the plan of all sections, the columns of each, and the middle section, with about `cells` cells.
 
-    In between are the columns of the others.
-
-    `longest` are the greatest lengths of the rows to inlet and outlet, by the number of their loop, `wake` is
-    that of the plan, `gaps` are whether the blade ends in a gap at hub and casing.
+    Columns are None if they are not known yet. `longest` are the largest lengths of the rows to inlet and
+    outlet, by the number of their loop; `wake` is that of the plan; `gaps` tells whether the blade ends in a
+    gap at the hub and at the casing.
     """
     plane = planes[len(planes) // 2]
     whole = middle_section(planes, cells, longest)
@@ -168,7 +169,7 @@ class NextSections:
         self._problem: Problem | None = None
 
     def of(self, before: KeySection, plane: SectionPlane, columns: LayerColumns | None = None) -> KeySection:
-        """Return the section of a plane from that `before` it, with its columns if they are known.
+        """Return the section of a plane from the section `before` it; `columns` are computed unless given.
 
         Raises NoValidGridError: its cells stay folded.
         """

@@ -1,4 +1,4 @@
-"""The key sections of a row, from the middle one to hub and casing, the two ways at the same time."""
+"""The key sections of a row: from the middle one to the hub and to the casing, both in parallel."""
 
 from __future__ import annotations
 
@@ -21,27 +21,29 @@ from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.span_lines import key_heights
 
 KEYS = 9
-"""Sections that are made as plane cascades."""
+"""Number of sections that are computed as plane cascades."""
 _PART = 0.6  # of the least room before or behind the blade that is left to blocks
 _HALVINGS = 3
 _SOME_MORE = 1.05  # than is missing, since m' is a length over the radius, which changes
 LEAN = 12.0
-"""Degrees by which lines along the span lean at the outlet at most, so that all wakes are followed."""
+"""Largest angle, in degrees, by which lines along the span lean at the outlet if they follow the wakes of all
+sections; beyond it they follow the wakes in part.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class KeyTables:
-    """Key sections at `key_heights`, from hub to casing, and what they have in common."""
+    """Key sections at `key_heights`, from hub to casing, and the plan that they share."""
 
     plan: SectionPlan
     sections: tuple[KeySection, ...]
 
 
 def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
-    """Return the key sections of a row, of about so many `cells` each.
+    """Return the key sections of a row, with about `cells` cells each.
 
-    `first` and `growth` are those of the layers around the blade. Raises InputError: no room for layers,
-    inlet or outlet; NoValidGridError: folds.
+    `first` and `growth` are the first-cell height and the growth ratio of the layers around the blade. Raises
+    InputError: no room for layers, inlet or outlet. Raises NoValidGridError: cells are folded.
     """
     planes = _planes(row, first, growth)
     gaps = row.hub_gap > 0.0, row.tip_gap > 0.0

@@ -1,4 +1,4 @@
-"""The middle section of a row, with which the others begin: its template, counts and optimum."""
+"""The middle section of a row, from which the others start: its template, counts and optimum."""
 
 from __future__ import annotations
 
@@ -27,17 +27,19 @@ UPPER, TRAILING, LOWER, LEADING = range(8, 12)
 """Numbers of the template's blocks around the blade."""
 REMEDY = "use more {cells}, a larger {first_cell}, or profiles nearer to each other there"
 COARSE = 300
-"""Iterations of the first optimum."""
+"""Number of iterations of the first optimisation."""
 TOLERANCE = 1e-3
 _TRIES, _NEAR = 4, 0.03
-"""How often counts are chosen, until their cells differ from those wanted by this part."""
+"""Largest number of times that counts are chosen, and the relative difference from the wanted number of cells
+at which this ends.
+"""
 
 
 def middle_section(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float]) -> Layout:
-    """Return the middle one of sections, of about so many `cells`, with its layers and rows.
+    """Return the middle section of `planes`, with about `cells` cells, its layers and its rows.
 
-    `longest` are the greatest lengths of the rows to inlet and outlet in any section, by the number of their
-    loop. Raises NoValidGridError: folds.
+    `longest` are the largest lengths of the rows to inlet and outlet in any section, by the number of their
+    loop. Raises NoValidGridError: cells are folded.
     """
     try:
         return _made(planes, cells, longest, early=True)
@@ -84,7 +86,7 @@ def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout
 
 
 def folded_section(plane: SectionPlane, mesh: QuadMesh) -> NoValidGridError:
-    """Return the error for a section whose mesh is folded, with the place of its worst cell."""
+    """Return the error for a section whose mesh is folded, with the position of its worst cell."""
     worst = int(smallest_jacobians(mesh.nodes, mesh.quads).argmin())
     place = plane.place(mesh.nodes[mesh.quads[worst]].mean(axis=0))
     return NoValidGridError(f"cells stay folded in the {place}; {REMEDY}")

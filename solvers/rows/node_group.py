@@ -1,11 +1,11 @@
-"""Nodes of a row that are worked out together, from polynomials along the span to places in space.
+"""Nodes of a row that are computed together, from polynomials along the span to positions in space.
 
 ::
 
     polynomials --arcs of each line--> heights --(s, theta, h)--> nodes of the blade put on it
         --> first cells exact at blade, hub, tip and casing --> x, y, z
 
-A group has whole columns of layers or other nodes, so few that they stay in the cache.
+A group consists of complete columns of layers, or of other nodes; it is small enough for the cache.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from meshonet.solvers.rows.span_spacing import SAMPLES, LineArcs, Spacing
 from meshonet.solvers.rows.zones import Zone
 
 _IN_GAP = 5
-"""Heights of a gap, which is thin, at which lines are measured."""
+"""Number of heights in a gap at which lines are measured."""
 _EXACT = 12
-"""Rounds in which first cells of nodes next to two walls are made exact at most."""
+"""Largest number of rounds that make first cells of nodes next to two walls exact."""
 _CLOSE = 1e-13
 
 
@@ -35,10 +35,10 @@ class NodeGroup:
     Parameters
     ----------
     row : the row.
-    zones : of the span, from hub to casing.
-    ids : (m,) the nodes.
-    lines : their s and theta.
-    around : u of the blade at which columns begin; None without columns.
+    zones : zones of the span, from hub to casing.
+    ids : (m,) numbers of the nodes.
+    lines : s and theta of the nodes as functions of the height.
+    around : places u on the blade at which columns begin, as functions of the height; None: no columns.
     first : height of first cells at the blade.
     """
 
@@ -51,11 +51,11 @@ class NodeGroup:
 
     @property
     def columns(self) -> int:
-        """Number of columns of layers, which the nodes are in one after the other."""
+        """Number of columns of layers; the nodes of each follow those of the one before."""
         return self.around.coefficients.shape[1] if self.around else 0
 
     def arcs(self) -> list[LineArcs]:
-        """Return the lines of the nodes in each zone, by their arc lengths."""
+        """Return the arc lengths of the lines along the span through the nodes, for each zone."""
         out = []
         for zone in self.zones:
             at = zone.low + (zone.high - zone.low) * key_heights(_IN_GAP if zone.gap else SAMPLES)
@@ -65,7 +65,10 @@ class NodeGroup:
         return out
 
     def values(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
-        """Return s, theta, h (levels, m, 3) of the nodes, for the spacing in each zone."""
+        """Return s, theta, h (levels, m, 3) of the nodes for the spacing in each zone.
+
+        `arcs` are from `arcs()`.
+        """
         values = self.at(self._heights(arcs, spacings))
         self._exact_along_span(values)
         if self.around:
@@ -73,7 +76,10 @@ class NodeGroup:
         return values
 
     def at(self, heights: Floats) -> Floats:
-        """Return s, theta, h (levels, m, 3) at heights (levels, m), columns exact at the blade."""
+        """Return s, theta, h (levels, m, 3) at heights (levels, m).
+
+        Columns have exact first cells at the blade.
+        """
         values = np.empty((*heights.shape, 3))
         values[..., :2], values[..., 2] = self.lines.at(heights), heights
         np.clip(values[..., 0], 0.0, 1.0, out=values[..., 0])

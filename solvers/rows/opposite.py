@@ -11,12 +11,12 @@ from meshonet.solvers.rows.across import ChannelLines
 
 
 def opposite_places(places: Floats, pairs: Indices, lines: ChannelLines) -> Floats:
-    """Return places u (k,) of nodes clockwise around a blade with both sides' opposite each other.
+    """Return places u (k,) of nodes clockwise around a blade; each place u has its partner at 1 - u.
 
-    As many nodes lie on each side, at equal parts of the sides' lengths: blocks inside the blade's outline,
-    in a gap, are then not skew. `pairs` (p, 2) of nodes on the upper and the lower side, from the leading
-    edge on, are joined by `lines` across the channel. Of the nodes between the first two that is at the
-    leading edge for which these lean least. k is even; nodes lie at both edges.
+    Both sides have the same number of nodes, so that blocks inside the blade's outline, in a gap, are not
+    skew. `pairs` (p, 2) are nodes on the upper and the lower side, from the leading edge on, that `lines`
+    across the channel join. The node at the leading edge is one of those between the first pair: the one for
+    which these lines lean least. k is even; there are nodes at the leading and at the trailing edge.
     """
     both = _both_sides(places)
     k, half = len(places), len(places) // 2

@@ -36,13 +36,14 @@ from meshonet.solvers.rows.stacked import StackedRow
 from meshonet.solvers.rows.zones import Zone, fewest_cells, section_cells, zones_of
 
 _OTHER = 0.15
-"""Part of the cells asked for by which others are worth a note."""
+"""Relative difference from the requested number of cells above which a note says so."""
 
 
 def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     """Return the grid of a passage, and notes.
 
-    Raises InputError: a row that leaves no room for layers, inlet or outlet; NoValidGridError: folds.
+    Raises InputError: a row that leaves no room for layers, inlet or outlet. Raises NoValidGridError: cells
+    are folded.
     """
     first, growth = request.height() * row.chord, request.ratio
     zones = zones_of(row, first, growth, request.cells)
@@ -78,14 +79,14 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
 
 
 def turned_by(angle: float) -> Motion:
-    """Return the rotation about the x axis by which theta = atan2(y, z) grows."""
+    """Return the rotation about the x axis that increases theta = atan2(y, z) by `angle`, in radians."""
     c, s = math.cos(angle), math.sin(angle)
     return Motion(turn=((1.0, 0.0, 0.0), (0.0, c, s), (0.0, -s, c)))
 
 
 @dataclass(frozen=True, eq=False)
 class ZoneSection:
-    """The blocks of any level of a zone, as a plane grid and as a layout, and those inside the outline."""
+    """Blocks of a level of a zone, as a planar grid and as a layout, and those inside the blade's outline."""
 
     plane: Grid
     layout: Layout

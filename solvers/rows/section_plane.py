@@ -1,4 +1,4 @@
-"""The section of a blade row at a height as a plane cascade: places around the blade, and the way back.
+"""The section of a blade row at a height as a plane cascade, and the map between both.
 
 On a surface of revolution (m', theta) with dm' = dm / r is conformal: angles are those in space, and the
 passage is that of a plane cascade with the pitch 2 pi / blades.
@@ -25,12 +25,14 @@ from meshonet.solvers.blocking.cascade.cascade import Cascade
 from meshonet.solvers.layers.layer_settings import LayerSettings
 
 _AROUND = 400
-"""Points of a section."""
+"""Number of points of a section."""
 _SHARES = np.array([-1.0, 0.0, 1.0, 2.0])
 STEEPEST = 45.0
-"""Degrees from the axis by which wakes are followed at the most: cells behind the blade are askew by them."""
+"""Largest angle to the axis, in degrees, at which grid lines follow a wake: cells behind the blade are skewed
+by this angle.
+"""
 ON_SIDE = read_only(np.linspace(0.0, 0.5, 201))
-"""Places on the upper side of which it is known what is opposite them across the channel."""
+"""Places on the upper side for which the places opposite them across the channel are computed."""
 _EDGE = 3  # of these at both edges have nothing opposite them
 _AT_EDGE = 0.1  # of the way along the blade, before and behind an edge
 _NEAR_EDGE = 0.06  # places before and behind the trailing edge by which the mean line is known there
@@ -38,14 +40,17 @@ _NEAR_EDGE = 0.06  # places before and behind the trailing edge by which the mea
 
 @dataclass(frozen=True, eq=False)
 class SectionPlane:
-    """A section.
+    """A section of a blade row as a plane cascade.
+
+    Places u around the blade run from 0 at the leading edge along the upper side to 0.5 at the trailing edge,
+    and along the lower side to 1.
 
     Parameters
     ----------
-    height : h of the channel.
-    map : between s and m'.
-    cascade : in (m', theta).
-    places : (n,) u of the points of the cascade's blade, ascending from 0.
+    height : height h in the channel, from 0 at the hub to 1 at the casing.
+    map : map between s and m'.
+    cascade : the cascade in (m', theta).
+    places : (n,) places u of the points of the cascade's blade, ascending from 0.
     """
 
     height: float
@@ -55,7 +60,10 @@ class SectionPlane:
 
     @classmethod
     def of(cls, row: Row, height: float, first: float, growth: float) -> SectionPlane:
-        """Return the section of a row, with layers whose first cells are `first` high in space."""
+        """Return the section of a row at a height.
+
+        First cells of its layers have the height `first` in space.
+        """
         u, lines = _lines(row.surface)
         s, theta = row.surface.crossings(lines, np.full(len(u), height)).T
         to = row.channel.meridional(height)
@@ -80,7 +88,7 @@ class SectionPlane:
 
     @property
     def room(self) -> tuple[float, float]:
-        """Pitches between the front of the layers and inlet and outlet."""
+        """Distances of the inlet and of the outlet from the outer edge of the layers, in pitches."""
         before, behind = self.cascade.ends
         return before / self.cascade.pitch[1], behind / self.cascade.pitch[1]
 
@@ -100,9 +108,9 @@ class SectionPlane:
 
     @property
     def wake(self) -> float:
-        """Theta by which the mean line goes on from the trailing edge to the outlet.
+        """Difference of theta between outlet and trailing edge along the continued mean line.
 
-        It does so at `STEEPEST` degrees from the axis at most.
+        The continuation is straight, and inclined by at most `STEEPEST` degrees to the axis.
         """
         one, other = self._opposite(np.array([0.5 - _NEAR_EDGE, 0.5 + _NEAR_EDGE]))
         way = complex(*self.edges[1]) - complex(0.5 * (one + other))
@@ -111,9 +119,9 @@ class SectionPlane:
         return slope * (self.map.length - float(self.edges[1, 0]))
 
     def ending(self, near: tuple[float, float], thickest: float) -> SectionPlane:
-        """Return the section with straight rows that begin `near` pitches before and behind the blade.
+        """Return the section with straight rows of cells from `near` pitches before and behind the blade.
 
-        The centre of its map is in the middle between both sides at the place `thickest`.
+        The centre of its conformal map is in the middle between the places `thickest` and 1 - `thickest`.
         """
         one, other = self._opposite(np.array([thickest, 1.0 - thickest]))
         centre = complex(0.5 * (one + other))
@@ -125,7 +133,10 @@ class SectionPlane:
         return self.places[list(self.cascade.blade.corners)]
 
     def from_corners(self, arcs: Floats) -> Floats:
-        """Return how far arc lengths (n,) of the blade are from its nearest corner, infinite without any."""
+        """Return the distances of arc lengths (n,) on the blade from the nearest corner.
+
+        Infinite without corners.
+        """
         off = wrapped((arcs - self.wall_arcs(self.corners)[:, None]) / self._walls[-1])
         return np.asarray(self._walls[-1] * np.abs(off).min(axis=0, initial=np.inf))
 
@@ -134,15 +145,15 @@ class SectionPlane:
         return np.append(self.cascade.blade.curve.knots, self.cascade.blade.length)
 
     def wall_arcs(self, u: Floats) -> Floats:
-        """Return arc lengths (n,) of the blade at places u (n,), 0 to 1."""
+        """Return the arc lengths (n,) on the blade of places u (n,), from 0 to 1."""
         return np.interp(u, np.append(self.places, 1.0), self._walls)
 
     def places_of(self, arcs: Floats) -> Floats:
-        """Return places u (n,) at arc lengths (n,) of the blade."""
+        """Return the places u (n,) of arc lengths (n,) on the blade."""
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:
-        """Return arc lengths (n,) of the front of the layers above places u (n,) of the blade."""
+        """Return the arc lengths (n,) on the outer edge of the layers where columns of places u (n,) end."""
         ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)
@@ -152,7 +163,7 @@ class SectionPlane:
 
     @cached_property
     def across(self) -> tuple[Floats, Floats]:
-        """What is opposite places `ON_SIDE` (n,), 1 - u, and the slant there (see `ChannelLines`)."""
+        """1 - u (n,) of the places opposite `ON_SIDE` (n,), and the slant (n,) there (see `ChannelLines`)."""
         front, pitch = self.cascade.ring.front, np.array([0.0, self.cascade.pitch[1]])
         one, other = (front.at(self.front_arcs(u)) for u in (ON_SIDE, 1.0 - ON_SIDE))
         away = ((other + pitch - one[:, None]) ** 2).sum(axis=-1)
@@ -165,7 +176,7 @@ class SectionPlane:
         return lower, np.where(inside, self.cascade.blade.length / np.sqrt(here), 0.0)
 
     def place(self, point: Floats) -> str:
-        """Return where a point (2,) is, for messages: part of the span, and where along the blade."""
+        """Return the position of a point (2,) along span and blade as text for messages."""
         share = float(self.shares(point[None])[0])
         along = f"between the blades, {100.0 * share:.0f} % of the way along them"
         if share < _AT_EDGE:
@@ -175,15 +186,18 @@ class SectionPlane:
         return f"section at {100.0 * self.height:.3g} % of the span, {along}"
 
     def shares(self, points: Floats) -> Floats:
-        """Return shares (n,) of the way at points (n, 2): -1 inlet, 0 and 1 the blade's edges, 2 outlet."""
+        """Return the shares (n,) of the way of points (n, 2).
+
+        They are -1 at the inlet, 0 at the leading edge, 1 at the trailing edge and 2 at the outlet.
+        """
         return np.interp(points[:, 0], self._stations, _SHARES)
 
     def stations(self, shares: Floats) -> Floats:
-        """Return m' (n,) at `shares` (n,) of the way."""
+        """Return m' (n,) of `shares` (n,) of the way; the inverse of `shares`."""
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:
-        """Return theta (n,) of the line in the middle between both sides, at `shares` (n,) of the blade."""
+        """Return theta (n,) of the line in the middle between both sides, at `shares` (n,) from 0 to 1."""
         u = np.linspace(0.0, 0.5, _AROUND)
         middle = 0.5 * (self._opposite(u) + self._opposite(1.0 - u))
         part = np.maximum.accumulate(self.shares(pairs_of(middle)))

@@ -15,7 +15,7 @@ from meshonet.kernels._native import chebyshev_sums
 
 
 def key_heights(count: int) -> Floats:
-    """Return `count` heights from 0 to 1, the extrema of a Chebyshev polynomial."""
+    """Return `count` heights from 0 to 1 at the extrema of a Chebyshev polynomial."""
     heights = 0.5 * (1.0 - cos(np.pi * np.arange(count) / (count - 1)))
     heights[0], heights[-1] = 0.0, 1.0
     return np.asarray(heights)
@@ -23,15 +23,15 @@ def key_heights(count: int) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class SpanLines:
-    """Chebyshev coefficients (k, n, ...) of functions of the height, 0 to 1."""
+    """Chebyshev coefficients (k, n, ...) of n functions of the height, which is from 0 to 1."""
 
     coefficients: Floats
 
     @classmethod
     def through(cls, values: Floats, degree: int | None = None) -> SpanLines:
-        """Return the polynomials through values (k, n, ...) at `key_heights` (k).
+        """Return the polynomials through values (k, n, ...) at ``key_heights(k)``.
 
-        Of a lower `degree` they are those nearest to the values, with half weights at both ends.
+        With a `degree` below k - 1, a least-squares approximation, in which both ends have half the weight.
         """
         kept = _fit(len(values))[: len(values) if degree is None else degree + 1]
         return cls(_times(kept, values))
@@ -50,12 +50,12 @@ class SpanLines:
 
 
 def slopes_at_keys(values: Floats) -> Floats:
-    """Return derivatives (k, n, ...) by the height of polynomials through `values`, at `key_heights` (k)."""
+    """Return the derivatives (k, n, ...) by height, at the key heights, of polynomials through `values`."""
     return _times(_slopes(len(values)), values)
 
 
 def integrals_at_keys(values: Floats) -> Floats:
-    """Return integrals (k, n, ...) over the height, from 0, of polynomials through `values` likewise."""
+    """Return the integrals (k, n, ...) from height 0 to the key heights of polynomials through `values`."""
     return _times(_integrals(len(values)), values)
 
 

@@ -1,8 +1,8 @@
 """Places of nodes around a blade, from hub to casing.
 
-Where the blade ends in a gap, nodes lie opposite each other on both sides, so that blocks inside its outline
-are not skew. At the other end they are where lines across the channel are at right angles to the blades. In
-between places change linearly with the height.
+At an end with a gap, nodes are opposite each other on both sides of the blade, so that blocks inside its
+outline are not skew. At an end without a gap, nodes are placed so that lines across the channel are normal to
+the blades. Between both ends places change linearly with the height.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from meshonet.solvers.rows.upright import upright
 from meshonet.solvers.rows.wall_places import even_wall_places
 
 BASE = 7
-"""Fewest cells between the corners of an edge that is cut off, around both of which cells grow."""
+"""Smallest number of cells between the two corners of a blunt edge."""
 _NEAR_EDGE = 0.1  # places from an edge up to which corners are its own
 
 
@@ -32,8 +32,9 @@ class SpanPlaces:
 
     Parameters
     ----------
-    ends : (k,) u at the hub, and at the casing.
-    gaps : whether the blade ends in a gap there, and both sides' places are opposite each other.
+    ends : (k,) places u at the hub, and at the casing.
+    gaps : whether the blade ends in a gap at the hub, and at the casing; places there are opposite each
+        other.
     """
 
     ends: tuple[Floats, Floats]
@@ -43,9 +44,10 @@ class SpanPlaces:
     def of(
         cls, planes: Sequence[SectionPlane], places: Floats, pairs: Indices, gaps: tuple[bool, bool]
     ) -> SpanPlaces:
-        """Return the places near those (k,) of the middle one of `planes`, with nodes at its corners.
+        """Return places near `places` (k,), which are those of the middle section, with nodes at its corners.
 
-        `pairs` (p, 2) are nodes on the upper and the lower side that lines across the channel join.
+        `planes` are all sections; `pairs` (p, 2) are nodes on the upper and the lower side that lines across
+        the channel join; `gaps` as in the class.
         """
         corners, half = planes[0].corners, len(planes) // 2
         if any(gaps):
@@ -64,12 +66,12 @@ class SpanPlaces:
         return cls(ends, gaps)
 
     def at(self, height: float) -> Floats:
-        """Return the places (k,) at a height, 0 to 1."""
+        """Return the places (k,) at a height from 0 to 1."""
         start, end = self.ends
         return np.asarray(np.mod(start + height * wrapped(end - start), 1.0))
 
     def evened(self, planes: Sequence[SectionPlane], growth: float, pairs: Indices) -> SpanPlaces:
-        """Return places whose steps in all sections grow by a limited ratio."""
+        """Return places with steps between nodes that grow by at most about `growth` in all sections."""
         lines, corners = ChannelLines.of(planes), planes[0].corners
 
         def even(k: int) -> Floats:
@@ -81,14 +83,14 @@ class SpanPlaces:
 
 
 def at_corners(places: Floats, corners: Floats) -> Floats:
-    """Return places u (k,) with the one nearest to each of the `corners` (c,), u too, put there."""
+    """Return places u (k,), the nearest one to each corner moved to the corner's u, one of `corners` (c,)."""
     out = places.copy()
     out[corner_nodes(places, corners)] = corners
     return out
 
 
 def corner_nodes(places: Floats, corners: Floats) -> Indices:
-    """Return which of places (k,) are nearest to `corners` (c,)."""
+    """Return the indices (c,) of the places (k,) nearest to `corners` (c,)."""
     return np.abs(wrapped(places - corners[:, None])).argmin(axis=1)
 
 

@@ -1,4 +1,4 @@
-"""Heights of nodes along the span: first cells at both ends, sizes that grow from both up to a largest."""
+"""Heights of nodes along the span: given cells at both ends, which grow to a largest size between."""
 
 from __future__ import annotations
 
@@ -17,17 +17,20 @@ _NEWTON = 12
 _FLATTEST, _FARTHEST = 1e-9, (-30.0, 30.0)  # of Newton's method: least slope, steps of the logarithm
 _LENGTHS = 33  # of lines for which nodes are spaced; others lie between
 SAMPLES = 17
-"""Heights at which positions along a line have to be known."""
+"""Number of heights at which positions along a line must be known."""
 _MOST_BENT = 60.0  # of the logarithm of sizes, at which cells in the middle are a million times larger
 MOST_CELLS = 1000
 
 
 Ends: TypeAlias = tuple[Floats | float, Floats | float]
-"""Heights of the first and of the last cells of lines, each for all lines or (n,)."""
+"""Lengths of the first and of the last cells of n lines; each a number for all lines, or (n,)."""
 
 
 def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least: int) -> int:
-    """Return how many cells fill a length, as at its `ends` and growing to `largest`; `least` or more."""
+    """Return the number of cells, at least `least`, that fill a length.
+
+    Cells have the lengths `ends` at both ends and grow by `growth` up to the length `largest`.
+    """
 
     def reach(cells: int) -> float:
         return float(_sizes(np.array([largest]), _from_ends(ends, growth, cells))[0].sum())
@@ -36,7 +39,7 @@ def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least
 
 
 def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return arcs (n, cells + 1) on lines of `lengths` (n,) of cells that grow from both `ends`."""
+    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,) with cells that grow from both `ends`."""
     from_ends = _from_ends(ends, growth, cells)
     least, most = lengths / cells, lengths
     largest = least
@@ -53,10 +56,10 @@ def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
 
 
 def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | None], cells: int) -> Floats:
-    """Return arcs (n, cells + 1) on lines of `lengths` (n,), of cells whose sizes change evenly.
+    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,) with cells whose sizes change evenly.
 
-    The logarithm of the sizes is a parabola between those at both `ends`, each for all lines or (n,), or
-    linear where the last is None and follows.
+    The logarithm of the size is a quadratic function of the cell number with the values of `ends` at both
+    ends. If the second of `ends` is None, the function is linear, and the last size follows.
     """
     t = np.linspace(0.0, 1.0, cells)
     first, last = (None if end is None else np.broadcast_to(end, lengths.shape)[:, None] for end in ends)
@@ -81,9 +84,10 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
 def smooth_cells(
     length: Floats | float, ends: tuple[Floats | float, Floats | float | None], growth: float, least: int
 ) -> int:
-    """Return the least number of cells from `least` on that grow from both ends by `growth` at most.
+    """Return the smallest number of cells, at least `least`, that grow by at most `growth`.
 
-    Cells are those of `smooth_arcs` on lines of one `length`, or of (n,) with `ends` (n,).
+    Cells are those of `smooth_arcs` on a line of this `length`, or on n lines of lengths (n,) with `ends`
+    (n,).
     """
     lengths = np.atleast_1d(length)
     for cells in range(max(least, 4), MOST_CELLS):
@@ -115,12 +119,12 @@ def _fourth(values: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Spacing:
-    """Arcs as of `two_sided`, over the lengths of lines, for all lengths in a range.
+    """Arc lengths of `two_sided`, relative to the length of the line, for all lengths in a range.
 
     Parameters
     ----------
-    lengths : the shortest and the longest line.
-    table : (cells + 1, m) arcs over lengths at evenly spaced lengths; others lie between.
+    lengths : lengths of the shortest and of the longest line.
+    table : (cells + 1, m) relative arc lengths for m equally spaced lengths, for interpolation.
     """
 
     lengths: tuple[float, float]
@@ -128,12 +132,12 @@ class Spacing:
 
     @classmethod
     def of(cls, lengths: tuple[float, float], ends: Ends, growth: float, cells: int) -> Spacing:
-        """Return the arcs for cells that grow from both `ends`."""
+        """Return the spacing of `cells` cells that grow from both `ends`."""
         known = np.linspace(*lengths, _LENGTHS if lengths[1] > lengths[0] * (1.0 + 1e-9) else 1)
         return cls(lengths, (two_sided(known, ends, growth, cells) / known[:, None]).T)
 
     def at(self, lengths: Floats) -> Floats:
-        """Return arcs over lengths (cells + 1, n) of lines of `lengths` (n,)."""
+        """Return the relative arc lengths (cells + 1, n) on lines of `lengths` (n,)."""
         last = self.table.shape[1] - 1
         if not last:
             return np.repeat(self.table, len(lengths), axis=1)
@@ -146,12 +150,12 @@ class Spacing:
 
 @dataclass(frozen=True, eq=False)
 class LineArcs:
-    """Lines by their arc lengths.
+    """Arc lengths of lines as functions of the part of the way along them.
 
     Parameters
     ----------
-    lengths : (n,) of the lines.
-    ahead : how far the part of the way is ahead of an arc over the length, at that.
+    lengths : (n,) lengths of the lines.
+    ahead : difference between the part of the way and the relative arc length, as a function of the latter.
     """
 
     lengths: Floats
@@ -159,7 +163,7 @@ class LineArcs:
 
     @classmethod
     def through(cls, samples: Floats) -> LineArcs:
-        """Return lines through positions (k, n, 3) at `key_heights` (k) of the way."""
+        """Return n lines through positions (k, n, 3) at the parts ``key_heights(k)`` of the way."""
         speed = norms(slopes_at_keys(samples))
         arcs = integrals_at_keys(speed)
         lengths, wanted = arcs[-1], key_heights(len(samples))[:, None]
@@ -169,20 +173,20 @@ class LineArcs:
         return cls(lengths, SpanLines.through(ahead))
 
     def parts(self, spacing: Spacing) -> Floats:
-        """Return parts (cells + 1, n), 0 to 1, of the way along the lines for a spacing of their arcs."""
+        """Return the parts (cells + 1, n) of the way, from 0 to 1, at which nodes are for a spacing."""
         return self.parts_at(spacing.at(self.lengths))
 
     def parts_at(self, arcs: Floats) -> Floats:
-        """Return parts (cells + 1, n), 0 to 1, of the way along the lines at arcs over their lengths."""
+        """Return the parts (cells + 1, n) of the way, from 0 to 1, at relative arc lengths (cells + 1, n)."""
         parts = np.clip(arcs + self.ahead.at(arcs), 0.0, 1.0)
         parts[0], parts[-1] = 0.0, 1.0
         return parts
 
 
 def line_parts(samples: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return parts (cells + 1, n), 0 to 1, of the way along lines, at which cells are as `two_sided`.
+    """Return the parts (cells + 1, n) of the way along lines, from 0 to 1, of the nodes of `two_sided`.
 
-    `samples` (SAMPLES, n, 3) are positions on the lines at `key_heights` (SAMPLES) of the way.
+    `samples` (SAMPLES, n, 3) are positions on the lines at the parts ``key_heights(SAMPLES)`` of the way.
     """
     arcs = LineArcs.through(samples)
     range_ = float(arcs.lengths.min()), float(arcs.lengths.max())

@@ -1,4 +1,4 @@
-"""Key sections stacked along the span: nodes of the same number follow a polynomial of the height.
+"""Key sections stacked along the span: nodes with the same number are on a polynomial of the height.
 
 ::
 
@@ -26,9 +26,10 @@ from meshonet.solvers.rows.span_spacing import LineArcs, Spacing
 from meshonet.solvers.rows.zones import Zone
 
 DEGREE = 5
-"""Of polynomials along the span: optima of neighbouring sections differ by noise, and the rest is smooth."""
+"""Degree of the polynomials along the span. It is low because optima of neighbouring sections contain noise.
+"""
 _AT_ONCE = 1 << 16
-"""Nodes that are worked out together, so that they stay in the cache."""
+"""Number of nodes that are computed together, so that they fit into the cache."""
 
 
 class StackedRow:
@@ -38,14 +39,15 @@ class StackedRow:
     ----------
     row : the row.
     keys : its key sections.
-    zones : of the span, from hub to casing.
+    zones : zones of the span, from hub to casing.
     first : height of first cells at the blade.
     growth : largest ratio of neighbouring cells.
 
     Attributes
     ----------
-    columns : (k, rows + 1) nodes of the layers, from the blade, clockwise around it.
-    leading : (2,) which of these columns start nearest to the leading edge, at hub and casing.
+    columns : (k, rows + 1) nodes of the layers; each column runs from the blade outwards, and columns follow
+        each other clockwise around it.
+    leading : (2,) indices of the columns that start nearest to the leading edge, at hub and casing.
     """
 
     def __init__(self, row: Row, keys: KeyTables, zones: Sequence[Zone], first: float, growth: float) -> None:
@@ -85,24 +87,25 @@ class StackedRow:
 
     @property
     def twins(self) -> tuple[Indices, Indices]:
-        """Nodes (k,) of the second periodic side, and those of the first that they are turned from."""
+        """Nodes (k,) of the second periodic side, and their partners (k,) on the first."""
         partner = self.layout.mesh.places.partner
         second = np.flatnonzero(partner >= 0)
         return second, partner[second]
 
     def beside(self, height: float) -> Floats:
-        """Return s, theta, h (k, 2, 3) at a height of the nodes of the blade, and of those next to them.
+        """Return s, theta, h (k, 2, 3), at a height, of the nodes of the blade and of the nodes next to them.
 
-        They are those of `RowNodes` at the level that bounds a zone there, known without the others.
+        The height must bound a zone. The result equals `RowNodes.beside` at this level; no other levels are
+        computed.
         """
         group = self._group(self.columns.ravel(), self.around)
         values = group.at(np.full((1, self.columns.size), height))
         return values.reshape(*self.columns.shape, 3)[:, :2]
 
     def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
-        """Return the nodes with those at the blade worked out, and what works out all in space, in any order.
+        """Return the nodes, of which only those at the blade are computed, and tasks that compute all others.
 
-        Those of the second periodic side are left out.
+        Tasks can run in any order. They leave out the nodes of the second periodic side.
         """
         groups = self._groups()
         arcs = in_threads(NodeGroup.arcs, groups)

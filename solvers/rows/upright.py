@@ -1,7 +1,7 @@
-"""Places of nodes around a blade at ends without a gap, for which lines across the channel lean less.
+"""Places of nodes around a blade, at ends without a gap, with which lines across the channel lean less.
 
-What is opposite a place of the upper side changes from hub to casing: a channel that turns outwards is much
-longer over its width at the hub. Places change linearly with the height.
+The place opposite a given place of the upper side changes from hub to casing: the ratio of length to width of
+a channel that turns outwards is much larger at the hub. Places change linearly with the height.
 """
 
 from __future__ import annotations
@@ -15,27 +15,28 @@ from meshonet.solvers.rows.across import ChannelLines
 from meshonet.solvers.rows.section_plane import SectionPlane
 
 LEAN = 1.1
-"""Tangent of the angle by which lines may lean."""
+"""Tangent of the largest angle between a line and the normal at which places stay."""
 _ROUNDS = 3  # places opposite each other are not linear in u
 _RIDGE = 0.05
-"""Weight of moves in the mean one of lines."""
+"""Weight of displacements, relative to the mean weight of lines."""
 _OPPOSITE = 0.3
-"""Part of the mean weight of lines from which on places are opposite each other."""
+"""Fraction of the mean weight of lines above which two places count as opposite each other."""
 _TAPER = 0.15  # of the lines, at both ends of the channel, in which moves die out
 _TINY = 1e-300  # in place of 0 in divisors
 _LEAST = 0.35
-"""Part of each step that is left at least."""
+"""Smallest ratio of a step between neighbouring nodes to the same step before."""
 
 
 def upright(
     ends: tuple[Floats, Floats], free: tuple[bool, bool], planes: Sequence[SectionPlane], pairs: Indices,
     fixed: Bools,
 ) -> tuple[Floats, Floats]:  # fmt: skip
-    """Return places u (k,) at the hub and at the casing, those moved whose end is `free`.
+    """Return places u (k,) at the hub and at the casing; only places at ends that are `free` are moved.
 
-    `pairs` (p, 2) are nodes on the upper side and the lower side of the next blade that lines across the
-    channel join. Nodes that are `fixed` (k,) stay, and none comes to the other side of an edge. Where no line
-    of the half of the span at a free end leans by more than `LEAN`, all stay.
+    `ends` are the given places. `pairs` (p, 2) are nodes on the upper side and on the lower side of the next
+    blade that lines across the channel join. Nodes that are `fixed` (k,) stay, and no node moves beyond the
+    leading or the trailing edge. If no line in the halves of the span at free ends leans by more than `LEAN`,
+    all nodes stay.
     """
     heights = np.array([plane.height for plane in planes])
     parts = np.stack([1.0 - heights, heights], axis=1)[:, free]

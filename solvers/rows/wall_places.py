@@ -1,6 +1,6 @@
-"""Places of nodes around a blade whose steps grow by a limited ratio.
+"""Places of nodes around a blade, with a limited growth of the steps between neighbouring nodes.
 
-They do so at the wall and along the front of the layers, in all key sections.
+The limit holds at the wall and along the outer edge of the layers, in all key sections.
 """
 
 from __future__ import annotations
@@ -16,9 +16,11 @@ from meshonet.solvers.rows.across import ChannelLines
 from meshonet.solvers.rows.section_plane import SectionPlane
 
 MARGIN = 0.93
-"""Of the logarithm of the largest growth, to which steps are limited: nodes move a little later on."""
+"""Fraction of the logarithm of the largest growth to which steps are limited, since nodes still move
+afterwards.
+"""
 SHEAR = 10.0
-"""Square root of the weight of tangents by which lines across the channel come to lean."""
+"""Square root of the weight of the tangents by which lines across the channel lean more than before."""
 _TIMES = 4  # evened again while this changes much
 _SAME = 1e-9
 
@@ -27,11 +29,11 @@ def even_wall_places(
     planes: Sequence[SectionPlane], places: Floats, corners: Floats, growth: float, pairs: Indices,
     lines: ChannelLines, *, opposite: bool,
 ) -> Floats:  # fmt: skip
-    """Return places u (k,) of nodes clockwise around the blade near the given ones, with even steps.
+    """Return places u (k,) of nodes clockwise around the blade, near `places` (k,), with even steps.
 
-    Those at `corners` (c,) stay. `pairs` (p, 2) are nodes on the upper side and the lower side of the next
-    blade that `lines` across the channel join, which are not to lean more than they do. With `opposite` the
-    places of both sides are opposite each other, and stay so; lines do not count then.
+    Nodes at `corners` (c,) stay. `pairs` (p, 2) are nodes on the upper side and on the lower side of the next
+    blade that `lines` across the channel join; additional leaning of these lines is penalised. With
+    `opposite` the places u and 1 - u stay opposite each other, and lines have no effect.
     """
     limit = MARGIN * math.log(growth)
     lead = int(np.abs(wrapped(places)).argmin())

@@ -1,4 +1,4 @@
-"""A section with its layers, and with rows to inlet and outlet, from its blocks beyond the layers."""
+"""Adds the layers, and the rows to inlet and outlet, to the blocks of a section beyond its layers."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ _RATIO = 2.0
 def whole_section(
     plane: SectionPlane, beyond: Layout, layers: int, largest: float, longest: Mapping[int, float]
 ) -> Layout:  # fmt: skip
-    """Return a section of the blocks beyond its layers.
+    """Return the layout of a section that consists of layers, the blocks `beyond` them, and rows.
 
     Parameters
     ----------
     beyond : layout of these blocks in (m', theta).
-    layers : how many layers there are.
+    layers : number of rows of the layers.
     largest : size of the largest cells.
-    longest : greatest lengths of the rows to inlet and outlet in any section, by the number of their loop.
-        They have as many cells as these ask for.
+    longest : largest lengths, in any section, of the rows to inlet and outlet, by the number of their loop;
+        they determine the number of cells.
     """
     cascade = plane.cascade
     mesh = beyond.mesh

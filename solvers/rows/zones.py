@@ -10,17 +10,20 @@ from meshonet.geometry.rows.row import Row
 from meshonet.solvers.rows.span_spacing import spaced_cells
 
 PARTS, PARTS_CELLS = 42.0, 800_000
-"""Cells along the span away from walls, if all of it were divided like that, of a row of so many cells."""
+"""Number of cells along the span, if all of it had the spacing that is used away from walls, in a row of so
+many cells.
+"""
 _NEEDED, _FEWEST, _ENOUGH = 740.0, 1700, 8000
-"""Fewest cells of a section, times the logarithm of the growth, within these bounds.
+"""Smallest number of cells of a section: the first number divided by the logarithm of the growth ratio, but
+within the bounds that follow.
 
-With fewer, cells at the edges of blades are too small for those between to grow as slowly.
+With fewer cells, those at the edges of blades are too small for the growth limit between them.
 """
 _INSIDE = 0.33
-"""Cells inside the outline of the blade in a gap, in those of a section around it."""
+"""Number of cells inside the outline of the blade in a gap, relative to that of a section around it."""
 _LONGER = 1.15  # than across the gap lines may be, which lean
 GAP_ROWS = 17
-"""Fewest cells across a gap."""
+"""Smallest number of cells across a gap."""
 
 
 @dataclass(frozen=True)
@@ -29,10 +32,10 @@ class Zone:
 
     Parameters
     ----------
-    low, high : heights at which it begins and ends.
-    ends : heights of its first and its last cells, in the unit of the row.
-    cells : across it.
-    gap : whether there is no blade in it.
+    low, high : heights in the channel at which the zone begins and ends, from 0 to 1.
+    ends : lengths along the span of its first and its last cells, in the unit of the row.
+    cells : number of cells from `low` to `high`.
+    gap : whether the zone is a gap, without the blade.
     """
 
     low: float
@@ -43,12 +46,12 @@ class Zone:
 
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
-    """Return how many cells a section has where the row has about `cells` in all, or what growth needs."""
+    """Return the number of cells of a section if the row has about `cells`, or as many as `growth` needs."""
     return max(_needed(growth), int(cells / _sections(zones)))
 
 
 def fewest_cells(zones: Sequence[Zone], growth: float) -> int:
-    """Return about how many cells a row has at least, so that they grow by `growth`."""
+    """Return the approximate smallest number of cells of a row with which cells grow by at most `growth`."""
     return round(_needed(growth) * _sections(zones))
 
 
@@ -62,9 +65,9 @@ def _sections(zones: Sequence[Zone]) -> float:
 
 
 def zones_of(row: Row, first: float, growth: float, cells: int) -> list[Zone]:
-    """Return the zones of a row of about so many `cells`, from hub to casing.
+    """Return the zones of a row with about `cells` cells, from hub to casing.
 
-    Cells in gaps start with `first`, or less where the gap is too narrow for `GAP_ROWS` of that.
+    First cells in gaps have the height `first`, or less if a gap is too narrow for `GAP_ROWS` cells of it.
     """
     channel = row.channel
     parts = PARTS * math.cbrt(cells / PARTS_CELLS)

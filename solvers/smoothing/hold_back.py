@@ -24,7 +24,7 @@ _SMALL = 0.02
 def held_back(grid: Grid, given: Layout, layout: Layout, before: PlaneMeasures) -> Grid | None:
     """Return `grid`, whose layout is `given`, moved towards `layout` only where it does not become worse.
 
-    `before` are its measures. The result is None if hardly any node would move.
+    `before` are the measures of `grid`. The result is None if hardly any node would move.
     """
     part = np.ones(len(given.mesh.nodes))
     for number in range(_ROUNDS):

@@ -36,8 +36,8 @@ class CoarserCopy:
     Parameters
     ----------
     mesh : the copy.
-    nodes : (m,) numbers of its nodes in the finer mesh.
-    kept : for each block and direction, the layers of nodes in the copy.
+    nodes : (m,) numbers, in the finer mesh, of the nodes of the copy.
+    kept : for each block and direction, the indices of the layers of nodes that the copy has.
     """
 
     mesh: HexMesh

@@ -11,20 +11,20 @@ from meshonet.solvers.stacking.section_nodes import LEAST_AROUND, MOST_AROUND
 from meshonet.solvers.stacking.wing_surface import DEFAULT_AROUND, DEFAULT_SPAN, LEAST_SPAN, cap_of
 
 _ALONG = (DEFAULT_SPAN - 1) / (DEFAULT_AROUND - 1)
-"""Cells along the span for each cell around, as in default grids."""
+"""Ratio of the number of cells along the span to that around a section, as in default grids."""
 _ENOUGH = 1.1
-"""Cells over those wanted above which a note says so."""
+"""Ratio of the number of cells to the requested one above which a note says so."""
 
 
 def with_counts(
     stack: Stack, request: StackRequest, cells: int, rows: int
 ) -> tuple[StackRequest, tuple[str, ...]]:
-    """Return the request with the nodes around and along the span for so many `cells`, and notes.
+    """Return the request with node counts around and along the span for about `cells` cells, and notes.
 
-    Lines away from the wall have `rows` cells, which first cell and growth determine. Nodes that the request
-    gives are kept.
+    Lines away from the wall have `rows` cells, a number that follows from first cell and growth. Node counts
+    that the request contains are kept.
 
-    Raises InputError: a request with cells, nodes around and nodes along the span.
+    Raises InputError: cells, nodes around and nodes along the span are all given.
     """
     if request.around is not None and request.span is not None:
         raise InputError("{cells}, {around} and {span} say how fine the grid is", "give two of them at most")

@@ -47,8 +47,8 @@ class Around:
     cells : number of cells on a side.
     base : number of cells on the base, even.
     gap : smallest height of the base in chords.
-    edge, nose : lengths of the cells next to the base and at the nose, in chords; None: `_EDGE_CELL` times
-        the cells on the base, and `NOSE_CELL` times the mean cell.
+    edge, nose : lengths of the cells next to the base and at the nose, in chords; None: 1.2 times the length
+        of the cells on the base, and 0.35 times the mean length of the cells on a side.
     """
 
     cells: int
@@ -70,7 +70,7 @@ class Around:
         return TanhLaw.fitted(self.cells, *self.ends(height, length))
 
     def ends(self, height: float, length: float) -> tuple[float, float]:
-        """Return the lengths of the cells next to the base and at the nose, over that of the side."""
+        """Return the lengths of the cells next to the base and at the nose, relative to that of the side."""
         edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
         first = edge if self.edge is None else self.edge / length
         last = NOSE_CELL / self.cells if self.nose is None else self.nose / length

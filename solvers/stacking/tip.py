@@ -34,7 +34,7 @@ _RATIO = 1.7  # of neighbouring rows of the ring, at the most
 _SWEEPS = 50  # of smoothing around the ring
 _FINE = 65  # places on each line of the ring by which its length is measured
 _ENDS = tuple(0.5 + 0.1 * k for k in range(10))
-"""Distances of the core from nose and edge that are tried, over the usual ones."""
+"""Factors on the distances of the core from nose and trailing edge that are tried."""
 _CLEAR = 1.3  # by which the core stays farther from nose and edge than the nodes that face its ends
 _NOSE, _EDGE = 0.35, 0.3  # and at least so many thicknesses of the section there
 
@@ -45,9 +45,10 @@ class Cap:
 
     Parameters
     ----------
-    short : number of cells on each side of an edge that end at a short side of the core.
-    rows : number of cells of the ring from the section's edge to the core; they grow by a constant ratio.
-    bulge : height relative to that of a half circle over the section; 0 is flat.
+    short : number of cells on each side of the trailing edge, and of the nose, that end at a short side of
+        the core.
+    rows : number of cells of the ring from the section to the core; they grow by a constant ratio.
+    bulge : height of the cap divided by half the local thickness of the section; 0 is flat.
     """
 
     short: int = 4
@@ -55,14 +56,15 @@ class Cap:
     bulge: float = 1.0
 
     def cells(self, nodes: int) -> int:
-        """Return the number of cells of ring and core for so many nodes around the section."""
+        """Return the number of cells of ring and core for `nodes` around a section; one is repeated."""
         return (nodes - 1) * self.rows + (nodes // 2 - 2 * self.short) * 2 * self.short
 
     def patches(self, loop: Floats) -> tuple[Floats, Floats]:
         """Return nodes of the ring (n, rows + 1, 3) and of the core (n // 2 - 2 short + 1, 2 short + 1, 3).
 
-        The closed `loop` (n, 3) is in a plane of constant z and runs from the trailing edge along the upper
-        side first. The cap is above it; the normals of both patches point to +z.
+        The closed `loop` (n, 3) repeats its first node at its end, lies in a plane of constant z and runs
+        from the trailing edge along the upper side first. The cap is above the plane; the normals of both
+        patches point to +z.
         """
         made = {(1.0, 1.0): self._placed(loop, 1.0, 1.0)}
         best = 1.0, 1.0
@@ -164,7 +166,7 @@ class Cap:
         return middle + CORE * across, middle - CORE * across, np.hypot(*across.T)
 
     def connections(self, n: int, ring: int, core: int) -> tuple[Connection, ...]:
-        """Return the connections of the blocks `ring`, with `n` nodes around, and `core`."""
+        """Return the connections of the blocks with numbers `ring`, with `n` nodes around, and `core`."""
         m, half = self.short, (n - 1) // 2
         whole = ((0, self.rows),)
         parts = (
@@ -183,7 +185,7 @@ class Cap:
 
 
 def least_sine(nodes: Floats) -> float:
-    """Return the least sine of an angle between neighbouring edges of cells, of nodes (n, m, 3)."""
+    """Return the least sine of an angle between neighbouring edges of the cells of a patch (n, m, 3)."""
     least = 1.0
     along, across = np.diff(nodes, axis=0), np.diff(nodes, axis=1)
     for a in (along[:, :-1], along[:, 1:]):

@@ -22,14 +22,14 @@ from meshonet.solvers.stacking.tip import Cap
 DEFAULT_AROUND, DEFAULT_SPAN = 129, 49  # nodes
 LEAST_SPAN, MOST_SPAN = 5, 10_001  # nodes
 EDGE, MOST_EDGE = 2.2, 2.5
-"""Intended and largest ratio of neighbouring cells across the edge of a tip."""
+"""Intended and largest ratio of neighbouring cells on both sides of the edge of a tip."""
 _SWEEPS = 20  # of smoothing around the section
 FADE = 8
 """Number of cells from the tip whose lengths vary around the section."""
 REACH = 0.05
-"""Largest distance from the tip, in its chords, over which such cells extend."""
+"""Largest distance from the tip, in chords of the tip, over which such cells extend."""
 _NEAR = 1e-3
-"""Part of the last panel over which the slope of its lines at the tip is measured."""
+"""Part of the last panel over which the slope of grid lines at the tip is measured."""
 _ROOT_CELL = 1.4
 """Length of the cell at the root relative to the mean cell along the span."""
 
@@ -88,7 +88,7 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
 
 
 def cap_of(stack: Stack) -> Cap | None:
-    """Return the cap of the tip of a wing, or None where the tip is open."""
+    """Return the cap of the tip of a wing, or None if the tip is open."""
     return None if stack.tip == "open" else Cap(BASE_CELLS // 2, bulge=1.0 if stack.tip == "round" else 0.0)
 
 
@@ -151,7 +151,7 @@ def _with_last(z: Floats, last: Floats, reach: float) -> Floats:
 def span_heights(sections: Floats, nodes: int, last: float | None) -> Floats:
     """Return z (nodes,) from the first of the `sections` to the last, with a node at each of them.
 
-    Cells decrease towards the tip to the length `last`; without it they are nearly equal.
+    Cells decrease towards the tip to the length `last`; if it is None, cells are nearly equal.
 
     Raises InputError: more sections than nodes.
     """

@@ -57,7 +57,7 @@ class CrossSection:
 
     Parameters
     ----------
-    arcs : its nodes on four sides, which meet at corners of blocks.
+    arcs : nodes of the curve on four sides, which meet at corners of blocks.
     first : first-cell height at the wall; None: about that of the cells of the core.
     """
 
@@ -65,7 +65,7 @@ class CrossSection:
     first: float | None = None
 
     def inner(self, core: float, radial: float) -> list[Floats]:
-        """Return the sides of the core."""
+        """Return the nodes (n, 2) on the sides of a core with the size `core` and the alignment `radial`."""
         middle = np.concatenate([arc[:-1] for arc in self.arcs]).mean(axis=0)
         u = np.linspace(-1.0, 1.0, len(self.arcs[0]))
         t = (0.5 + 0.5 * ((1.0 - radial) * u + radial * tan(0.25 * np.pi * u)))[:, None]
@@ -103,8 +103,9 @@ def planned(
 ) -> FiveBlocks:
     """Return one division for all sections in which neighbouring cells differ by at most `growth`.
 
-    If there is none, the one with the smallest difference is returned. Without `rows` their number is
-    determined; `radial` is for circles.
+    If no division meets this limit, the one with the smallest ratio is returned. If `rows` is None, the
+    number of rows is determined. With `radial`, which suits circles, lines of the ring are aligned with
+    radii.
     """
     best, least = FiveBlocks(_SIZES[0], rows or 1), np.inf
     for core in _SIZES:

@@ -17,7 +17,8 @@ from meshonet.geometry.elementary import exp
 from meshonet.geometry.spacing.growth import LARGEST
 
 TRIED = 8
-"""Number of row counts that are tried, starting with the smallest; one of these is good if any is."""
+"""Number of row counts that are tried, starting with the smallest; if any count is suitable, one of these is.
+"""
 _HALVINGS = 60  # of the range that the ratio lies in: to the last digit
 _CLOSE = 1e-9  # of the length, to which steps fill it
 

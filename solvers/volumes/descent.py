@@ -34,14 +34,14 @@ class PlanesDescent(HexProblem):
         self.descent = descent_of(self.nodes, tables, sizes, self.mesh.cells, slides, over)
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
-        """Do at most `most` iterations; return the smallest Jacobian and the value."""
+        """Do at most `most` iterations; return the smallest Jacobian and the value of the functional."""
         found = super().run(weights, most, epsilon)
         self.planes[...] = self.nodes.T.reshape(self.planes.shape)
         return found
 
 
 def inverse_lengths(planes: Floats) -> tuple[float, float, float]:
-    """Return the inverse root mean square step of the edges in each direction of planes (3, ni, nj, nk)."""
+    """Return for each direction of `planes` (3, ni, nj, nk) 1 / mean step along the edges of the volume."""
     lengths = []
     for axis in range(3):
         rows = np.moveaxis(planes, axis + 1, -1)

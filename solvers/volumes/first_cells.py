@@ -22,7 +22,10 @@ REACH = 12.0
 
 
 def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, ...]:
-    """Redistribute lines of planes (3, ni, nj, nk), in place, at clustered `faces`; return their sides."""
+    """Redistribute grid lines of `planes` (3, ni, nj, nk), in place, at faces with clustered nodes.
+
+    Returns the names of these faces.
+    """
     kept: list[str] = []
     for axis in range(3):
         heights: list[Floats | None] = [None, None]

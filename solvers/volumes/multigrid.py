@@ -59,7 +59,7 @@ class Level:
             winslow_smooth(x, self.right if forced else None, factor, self.threads, self.room)
 
     def norm(self, x: Floats, forced: bool) -> float:
-        """Return the norm of the residual of x, which is stored in `residual`."""
+        """Return the norm of the residual of x (3, ni, nj, nk); the residual is stored in `residual`."""
         right = self.right if forced else None
         return float(np.sqrt(winslow_residual(x, right, self.residual, self.threads, self.room)))
 
@@ -78,11 +78,12 @@ class VolumeMultigrid:
             self.levels.append(Level(level.faces.resampled(counts), coarse=True))
 
     def nested(self) -> tuple[Floats, float, float]:
-        """Return x after a cycle on each level, its difference from the coarser level, and the last change.
+        """Return x (3, ni, nj, nk) after a cycle on each level, starting with the coarsest, and two numbers.
 
-        The difference from the interpolation is transferred to finer levels. Both numbers are the largest
-        differences of a coordinate: from the next coarser level, which is about three times the
-        discretisation error, and by the last cycle.
+        Each level starts from transfinite interpolation plus the interpolated correction of the next coarser
+        level. The first number is the largest difference of a coordinate between the last two levels, about
+        three times the discretisation error; the second is the largest change of a coordinate by the last
+        cycle.
         """
         last = len(self.levels) - 1
         x = self.levels[last].start.copy()
@@ -100,9 +101,10 @@ class VolumeMultigrid:
         return x, apart, change
 
     def cycle(self, x: Floats) -> tuple[float, float]:
-        """Do one V cycle in place.
+        """Do one V cycle on `x` (3, ni, nj, nk) in place.
 
-        Return the norm of the residual before it, and the change of some nodes.
+        Returns the norm of the residual before the cycle, and the largest change of a coordinate at every
+        third node of each direction.
         """
         some = x[:, ::SOME, ::SOME, ::SOME]
         before = some.copy()
@@ -110,7 +112,7 @@ class VolumeMultigrid:
         return norm, float(np.abs(some - before).max())
 
     def norm(self, x: Floats) -> float:
-        """Return the norm of the residual of x."""
+        """Return the norm of the residual of x (3, ni, nj, nk)."""
         return self.levels[0].norm(x, False)
 
     def _cycle(self, depth: int, x: Floats, forced: bool) -> float:

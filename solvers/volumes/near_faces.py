@@ -26,7 +26,7 @@ Ranges = list[tuple[int, int]]
 
 
 def closed_place(faces: SixFaces) -> Place | None:
-    """Return i, j, k of an interior node without a valid position, or None."""
+    """Return indices i, j, k of an interior node that has no valid position, or None."""
     for sides, ranges in next_to_faces(faces.counts):
         walls = tuple((np.ascontiguousarray(getattr(faces, side)), *PLACES[side]) for side in sides)
         sizes = [last - low for low, last in ranges]
@@ -39,7 +39,7 @@ def closed_place(faces: SixFaces) -> Place | None:
 
 
 def next_to_faces(counts: tuple[int, int, int]) -> Iterator[tuple[tuple[Side, ...], Ranges]]:
-    """Yield sets of sides, those of three first, and the interior nodes next to all of them."""
+    """Yield sets of three, two or one sides, and the interior nodes next to all sides of the set."""
     for size in (3, 2, 1) if min(counts) > 2 else ():
         for sides in combinations(FACES, size):
             if len({PLACES[side][0] for side in sides}) == size:

@@ -92,3 +92,22 @@ def test_grids_follow_the_curves_and_have_the_names_of_layers(case: str, tmp_pat
     grid = made(draw, tmp_path)
     assert {patch.name for patch in grid.patches} == names
     assert area(grid) == pytest.approx(exact, rel=1e-3)
+
+
+OPEN = {
+    "a line": ([((0, 0), (2, 1))], r"one edge ends at \(0, 0\); the boundary has to consist of closed"),
+    "a corner": ([((0, 0), (2, 1)), ((2, 1), (2, 3))], r"one edge ends at \(0, 0\)"),
+    "there and back": ([((0, 0), (2, 1)), ((2, 1), (0, 0))], "has 2 edges; a closed curve needs at least 3"),
+}
+
+
+@pytest.mark.parametrize("case", OPEN)
+def test_open_ends_of_few_lines_are_named(case: str, tmp_path: Path) -> None:
+    lines, message = OPEN[case]
+
+    def draw(_, space) -> None:
+        for line in lines:
+            space.add_line(*line)
+
+    with pytest.raises(meshonet.InputError, match=message):
+        made(draw, tmp_path)

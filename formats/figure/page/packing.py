@@ -23,7 +23,7 @@ _MOST = 2.0**50
 
 @dataclass(frozen=True)
 class Packed:
-    """Base64 text of integers, how many they are, and the number of bytes of each."""
+    """Base64 text of integers, their number, and the number of bytes of each."""
 
     text: str
     count: int

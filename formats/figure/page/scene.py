@@ -32,7 +32,9 @@ from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import Metric, metric_of, metrics_of
 
 MOST_NODES = 1_500_000
-"""Largest number of nodes of a volume in a page; of a larger one it has the boundary and some layers."""
+"""Largest number of nodes of a volume that a page contains completely; of a larger volume it contains the
+boundary and some layers.
+"""
 _AROUND = 5  # cells to each side of a bad one whose lines a page of such a volume has
 _LAYERS = 3  # fewest layers across each direction of such a volume
 
@@ -93,9 +95,10 @@ class Scene:
 
 
 def scene_of(grid: Grid, layer: tuple[str, int] | None = None, shown: str | None = None) -> Scene:
-    """Return the scene of a grid, with all its metrics and that which is `shown` first.
+    """Return the scene of a grid with all its metrics; the metric `shown` comes first.
 
-    That of a large volume has the given `layer`.
+    `layer` is a direction (``i``, ``j`` or ``k``) and an index: the scene of a large volume contains this
+    layer.
     """
     lattices, sheets = _whole(grid) if _fits(grid) else _in_part(grid, layer)
     low = np.min([lattice.nodes.reshape(-1, lattice.nodes.shape[-1]).min(axis=0) for lattice in lattices], 0)

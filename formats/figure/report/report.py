@@ -32,7 +32,7 @@ class QualityPage:
     def add(self, label: str, report: QualityReport) -> None:
         """Add the report of a grid with the name `label`.
 
-        Raises InputError: a gate for a figure that it lacks.
+        Raises InputError: a gate for a figure that the report does not contain.
         """
         report = report.under(self._gates)
         good, angle = passed(report, self._gates), report.quality["max_angle"].max

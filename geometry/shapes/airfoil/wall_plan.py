@@ -48,8 +48,9 @@ fold.
 _ROUND_CELLS = 14  # fewest cells on half a rounded base, if there are 16 times as many in total
 _BASE_SHARE = 0.35  # largest fraction of all cells on the base
 _LEAN = math.radians(0.8)
-"""Largest angle between a surface at a corner of the base and its first cells, those of a grid coarsened
-by `_COARSENED` too."""
+"""Largest angle between a surface at a corner of the base and its first cells, also in the grid coarsened
+by four.
+"""
 _COARSENED = 4  # two halvings, for a family of three grids
 _LONGER = 1.2  # factor on the length of that many cells, since they grow away from the corner
 _SMALLER = 64.0  # largest factor by which cells beside a base are smaller for this

@@ -101,11 +101,10 @@ def _best(
     surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, hollows: Hollows,
     steps: Floats, growth: float, *, wing: bool,
 ) -> tuple[_Volume, int]:  # fmt: skip
-    """Return the first volume that is good enough, or else the best, and how many were made.
+    """Return the first volume that is good enough, or else the best one, and the number of attempts.
 
-    Without folded cells it is, and on a `wing` if no cell is worse than `_POOR`.
-
-    Each is marched again by smaller steps where its cells grow by more than `growth`.
+    A volume is good enough if it has no folded cells and, for a `wing`, no scaled Jacobian below 0.35. A
+    volume whose cells grow by more than `growth` is marched again by smaller steps.
     """
     best: _Volume | None = None
     most = (0, -math.inf, 0.0)

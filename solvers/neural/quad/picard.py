@@ -92,7 +92,7 @@ def nodes_after(n: int) -> int:
 
 @lru_cache(maxsize=8)
 def _padded(n: int, around: bool) -> tuple[Floats, Floats]:
-    """Return the tables of `_transform` with padded rows, as the compiled steps take them."""
+    """Return the transform and its eigenvalues for `n` nodes, with rows padded for the compiled steps."""
     table, values = _transform(n, around)
     more = -len(values) % LINE
     tables = np.pad(table, ((0, 0), (0, more))), np.pad(values, (0, more), constant_values=1.0)

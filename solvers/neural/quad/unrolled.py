@@ -32,7 +32,11 @@ def middles(walls: Any, xp: Any = np) -> Any:
 
 
 def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
-    """Return the strips of closed O grids `z` (batch, m + 1, n), and a mask of those that wind once."""
+    """Return the strips Z of O grids `z` (batch, m + 1, n) around `centres` (batch,), and a mask (batch,).
+
+    The first index of `z` runs around the body and repeats the first node. The mask tells which grids wind
+    once around their centre; the strips of others are of no use.
+    """
     off = z - centres[:, None, None]
     with np.errstate(divide="ignore", invalid="ignore"):
         angle_of = functions_of(xp).angle
@@ -47,10 +51,10 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any = np) -> tuple[Any, Any, Any]:
-    """Return the strips of `walls` (batch, m + 1, n), their centres, and a mask of those that wind once.
+    """Return the strips of `walls` (batch, m + 1, n), their centres (batch,), and the mask of `unrolled`.
 
-    Centres are the centroids of the bodies' closed walls `wall` (batch, ni) if `walls` wind around them,
-    otherwise the points that `inside` returns for closed curves (m,).
+    Centres are the centroids of the bodies' closed walls `wall` (batch, ni) if `walls` wind once around them,
+    otherwise the points that `inside` returns for the closed curves (m,) ``walls[k, :-1, 0]``.
     """
     centres = middles(wall[:, :-1], xp)
     strips, once = unrolled(walls, centres, xp)
@@ -68,11 +72,14 @@ def even(strips: Any, n: int, xp: Any = np) -> Any:
 
 
 def factors(strips: Any, xp: Any = np) -> Any:
-    """Return the factor for each strip (batch, m + 1, n) that makes the area of half its period 1."""
+    """Return the factor (batch,) for each strip (batch, m + 1, n) that makes the area of half a period 1."""
     heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
     return 1.0 / xp.sqrt(0.5 * TURN * heights)
 
 
 def rolled(strips: Any, centres: Any = 0.0, xp: Any = np) -> Any:
-    """Return the O grids of `strips` (batch, m + 1, n) around `centres` (batch, 1, 1)."""
+    """Return the O grids (batch, m + 1, n) whose `strips` Z, of the same shape, these are.
+
+    `centres` (batch, 1, 1), complex, are those of the logarithms. The inverse of `unrolled`.
+    """
     return functions_of(xp).exp(times(-1j, strips)) + centres
