@@ -1,13 +1,13 @@
-"""Wall cells of planned sizes around an airfoil: how many each stretch has, and how large its end cells are.
+"""Wall cells of planned sizes around an airfoil: numbers of cells on base and sides, and sizes of end cells.
 
 ::
 
     half base | lower side                      nose   upper side                      | half base
     0 ... lower ................................ nose ................................ upper ... length
 
-Both sides get the same number of cells. If half a cell is left over, one cell lies astride the nose, so that
-a symmetric section has symmetric nodes for every node count. The first cells of the sides are as large as the
-cells of the base next to them.
+Both sides get the same number of cells. If the number of all cells is odd, one cell is centred on the nose,
+so that a symmetric section has symmetric nodes for every node count. The first cells of the sides are as
+large as the cells of the base next to them.
 """
 
 from __future__ import annotations
@@ -29,8 +29,10 @@ if TYPE_CHECKING:
     from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 _EDGE_STEP = 20.0
-"""Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O
-grids: with smaller cells they are less orthogonal, with larger ones more of them fold at the edge."""
+"""Length of the cell at a sharp trailing edge, in mean cells, times the number of cells of a side. It is a
+compromise measured on O grids: with smaller cells grids are less orthogonal, with larger cells more grids
+fold at the edge.
+"""
 _EDGE_PART = 0.24
 """Length of the same cell for spacing by curvature, the default of marched grids, in mean cells."""
 _BASE_GROWTH = 1.06
