@@ -1,4 +1,4 @@
-"""Grids as layers of a network: boundaries in torch in, nodes out, with gradients, for batches.
+"""Grids as layers of a network: boundary tensors in, node tensors out, with gradients, for batches.
 
     import torch
     from meshonet import layer
@@ -7,9 +7,9 @@
     nodes.square().mean().backward()                  # gradients of the boundary nodes
 
 Sides of `transfinite`, `winslow` and `variational` are tensors (..., n, 2), south and north along xi, west
-and east along eta, with common corners; leading dimensions are batches. Results are on the device of the
-sides and of their dtype; the arithmetic is in double precision. `torch.func.vmap` and `torch.func.grad` apply
-to these functions. They need torch (extra ``train``).
+and east along eta, with common corners; leading dimensions are batches. Results have the device and the dtype
+of the sides; the arithmetic is in double precision. `torch.func.vmap` and `torch.func.grad` can be applied to
+these functions. The module needs torch (extra ``train``).
 """
 
 from meshonet.solvers.neural.devices import INSTALL_TORCH

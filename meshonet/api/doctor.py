@@ -35,7 +35,7 @@ _LIMIT = re.compile(r"(>=|<)\s*([\d.]+)")
 
 @dataclass(frozen=True)
 class Finding:
-    """A result of the examination: its group, name and value, whether it is well, and a remedy.
+    """A result of the examination: group, name and value of a part, whether it works (`well`), and a remedy.
 
     `well` is None for optional parts that are not installed.
     """
@@ -48,7 +48,7 @@ class Finding:
 
 
 def doctor() -> list[Finding]:
-    """Examine the installation: which parts are installed, whether they work, and what is missing.
+    """Examine which parts of the installation exist and work.
 
     Returns
     -------

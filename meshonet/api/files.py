@@ -104,7 +104,7 @@ def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
 def only(records: Iterator[T], source: str | Path, what: str, remedy: str = "give a file with one") -> T:
     """Return the only one of the records of a source; `what` describes its content.
 
-    Raises InputError, with the remedy: there is none, or a second one.
+    Raises InputError, with the `remedy`: no record, or more than one.
     """
     record = next(records, None)
     if record is None:
@@ -198,9 +198,9 @@ def write(what: Writable | Iterable[Writable], path: str | Path, *, to_format: s
 def put_whole(
     fmt: Format, path: str | Path, put: Callable[[Path, Iterator[Any]], None], members: Iterator[Any]
 ) -> None:
-    """Write members with `put` into a file of this format; on an error nothing is written.
+    """Write members with `put` into a file of the format `fmt`; after an error no file is written.
 
-    Raises InputError: several members for a format that holds one; a path that cannot be written.
+    Raises InputError: several members for a format that can store only one; a path that cannot be written.
     """
     if not fmt.many:
         two = list(islice(members, 2))

@@ -94,7 +94,7 @@ def grid(
 
 
 def domain_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
-    """Return parameters with the layout of a file read, and names of walls and of sides as tuples."""
+    """Return `parameters` with the layout of a file read, and the names of walls and sides as tuples."""
     layout, walls = parameters.get("layout"), parameters.get("walls", ())
     if isinstance(layout, str | Path):
         parameters = parameters | {"layout": layout_of(str(layout))}

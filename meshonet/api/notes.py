@@ -1,4 +1,4 @@
-"""Notes of results, which grids in Python have as an attribute."""
+"""Notes of results, which are the attribute `notes` of grids in Python."""
 
 from collections.abc import Iterable
 from dataclasses import replace

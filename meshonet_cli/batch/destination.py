@@ -102,7 +102,7 @@ class Destination:
         return path
 
     def check_room(self, remedy: str = "") -> None:
-        """Raise InputError if there are several inputs for a file that stores one; with another `remedy`."""
+        """Raise InputError, with `remedy`, if there are several inputs for a file that stores one."""
         if not (self.each or self.format.many):
             raise InputError(
                 f"several inputs and one {self.format.name} file, which holds one",
@@ -170,7 +170,7 @@ def _size_there(index: Path) -> int:
 def usual_part_size(nodes: int | None, most: int = _MOST_IN_PART) -> int:
     """Return the number of grids in a part of up to 256 MiB, at most `most`; `nodes` is None if unknown.
 
-    It is rounded down to 1, 2 or 5 times a power of ten.
+    The number is rounded down to 1, 2 or 5 times a power of ten.
 
     >>> usual_part_size(200 * 100), usual_part_size(65 * 65), usual_part_size(800 * 400)
     (500, 1000, 20)
@@ -214,7 +214,7 @@ def _fields(text: str) -> list[str]:
 def same_size(what: Grid | Boundary | Layout, size: str) -> str:
     """Return the size of a result for a dataset.
 
-    Raises InputError: it differs from `size`, that of the first.
+    Raises InputError: the size differs from `size`, the size of the first result.
     """
     if not isinstance(what, Grid | Boundary):  # files of layouts hold one
         return ""

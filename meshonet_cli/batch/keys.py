@@ -20,7 +20,10 @@ class Keys:
         self._taken: set[str] = set()
 
     def named(self, item: Item[Any], what: Any) -> Any:
-        """Return a grid or boundary with its key as name; another name that it had becomes its title."""
+        """Return the grid or boundary `what` with its key as name.
+
+        A different earlier name becomes its title.
+        """
         if not isinstance(what, Grid | Boundary):
             return what
         wanted = item.stem if _of_file(item) else what.name

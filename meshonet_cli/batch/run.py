@@ -34,7 +34,7 @@ def each(make: Callable[..., tuple[Any, Timed]], **settings: Any) -> Make:
 
 @dataclass(frozen=True)
 class BatchTask:
-    """What a command does with each of its inputs; `read` and `make` may run in other processes.
+    """Functions that a command applies to each of its inputs; `read` and `make` may run in other processes.
 
     Parameters
     ----------
@@ -43,10 +43,11 @@ class BatchTask:
     kind : kind of the results.
     put : function that writes to a path, instead of the format's own function.
     nodes : approximate number of nodes of a result; None if unknown.
-    space : what the blocks of all results are in space, so that a format without them is refused at once.
+    space : kind of blocks in space of all results, so that formats that cannot store them are refused at
+        once.
     together : number of members that a process gets at a time.
     assembled : sampling of the far field if all inputs form one domain.
-    joined : how several inputs can become one, a remedy if the output stores one result.
+    joined : remedy if the output stores one result and there are several inputs.
     """
 
     read: Callable[[Any], Iterator[Any]]

@@ -25,7 +25,7 @@ Walls = Annotated[str | None, _option(
 
 @dataclass(frozen=True, kw_only=True)
 class DomainOptions:
-    """How a domain is split into blocks. Each of these options except --assemble makes a multi-block grid."""
+    """Division of a domain into blocks. Each of these options except --assemble makes a multi-block grid."""
 
     assemble: Annotated[bool, _option(
         "--assemble",
@@ -76,7 +76,7 @@ class DomainOptions:
     )] = None
 
     def parameters(self) -> dict[str, Any]:
-        """Return them for the library; raise InputError for what cannot be read."""
+        """Return the options as parameters of the library. Raises InputError: a text that cannot be read."""
         values = dict(vars(self), walls=(), periodic=tuple(map(_pair, self.periodic or ())))
         del values["assemble"]
         if self.layout is not None:

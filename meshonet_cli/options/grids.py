@@ -26,7 +26,7 @@ class GridOptions(RunOptions, GateOptions, FileOptions):
     ) -> "GridRequest":  # fmt: skip
         """Return the request for the grids, from blocks of options and additional fields `more`.
 
-        Raises InputError: as `GridRequest`.
+        Raises InputError: see `GridRequest`.
         """
         from meshonet.solvers.pipeline.request import GridRequest
 

@@ -11,7 +11,7 @@ import typer
 IO, SAMPLING, BOUNDARY_LAYER = "Input and output", "Sampling", "Boundary layer"
 DOMAIN, VOLUME = "Domains of many blocks", "Volumes from surfaces"
 METHOD, CHECKS = "Method", "Checks"
-"""Headings of the groups, with those above."""
+"""Headings of the groups of options in help texts."""
 GROUPS = (IO, SAMPLING, BOUNDARY_LAYER, DOMAIN, VOLUME, METHOD, CHECKS)  # in the order of the help text
 
 
@@ -56,7 +56,7 @@ def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:
-    """Return the InputError for an option with the value `text`, which is not `what` is expected."""
+    """Return the InputError for an option with the value `text`; `what` describes the expected value."""
     from meshonet.geometry.errors import InputError
 
     return InputError(f"{text!r} is not {what}", remedy, parameter=parameter)

@@ -109,7 +109,7 @@ class InputOptions(PrintOptions):
     ) -> "Inputs":
         """Return the inputs that `words` name: shapes, `grids`, or files with the given extensions.
 
-        Raises InputError: as `Inputs`; an invalid shard.
+        Raises InputError: an invalid shard; see also `Inputs`.
         """
         from meshonet.formats.inputs import Inputs
 

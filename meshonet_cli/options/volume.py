@@ -45,7 +45,7 @@ def axis_of(text: str | None) -> "AxisLine | None":
 def copies_of(text: str | None) -> int | tuple[int, ...]:
     """Return the numbers of copies along each period in an option, 1 for None.
 
-    Raises InputError: other text than whole numbers with x between them.
+    Raises InputError: a text that is not integers separated by x.
 
     >>> copies_of("3x2"), copies_of("23")
     ((3, 2), 23)
@@ -60,7 +60,7 @@ def copies_of(text: str | None) -> int | tuple[int, ...]:
 
 @dataclass(frozen=True, kw_only=True)
 class VolumeOptions:
-    """How a volume is marched from a surface, or made inside six faces."""
+    """Settings for volumes that are marched from a surface or made inside six faces."""
 
     layers: Layers = None
     symmetry: Annotated[Literal["x", "y", "z", "none"] | None, _option(

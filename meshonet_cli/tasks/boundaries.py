@@ -45,7 +45,7 @@ def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = Non
 
 
 def itself(member: Draw) -> Iterator[Draw]:
-    """Yield a member of a family, which is its own content."""
+    """Yield `member`: the content of a member of a family is the member itself."""
     return iter([member])
 
 

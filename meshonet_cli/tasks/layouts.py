@@ -23,7 +23,10 @@ from meshonet_cli.report.delivered import Delivered
 def write_layouts(
     batch: Batch, parameters: Mapping[str, Any], far_field: float | None, *, assemble: bool = False
 ) -> int:
-    """Split the domains of the inputs, or the one formed by all, into blocks, and return the exit code."""
+    """Split the domains of the inputs into blocks, write the layouts, and return the exit code.
+
+    With `assemble` the inputs form one domain.
+    """
     sampling = Sampling(far_field=far_field)
     read = partial(read_shapes, fmt=batch.files.from_format)
     make = each(_split, request=GridRequest(sampling, **parameters))

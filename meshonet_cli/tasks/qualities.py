@@ -31,8 +31,8 @@ def measure_grids(
     """Measure every grid of `inputs`, print the reports and return the exit code.
 
     `compare` is a file of reference grids, which are matched by `pairing`. `summary` prints one table for all
-    grids. `plot`, `per_cell` and `html` are files for pictures, metrics and the report. The Reynolds
-    number and its length are those for y+.
+    grids. `plot`, `per_cell` and `html` are files for pictures, metrics and the report. y+ is reported for
+    the Reynolds number and its reference length.
     """
     gates, profiles = (criteria.gates, criteria.profiles) if criteria else ((), ())
     session.summary, session.judges = summary, criteria is not None

@@ -47,7 +47,7 @@ class StageLine:
     def text(self) -> str:
         """Return the line.
 
-        For stages without steps with a detail, which in the first second is shown alone.
+        For stages without steps the line has a detail, which is shown alone in the first second.
         """
         stage, now = self._stage, time.perf_counter()
         spent = now - self._begun

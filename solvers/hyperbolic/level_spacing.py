@@ -18,8 +18,8 @@ from meshonet.geometry.spacing.growth import growing_steps, growth_rate
 
 _LESS = 0.24  # largest reduction of growth, as a fraction, where lines from an edge of zero angle diverge
 _BEGIN, _FULL = 1.2, 3.0
-"""Distances from the wall, divided by the cell at the edge: where half of the reduction of growth has ended,
-and where it begins to end.
+"""Distances from the wall, in lengths of the cell at the edge: at the first, half of the reduction of growth
+has begun; from the second on, the reduction fades.
 """
 _FADE = 0.45  # power of the height with which it fades
 _BEFORE = 0.04  # part of the growth left out nearer to the wall, where lines off a leading edge grow the most

@@ -31,7 +31,7 @@ class Operator(ABC):
         """Return the operator of a file's header and arrays.
 
         Raises InputError, KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError: header
-        or arrays are not those of such an operator.
+        or arrays do not belong to an operator of this class.
         """
 
     @abstractmethod
@@ -46,11 +46,11 @@ class Operator(ABC):
     ) -> list[Solution]:
         """Return a grid inside each boundary; it may be folded (see `meshonet.solvers.pipeline.fallback`).
 
-        `polish`: number of steps after the network, where the operator has such steps; `paste`: replace the
-        edges by the boundary's nodes, where the network does not reproduce them; `dtype`: ``float64`` or
-        ``float32`` arithmetic of the quad network, whose grids differ by about 1e-6; `threads`: concurrent
-        batches of the quad network, which do not change grids. Raises InputError: a boundary of another
-        topology.
+        `polish`: number of steps after the network, for operators with such steps; `paste`: replace the edges
+        by the nodes of the boundary, for networks that do not reproduce these; `dtype`: ``float64`` or
+        ``float32`` arithmetic of the quad network, whose grids then differ by about 1e-6; `threads`: number
+        of concurrent batches of the quad network, without effect on grids. Raises InputError: a boundary of
+        another topology.
         """
 
     @property
@@ -59,9 +59,9 @@ class Operator(ABC):
         return "winslow"
 
     def expected_error(self, boundary: Boundary, solution: Solution) -> float:
-        """Return the expected relative L2 error of a solution of `solve` (`confidence`).
+        """Return the expected relative L2 error of a solution of `solve` (see `confidence`).
 
-        Infinite where the solver that it imitates cannot go on from it.
+        It is infinite if the solver that the operator imitates cannot continue from the solution.
         """
         return expected_error(solution.grid, boundary, self.goal)
 
@@ -76,7 +76,7 @@ class Operator(ABC):
 def in_batches(boundaries: Sequence[Boundary], threads: int = 1) -> Iterator[list[int]]:
     """Yield batches, as indices of at most `BATCH` boundaries with equal node counts, each boundary once.
 
-    Batches with the same node counts have about equal sizes, and are many enough to keep all `threads` busy.
+    Batches with the same node counts have about equal sizes; there are enough batches for all `threads`.
     """
     groups: dict[tuple[int, int], list[int]] = {}
     for k, boundary in enumerate(boundaries):

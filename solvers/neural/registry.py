@@ -1,4 +1,4 @@
-"""The trained models: those shipped or in files, by `load`."""
+"""The trained models, shipped or in files; `load` returns one."""
 
 from __future__ import annotations
 
@@ -19,10 +19,12 @@ BASE = "base"  # the harmonic base with no network, where a strip operator can b
 DEFAULTS: dict[Topology, str] = {"o": "airfoil-o", "quad": "quad-general"}  # where none is named
 
 HEADS = {"quad-winslow": ("quad-general", 0), "hole-winslow": ("hole-o", 0)}
-"""Models that are another output of a network: the name of its file, and the index of the output."""
+"""Models that are the second output of a network: for each the name of the network's file, and the index of
+the output.
+"""
 
 NEVER = {"airfoil-c": "leave {model} out: {topology} c is marched from wall and wake, better than by a model"}
-"""Models that do not exist but may be asked for, with the remedy in the error message."""
+"""Models that do not exist but users may expect, with the remedy in the error message."""
 
 OPERATORS: dict[Kind, str] = {
     STRIP: "meshonet.solvers.neural.strip.operator:StripOperator",
@@ -53,10 +55,9 @@ def model_path(name: str) -> Path:
 
 
 def load(name: str | Path) -> Operator:
-    """Return a shipped operator by name, one of a file by path, or ``base``.
+    """Return a shipped operator by name, the operator of a file by path, or ``base``.
 
-    Raises InputError: no such model; a file that is not one of ours, or whose arrays are not those of the
-    model it names.
+    Raises InputError: no such model; a file that is not a model file, or whose arrays do not match its model.
 
     >>> operator = load("quad-general")
     >>> operator.name, operator.topology
@@ -76,9 +77,9 @@ def load(name: str | Path) -> Operator:
 
 
 def makes_volumes(name: str) -> bool:
-    """Return whether a model fills six faces (`meshonet.solvers.neural.volumes`), not planar boundaries.
+    """Return whether a model is for volumes inside six faces (`meshonet.solvers.neural.volumes`).
 
-    Raises InputError: no such model; a file that is not one of ours.
+    Raises InputError: no such model; a file that is not a model file.
     """
     return name not in (BASE, *shipped()) and read_model(model_path(name))[0] == VOLUME
 

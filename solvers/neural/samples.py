@@ -17,7 +17,7 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """n solved grids."""
+    """Solved grids of one size and topology; n is their number."""
 
     nodes: Floats  # (n, ni, nj, 2), any unit of length
     topology: Topology  # ``quad`` or ``o``
@@ -49,7 +49,7 @@ class Samples:
         return Samples(self.nodes[chosen], self.topology, names, splits, self.parameters[chosen])
 
     def where(self, split: str) -> NDArray[np.intp]:
-        """Return the indices of the samples of a split; samples of no split count as ``train``."""
+        """Return the indices of the samples of a split; samples without a split count as ``train``."""
         return np.array([k for k, own in enumerate(self.splits) if (own or "train") == split], dtype=np.intp)
 
     def fingerprint(self) -> str:
@@ -67,7 +67,7 @@ def edges(nodes: Floats, topology: Topology, name: str = "") -> Boundary:
 def gathered(grids: Iterable[Grid]) -> Samples:
     """Return `grids` as samples.
 
-    Raises InputError: no grid, one of another size or topology than the first, a C grid.
+    Raises InputError: no grid; a grid whose size or topology differs from the first; a C grid.
     """
     rows: list[Floats] = []
     facts: list[tuple[str, str, float]] = []

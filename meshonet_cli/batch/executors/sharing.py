@@ -36,7 +36,7 @@ def shared(
 ) -> Iterator[Pair]:  # fmt: skip
     """Yield members in order with their results, computed by the workers of `engine`.
 
-    A task has `size` members; if that is 1, members that take little time are grouped.
+    A task has `size` members; if `size` is 1, members that take little time are grouped.
     """
     timed, grows, most = _Timed(work), size == 1, size
 

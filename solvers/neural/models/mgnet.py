@@ -5,9 +5,9 @@
     (x, y) = N_g(phi(xi, eta))    phi = (2 xi - 1, 2 eta - 1); of an O grid (sin, cos of 2 pi xi, 2 eta - 1)
     loss   = mean |alpha X_xx - 2 beta X_xe + gamma X_ee|^2 + boundary * mean |X - U|^2
 
-in units of each geometry's own size. The networks of all geometries are stacked and trained together. A model
-file serves these geometries only, at any resolution. Chen et al., MGNet, Engineering with Computers 38 (2022)
-4409; an improved method, arXiv 2210.09546 (auxiliary lines).
+Lengths are relative to the size of each geometry. The networks of all geometries are stacked and trained
+together. A model file serves only the geometries that it was trained on, at any resolution. Chen et al.,
+MGNet, Engineering with Computers 38 (2022) 4409; an improved method with auxiliary lines is arXiv 2210.09546.
 """
 
 from collections.abc import Sequence
@@ -46,7 +46,7 @@ class MGNet(Architecture):
         return dense_shapes("net", sizes, stacked=frame.count)
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return sensors, centre and size of every geometry."""
+        """Return sensors (count, s, 2), centre (count, 2) and size (count, 1) of every geometry."""
         edges = samples.boundaries()
         outlines = [np.concatenate([b.south, b.north, b.west, b.east]) for b in edges]
         centre = np.array([0.5 * (o.min(axis=0) + o.max(axis=0)) for o in outlines])
@@ -61,7 +61,7 @@ class MGNet(Architecture):
         return scaled * net["fixed/size"][:, None] + net["fixed/centre"][:, None]
 
     def which(self, w: Weights, seen: Any) -> Any:
-        """Return the index of the network of each geometry: that with the nearest sensors."""
+        """Return the index of the network for each geometry: the network whose sensors are nearest."""
         return ((seen[:, None] - w["fixed/sensors"][None]) ** 2).sum(-1).sum(-1).argmin(1)
 
     def check(self, w: Weights, inputs: Weights) -> None:
@@ -83,7 +83,7 @@ class MGNet(Architecture):
         return xp.concatenate([xp.sin(turn * xi), xp.cos(turn * xi), 2.0 * eta - 1.0], -1)
 
     def slopes(self, xp: Any, points: Any) -> Sequence[Any]:
-        """Return the features (p, features), then their derivatives by xi, eta, xi xi, xi eta, eta eta."""
+        """Return the features (p, features) and their derivatives by xi, eta, xi xi, xi eta and eta eta."""
         f = self.features(xp, points)
         zero, two = 0.0 * f[:, :1], 0.0 * f[:, :1] + 2.0
         if not self.periodic:

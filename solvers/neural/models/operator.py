@@ -1,4 +1,4 @@
-"""An operator of the paper's kind, trained on solved grids: its answer on the nodes of any grid."""
+"""An operator of the MeshONet paper's kind, trained on solved grids and evaluated at any nodes."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -77,7 +77,8 @@ class PaperOperator(Operator):
     def nodes(self, boundary: Boundary, *, paste: bool = True) -> tuple[Floats, float]:
         """Return the nodes (ni, nj, 2), and the largest distance of edges from `boundary` before pasting.
 
-        The two sides of an O grid's cut are made equal even without `paste`.
+        Without `paste` the boundary nodes are those of the network, but both sides of the cut of an O grid
+        are equal.
         """
         answer = self.difference(boundary)
         if self.model.base == "harmonic":

@@ -11,9 +11,9 @@ from meshonet.geometry.blocks.boundary import Boundary
 def sensors(boundary: Boundary, count: int) -> Floats:
     """Return (count, 2) points of the boundary at fixed parameters xi or eta.
 
-    On a quad they start at the south-west corner and run counter-clockwise at equal steps of xi and eta. On
-    an O, half of them (an odd one included) are on the body and the others on the far field. They are nodes,
-    or linearly interpolated between nodes.
+    On four-sided boundaries sensors start at the south-west corner and run counter-clockwise, at equal steps
+    of xi and eta. On O boundaries half of the sensors, rounded up, are on the body and the others on the far
+    field. Sensors between nodes are interpolated linearly.
     """
     if boundary.periodic:
         inner = count - count // 2

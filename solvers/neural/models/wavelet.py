@@ -1,9 +1,9 @@
 """The wavelet neural operator, along xi.
 
 Layers are h <- gelu(K h + W h + b). K transforms h to wavelet coefficients over `levels` levels, multiplies
-the channels of every approximation and detail coefficient of the last level by a matrix of its own, leaves
-the finer details, and transforms back. Wavelets are those of Daubechies with four vanishing moments, periodic
-over the nodes and the zeros appended to them.
+the channels of each approximation and detail coefficient of the last level by a matrix, which differs from
+coefficient to coefficient, keeps the coefficients of finer levels, and transforms back. Wavelets are those of
+Daubechies with four vanishing moments. They are periodic over the nodes and the zeros appended to the nodes.
 
 Tripura & Chakraborty, Wavelet neural operator for solving parametric partial differential equations in
 computational mechanics problems, CMAME 404 (2023) 115783. Daubechies, Ten Lectures on Wavelets (1992), table

@@ -1,9 +1,9 @@
-"""Boundaries in a canonical frame, where the steps after the network are taken.
+"""Boundaries in a canonical frame, in which the steps after the network are computed.
 
-Descent amplifies rounding errors: thirty steps around a corner turn 1e-16 into 1e-3. A domain that is
-translated, rotated, scaled, mirrored or has its sides relabelled must take bitwise the same steps. So its
-edges are transformed to a frame defined by themselves and rounded there to 1e-9 of their size; a fixed rule
-chooses one of their relabellings:
+Descent amplifies rounding errors: thirty steps around a corner turn 1e-16 into 1e-3. The steps must be
+bitwise the same for a domain that is translated, rotated, scaled, mirrored, or has its sides relabelled. The
+edges of the domain are therefore transformed to a frame that they define, and rounded in this frame to 1e-9
+of their size; a fixed rule selects one of the relabellings:
 
 ========  ==================================================  ============================================
 o         the cut runs from 0 to 1                            mirrored if the mirror image comes first

@@ -6,7 +6,8 @@
           -> steps towards Winslow's grid -> features -> network -> 33 x 33 grid with the given edges
           -> (if it is folded: only a part of the correction) -> splines -> grid with all nodes of the edges
 
-Winslow's grid is first refined to 65 x 65 nodes, where a few Picard steps reduce its residual. The last step
+If the network imitates Winslow's grids, its grid is first refined to at most 65 x 65 nodes, and a few Picard
+steps reduce the residual. The last step
 is `meshonet.solvers.algebraic.resample.quad`, as in `meshonet.solvers.pipeline.coarse`.
 """
 
@@ -66,10 +67,10 @@ def transfinite(sides: Sides) -> Floats:
 
 
 def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
-    """Return the nodes (batch, 2, m, n) of the network's grids inside `sides`, 33 x 33 of them.
+    """Return the nodes (batch, 2, m, n) of the network's grids inside `sides`.
 
-    Winslow's grids have up to 65 per direction, if the sides have as many. `head`: index into
-    `encoding.HEADS`.
+    Grids have 33 x 33 nodes; Winslow's grids have as many as the sides, but at least 33 and at most 65 per
+    direction. `head` is an index into `encoding.HEADS`.
     """
     base = transfinite(thinned(sides, LATENT, LATENT))
     shares = None if head == WINSLOW else _shares
@@ -91,8 +92,8 @@ def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, a
 
     `unit`: the same grids at unit size, and the factors (batch, 1, 1) back; `network`: function from grids
     near Winslow's and their last Picard step to displacements; `shares`: function from grids and
-    displacements to the fractions (batch, 1, 1) to apply, None applies all; `xp`: numpy or torch, the module
-    of the arrays.
+    displacements to the fractions (batch, 1, 1) of the displacements that are applied; None: all of them;
+    `xp`: numpy or torch, the module of the arrays.
     """
     sized, back = unit
     near, step = approach(sized, xp, around)
@@ -105,7 +106,10 @@ def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, a
 
 
 def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
-    """Return grids `z` after the Picard steps that follow the network's Winslow output; as in `answered`."""
+    """Return grids `z` after the Picard steps that follow the network's Winslow output.
+
+    Parameters are those of `answered`.
+    """
     sized, back = unit
     return z + times(approach(sized, xp, around, AFTER, harmonic=False)[0] - sized, back)
 

@@ -17,9 +17,10 @@ HEADS = ("winslow", "variational")  # the grids that a network's outputs approxi
 WINSLOW = 0  # the first of these, which takes a few steps of `picard.approach` after the network
 
 FEATURES = 20
-"""Channels per node: first differences (4), second differences (4), log lengths of both steps (2), place (2),
-cosine and sine between the steps (2), the Jacobian's inverse hyperbolic sine (1), xi and eta (2), the last
-step of `approach` over its size (2), and the logarithm of that size (1)."""
+"""Channels per node: first differences (4), second differences (4), logarithms of the lengths of both steps
+(2), position (2), cosine and sine of the angle between the steps (2), inverse hyperbolic sine of the Jacobian
+(1), xi and eta (2), the last step of `approach` divided by its size (2), and the logarithm of this size (1).
+"""
 
 FLOOR = 1e-2  # added to lengths before their logarithm
 
@@ -32,9 +33,9 @@ STRETCH = 30.0  # factor of small Picard steps in the inverse hyperbolic sine
 def frame(z: Any, xp: Any) -> tuple[Any, Any]:
     """Return the centre (batch,) of grids `z` (batch, n, n), complex, and the factor (batch,) to unit size.
 
-    ``(z - middle) * factor`` has area 1; x is the direction of the sum of its mean vector from west to east
-    and of that from south to north, rotated by a quarter turn. The eight relabellings of a domain have the
-    same frame, relabelled. It depends on boundary nodes only.
+    ``(z - middle) * factor`` has area 1. Its x direction is that of the sum of two vectors: the mean vector
+    from west to east, and the mean vector from south to north rotated by a quarter turn. The eight
+    relabellings of a domain have the same frame, relabelled. The frame depends on boundary nodes only.
     """
     south, north, west, east = z[:, :, 0], z[:, :, -1], z[:, 0], z[:, -1]
     outline = xp.concatenate(

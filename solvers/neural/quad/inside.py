@@ -5,7 +5,7 @@
     V(p) = ∮ |p - x|⁻⁴ ds
 
 tends to infinity at the wall, so its minimum is where the body is thickest. The point is translated, rotated
-and scaled with the body; of equal minima that nearest to the wall's first node is taken.
+and scaled with the body. If minima are equal, the one nearest to the first node of the wall is taken.
 """
 
 from typing import Any

@@ -61,7 +61,7 @@ def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
 def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Return widths and blocks of a network from the names and shapes of its weights `tensors`.
 
-    Raises ValueError: they are not those of such a network.
+    Raises ValueError: the tensors are not those of such a network.
     """
     if not {"lift", "project"} <= set(tensors):
         raise ValueError("no lift, or no project")
@@ -82,7 +82,7 @@ def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...
 def rim_factor(m: int, n: int, around: bool) -> Floats:
     """Return the factor (m, n) of displacements: 0 on the boundary, d/(d+2) per axis at d nodes from it.
 
-    `around` bodies only the distance along eta counts.
+    With `around`, for O grids, only the distance along eta counts.
     """
     along, across = (np.minimum(np.arange(k), np.arange(k)[::-1]).astype(np.float64) for k in (m, n))
     rise = np.multiply.outer(np.ones(m) if around else along / (along + 2.0), across / (across + 2.0))

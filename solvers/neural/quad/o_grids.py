@@ -6,9 +6,9 @@
           -> features -> network -> 65 x 33 grid, its walls those nodes
           -> splines -> grid at the walls' own counts
 
-The network's output is invariant under rotation, translation and scaling of the body, up to rounding, which
-only shift the strip, and equivariant under reflection and under a start of numbering one eighth further
-around.
+Rotation, translation and scaling of the body only shift the strip, so that the network's output does not
+change, up to rounding. The output is equivariant under reflection, and if the numbering of nodes starts one
+eighth of the circumference further on.
 """
 
 from collections.abc import Sequence
@@ -36,8 +36,8 @@ COMPACT = 0.15  # least over largest distance of the wall from the middle, of bo
 def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) -> Floats:
     """Return the nodes (batch, 2, 65, 33) of the network's grids of O `boundaries` with equal node counts.
 
-    `head`: index into `encoding.HEADS`. Raises InputError: walls that, at 65 nodes, wind once neither around
-    the body's centroid nor around a point inside it.
+    `head` is an index into `encoding.HEADS`. Raises InputError: with 65 nodes, a wall winds once neither
+    around the centroid of the body nor around a point inside the body.
     """
     walls, strips, centres, once = _strips(boundaries)
     if not once.all():
@@ -53,7 +53,7 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
 
 
 def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
-    """Return strips `base` (batch, m + 1, n) of equal steps, moved by the network and closed.
+    """Return strips `base` (batch, m + 1, n) with equal steps, moved by the network and closed.
 
     `factor`: (batch, 1, 1) to unit size; `network` as in `coarse_grids.answered`; `xp`: numpy or torch.
     """

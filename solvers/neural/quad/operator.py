@@ -1,4 +1,4 @@
-"""The operator for four-sided domains and for bodies: one network with two outputs, then polish."""
+"""The operator for four-sided domains or for bodies: a network with two outputs, then polish steps."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -61,7 +61,7 @@ class QuadOperator(Operator):
         threads: int = 1,
         **_: Any,
     ) -> list[Solution]:
-        """Return a grid inside each boundary, with bitwise its edges.
+        """Return a grid inside each boundary; its boundary nodes are bitwise those of the boundary.
 
         Boundaries with equal node counts form batches; the seconds of a solution are those of its batch,
         divided by its size.

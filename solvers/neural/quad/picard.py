@@ -6,9 +6,9 @@ Winslow's equations with the coefficients of the previous iterate::
     alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2
 
 Each step inverts, by sine transforms, the operator with alpha / (alpha + gamma) and gamma / (alpha + gamma)
-at their means over the domain. Three quarters of the leading error of differences are corrected. Steps after
-the network, which alone converge slowly or not at all, are accelerated by Anderson's method with one previous
-iterate. For NumPy they are compiled (`kernels/neural/approach.c`); the formulas here serve torch, with
+at their means over the domain. Three quarters of the leading error of finite differences are corrected. Steps
+after the network would converge slowly or not at all; Anderson's method with one previous iterate accelerates
+them. For NumPy all steps are compiled (`kernels/neural/approach.c`); the formulas here serve torch, with
 gradients. Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 490-501; Anderson,
 J. ACM 12 (1965) 547-560.
 """

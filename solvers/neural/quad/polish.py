@@ -1,4 +1,4 @@
-"""The network's coarse grids, improved there and on all nodes: by descent, or towards Winslow's solution."""
+"""Improves the network's grids, on coarse and on all nodes, by descent or towards Winslow's solution."""
 
 from collections.abc import Sequence
 
@@ -16,11 +16,11 @@ MOST_SOLVED = 129  # nodes along a direction at the most of the grid that Winslo
 MOST_DESCENDED, LARGER_DESCENDED = 513, 257  # most nodes that descend in full; larger grids' nodes
 
 LAST = 2
-"""Most steps that are taken at full resolution; those before are taken on the network's coarse grid.
+"""Largest number of steps at full resolution; earlier steps are taken on the network's coarse grid.
 
-Steps on the coarse grid improve mean angles the most, above all by Newton's method, used for four-sided
-domains. The last, a descent preconditioned by the coarse grid's Hessian, remove folds and kinks between
-coarse nodes.
+Steps on the coarse grid improve mean angles the most, in particular Newton's method, which is used for
+four-sided domains. The steps at full resolution are a descent preconditioned by the Hessian of the coarse
+grid; they remove folds and kinks between coarse nodes.
 """
 
 STILL = 1e-4  # moves at which a descent stops sooner, as `meshonet.solvers.energy.variational.STILL`
@@ -29,7 +29,7 @@ STILL = 1e-4  # moves at which a descent stops sooner, as `meshonet.solvers.ener
 def polished(
     boundaries: Sequence[Boundary], network: Network, topology: Topology, head: int, steps: int
 ) -> tuple[Floats, list[int]]:
-    """Return nodes (batch, 2, ni, nj) inside boundaries of equal counts, and the steps taken for each."""
+    """Return nodes (batch, 2, ni, nj) inside boundaries with equal counts, and the steps of each."""
     if topology == "quad":
         coarse = coarse_grids.coarse_grids(coarse_grids.sides_of(boundaries), network, head)
     else:

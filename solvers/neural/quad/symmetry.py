@@ -41,7 +41,7 @@ def _number(element: Integers) -> int:
 INVERSE: Integers = np.array([_number(g.T) for g in ELEMENTS])  # (8,) number of the inverse of each element
 
 PRODUCT: Integers = np.array([[_number((a[:, :, None] * b).sum(axis=1)) for b in ELEMENTS] for a in ELEMENTS])
-"""(8, 8) number of the product of two."""
+"""(8, 8) number of the product of each pair of elements."""
 
 
 def _taps(size: int) -> Integers:

@@ -28,7 +28,10 @@ ACCEPTED = 1e-4  # a slower one is still kept below this: the rest is in the hig
 
 @dataclass(frozen=True)
 class Strips:
-    """n strips: `wall`, `far` (n, 2 MODES + 1), `residual` (n, 2 MODES + 1, LEVELS) = Winslow - harmonic."""
+    """n strips: modes of F on the walls, `wall` and `far`, and `residual` = Winslow - harmonic.
+
+    `wall` and `far` have the shape (n, 2 MODES + 1), `residual` has (n, 2 MODES + 1, LEVELS).
+    """
 
     wall: Complexes
     far: Complexes

@@ -1,8 +1,9 @@
 """Inputs of the strip network and scaling of its output, shared by training and inference.
 
-The output is R = Winslow - harmonic, zero on both walls by construction. To leading order R is quadratic in
-the walls' deviation from straight lines, so the network's input has deviations of unit size and its output is
-scaled by size^2. Functions take and return arrays of `xp`, numpy or torch.
+The output is R, the difference of Winslow's solution and the harmonic base, which is zero on both walls. To
+leading order R is quadratic in the deviation of the walls from straight lines. The network's input therefore
+contains deviations scaled to unit size, and its output is multiplied by size^2. Functions take and return
+arrays of `xp`, numpy or torch.
 """
 
 from typing import Any

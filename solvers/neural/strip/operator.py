@@ -23,9 +23,10 @@ from meshonet.solvers.solution import Solution
 
 @dataclass(frozen=True)
 class StripOperator(Operator):
-    """A strip network with its encoding; without weights the harmonic base alone.
+    """A strip network with its encoding; without weights it is the harmonic base alone.
 
-    `basis`, `scale`: (Q, LEVELS - 2) functions of the network's targets, and their size.
+    `basis` (Q, LEVELS - 2) are the basis functions of the network's targets, and `scale` is the size of the
+    targets.
     """
 
     weights: Mapping[str, Floats] = field(default_factory=dict)  # of the network, float64
@@ -48,10 +49,10 @@ class StripOperator(Operator):
     def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
         """Return modes (batch, 2 MODES + 1, LEVELS) of Winslow - harmonic for modes (batch, 2 MODES + 1).
 
-        `hand` (batch,) is from `meshonet.geometry.polygon.mirror.handedness`. It makes the result equivariant
-        under reflection: of a strip and its mirror image, whose modes are conjugate, the network is applied
-        to the same one, and the result for a symmetric strip is made symmetric. Modes that Picard steps would
-        not correct are left out.
+        `hand` (batch,) is the result of `meshonet.geometry.polygon.mirror.handedness`. It makes the result
+        equivariant under reflection: for a strip and its mirror image, whose modes are conjugate, the network
+        is applied to the same one of both, and the result for a symmetric strip is made symmetric. Modes that
+        Picard steps would not correct are zero.
         """
         if self.network is None:
             return np.zeros((*wall.shape, LEVELS), complex)

@@ -49,7 +49,7 @@ class VolumeMeshNet:
 
 @dataclass(frozen=True)
 class VolumeNetwork:
-    """Trained networks: parameters; sensors (count, s, 3), centre (count, 3) and size of each geometry."""
+    """Trained networks; sensors (count, s, 3), centre (count, 3) and size of each geometry."""
 
     name: str
     weights: Weights
@@ -122,8 +122,8 @@ def _check(header: Mapping[str, Any], arrays: Mapping[str, Floats]) -> None:
 def infer_volume(faces: SixFaces, *, model: str, answer: Answer = "valid") -> Solution:
     """Return the grid inside `faces` by a trained network.
 
-    `answer`: ``raw`` the network's nodes; ``pasted`` its faces are replaced by the given ones; ``valid``
-    folded cells are repaired as well. Raises InputError: no such model; a geometry that it does not know.
+    `answer`: ``raw`` returns the network's nodes; ``pasted`` replaces its faces by the given faces; ``valid``
+    also repairs folded cells. Raises InputError: no such model; a geometry that the model was not trained on.
     """
     network = load_volume(model)
     nodes = network.nodes(faces)
