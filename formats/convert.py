@@ -1,4 +1,4 @@
-"""Conversion between formats: changes of grids, and the choice of what is written."""
+"""Conversion between formats: changes of grids, and the choice between boundaries and grids."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace

@@ -120,7 +120,10 @@ class Format:
 
 
 def later(function: str, /, *args: Any, **settings: Any) -> Any:
-    """Import `function`, ``package.module:name``, and call it: a `partial` of this loads nothing itself."""
+    """Import `function`, ``package.module:name``, and call it.
+
+    A `functools.partial` of this function loads no module until it is called.
+    """
     module, _, name = function.partition(":")
     return getattr(importlib.import_module(module), name)(*args, **settings)
 

@@ -1,4 +1,4 @@
-"""Threads that help each other: those with nothing left to do take items of whoever has some.
+"""Threads that help each other: a thread without work takes jobs of other threads.
 
 ::
 

@@ -3,7 +3,8 @@
 from collections.abc import Iterable
 
 UNJUDGED = {"verdict": None, "limits_exceeded": None}
-"""Facts of a grid's provenance that hold for the nodes that were judged, and are removed with them."""
+"""Facts in the provenance of a grid that are removed when nodes change, since they describe the judged nodes.
+"""
 
 
 class Change(str):

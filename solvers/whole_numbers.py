@@ -31,7 +31,10 @@ Row = tuple[Mapping[int, float], float, float]
 
 
 def difference(first: Iterable[int], second: Iterable[int], low: float = 0.0, high: float = 0.0) -> Row:
-    """Return the row that bounds the sum over one run less that over another; what is in both cancels."""
+    """Return the row that bounds the difference between the sums of two sets of numbers.
+
+    `first` and `second` are indices of numbers; an index in both cancels.
+    """
     row: dict[int, float] = {}
     for run, sign in ((first, 1.0), (second, -1.0)):
         for number in run:

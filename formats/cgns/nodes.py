@@ -44,9 +44,9 @@ def root(file: h5py.File) -> Node:
 
 
 def child(parent: Node, name: str, label: str, value: str | NDArray[Any] | None = None) -> Node:
-    """Add a node to `parent` and return it; an array is given as HDF5 stores it, a text becomes characters.
+    """Add a node to `parent` and return it; arrays have the axis order of HDF5, texts become characters.
 
-    The node is copied from a template, which takes half of the time of creating it.
+    The node is copied from a template, because copying takes half the time of creating a node.
     """
     data = _codes(value, len(value.encode())) if isinstance(value, str) else value
     blank = _blank(label, "MT" if data is None else _TYPES[data.dtype.name])

@@ -9,10 +9,9 @@
     parameters   (n, p), with their names (p,) as attribute
     sensors      (n, m, 2), selected boundary nodes, optional
 
-All datasets are resizable along n. A chunk contains one sample, or several small ones. `parts`, a list of
-``[name, side, start, stop]``, and `provenance` are JSON. What all provenances say alike is
-also an attribute of the file, where it is easy to read. Multi-block and three-dimensional grids have
-version 2::
+All datasets are resizable along n. A chunk contains one sample, or several small samples. `parts`, a list of
+``[name, side, start, stop]``, and `provenance` are JSON. Facts that are the same in all provenances are also
+attributes of the file, where they are easy to read. Multi-block and three-dimensional grids have version 2::
 
     attributes   format = "meshonet-grid", version = 2, connections (JSON)
     blocks/0, blocks/1 ...   (n, ni, nj, 2), (n, ni, nj, nk, 3) or (n, ni, nj, 3)

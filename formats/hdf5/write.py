@@ -130,7 +130,7 @@ class Writer:
             self._file.create_dataset("failed", data=list(failed), dtype=h5py.string_dtype())
 
     def close(self) -> None:
-        """Write what is collected, and what all provenances say as attributes, for reading by eye."""
+        """Write the collected samples, and as attributes the facts that are the same in all provenances."""
         self.flush()
         self._file.attrs.update({_attribute(name): fact for name, fact in self._common.items()})
 

@@ -27,7 +27,7 @@ _MOST_SHRINKING = 1 << 15
 
 @dataclass(frozen=True)
 class Encoding:
-    """How a file stores its arrays."""
+    """Encoding of the arrays of a file: byte order, headers and compression."""
 
     order: str  # < or >
     header: str  # u4 or u8, the type of the length words before an array

@@ -17,22 +17,26 @@ from meshonet.geometry.notes import Change
 from meshonet.geometry.surface.merge import merged
 
 _CLOSE = 1e-4
-"""Least distance of cuts, over the length of a body."""
+"""Smallest distance between cuts, relative to the length of a body."""
 _SAME = 1e-6
-"""Distance, over the height of a body, within which points of a cut are one."""
+"""Largest distance, relative to the height of a body, of points of a cut that are merged."""
 _CAP = 9
-"""Cuts through a cap."""
+"""Number of cuts through a cap."""
 _CORNER, _CORNER_STEP = math.radians(10.0), 2e-5
-"""Least turn of keel and crown at a corner, and distance of cuts beside it over the length of a body: through
-these a spline has the corner too, and does not bulge beside it."""
+"""Smallest turn of keel and crown at a corner; and distance of the cuts on both sides of it, relative to the
+length of the body. With these cuts, splines also have the corner and do not bulge near it.
+"""
 _ALONE = 3.0
-"""Least turn at a corner over those beside it: at a round nose of few nodes all are large."""
+"""Smallest ratio of the turn at a corner to the turns at neighbouring nodes: at a round nose with few nodes
+all turns are large.
+"""
 _CAP_STEP = math.sin(0.5 * math.pi / _CAP) / 2.0
-"""First step of a cap over its height."""
+"""First step of a cap, relative to its height."""
 _MOST = 30
-"""Cuts on one side of a corner, at most."""
+"""Largest number of cuts on one side of a corner."""
 _ROUND = 1e-6
-"""Largest difference of the radii of a body of revolution, over its length."""
+"""Largest difference of the radii of a cut through a body of revolution, relative to the length of the body.
+"""
 
 
 @dataclass(frozen=True, eq=False)

@@ -47,10 +47,10 @@ _MOST_SHOWN = 6
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a sample of a dataset comes from.
+    """Origin of a sample of a dataset.
 
-    Names and values of the parameters of its shape; `split`, which is ``train``, ``test`` or empty; and
-    `title`, the name of the shape in its file, if the name of the sample is that of the file.
+    `parameters` are names and values of the parameters of the shape; `split` is ``train``, ``test`` or empty;
+    `title` is the name of the shape in its file, if the sample is named after the file.
     """
 
     parameters: tuple[tuple[str, float], ...] = ()

@@ -1,4 +1,4 @@
-"""The whole of what is symmetric about the plane z = 0: a half and its mirror image.
+"""Completes grids that are symmetric about the plane z = 0: a half and its mirror image.
 
 ::
 

@@ -1,4 +1,4 @@
-"""Where blocks touch each other or themselves, found from the positions of their nodes.
+"""Finds the sides on which blocks touch each other or themselves, from the positions of nodes.
 
 ::
 
@@ -89,9 +89,9 @@ class _SideCells:
     place: Indices
     """(n, 1) or (n, 2) cell along each direction of the side."""
     inwards: Floats | None
-    """(n, 3) from its centre to that of the face across, of volumes."""
+    """(n, 3) vector from the centre of the cell to that of the opposite face; None except for volumes."""
     slack: Floats
-    """How far a node may be from where it was meant."""
+    """Smallest tolerance for the distance of two nodes that coincide, because of rounding."""
 
     @property
     def flat(self) -> Floats:

@@ -81,8 +81,8 @@ class CadModel:
     Parameters
     ----------
     vertices : (n, 3) positions of the vertices, in the unit of the file.
-    edges, faces : in the order of the file.
-    name : of the file.
+    edges, faces : edges and faces in the order of the file.
+    name : name of the file.
     notes : sentences on what was changed when the file was read.
     """
 

@@ -20,9 +20,10 @@ _BEYOND = 1.0 + 1e-9
 _SAME = 1e-9
 """Wall points nearer than this fraction of the extent of the walls are the point itself."""
 _AROUND_CORNER = 1.1
-"""Largest way along a loop with such corners, over the distance, to a wall that is beside and not in front.
+"""Largest ratio of the arc length along a loop with corners to the distance from a wall point that counts as
+a neighbour, not as a wall in front.
 
-Around a corner of 135 degrees it is 1.08.
+Around a corner of 135 degrees the ratio is 1.08.
 """
 _SAMPLES = 2000  # points on all walls together
 

@@ -56,7 +56,7 @@ def corners_between(loop: Loop, first: float, last: float) -> tuple[Floats, Indi
 def sizes_by_bend(loop: Loop, largest: float, turn: float) -> tuple[Floats, Floats]:
     """Return arc lengths (n,) around a loop, its corners among them, and lengths of cells there.
 
-    Cells are at most `largest` long, and the wall turns by `turn` radians along one at most.
+    Cells are at most `largest` long, and the wall turns by at most `turn` radians along a cell.
     """
     arcs = distinct(np.append(np.linspace(0.0, loop.length, SAMPLES, endpoint=False), loop.corner_arcs))
     return arcs, np.minimum(largest, turn / np.maximum(wall_bend(loop, arcs, _WINDOW), 1e-300))

@@ -25,7 +25,7 @@ class Family:
 
     name: str
     parameter: str
-    """What the parameter is, with its unit."""
+    """Meaning of the parameter, with its unit."""
     low: float
     high: float
     least: float

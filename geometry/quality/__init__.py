@@ -1,1 +1,1 @@
-"""How good a grid is: metrics, growth, walls, and the thresholds that others use."""
+"""Quality of grids: metrics, growth, walls, and the thresholds of other programs."""

@@ -1,4 +1,4 @@
-"""What a user requires of a grid: gates, and the limits of profiles."""
+"""Requirements of a user on a grid: gates, and the limits of profiles."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 class Criteria:
     """Gates and profiles by which grids are judged.
 
-    There is at least one. Where nothing is judged, None takes its place.
+    There is at least one gate or profile; functions that judge nothing have None in place of `Criteria`.
 
     Parameters
     ----------

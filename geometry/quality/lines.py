@@ -98,7 +98,7 @@ def _of(tallies: Iterable[Tally], *, kept: bool) -> Extreme | None:
 def part_of_values(
     place: tuple[int, ...], axis: int, inside: bool, values: Iterable[Floats], *, kept: bool = True
 ) -> BlockLines:
-    """Return the growth and bend of an array of nodes as a part.
+    """Return the growth and bend of lines through an array of nodes as a part of the result for a grid.
 
     `values` are growth and bend (m, n[, l]) of nodes, the first of which is at `place`, (block, i, j[, k]).
     `axis` is the direction of the lines, `inside` whether the nodes are inside a block. `kept` keeps values

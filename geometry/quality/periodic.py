@@ -1,6 +1,6 @@
-"""How well periodic sides match: distances of their nodes after the turn or the shift between the sides.
+"""Mismatch of periodic sides: distances of nodes after the rotation or translation between the sides.
 
-Turns are compared in cylindrical coordinates, not by the matrix that the nodes were made with.
+Rotations are compared in cylindrical coordinates, not by the matrix with which the nodes were computed.
 """
 
 from __future__ import annotations

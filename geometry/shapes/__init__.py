@@ -1,1 +1,1 @@
-"""What geometry files hold: airfoils, outlines, bodies in domains; each is sampled into a boundary."""
+"""Shapes from geometry files: airfoils, outlines, bodies in domains; each can be sampled into a boundary."""

@@ -33,7 +33,7 @@ _SAMPLES = 512  # points of each loop for which distances are computed
 
 @dataclass(frozen=True, eq=False)
 class DomainShape:
-    """A domain, and how it is made as a single block, if that is possible.
+    """A domain, with a single-block form if it has one.
 
     Parameters
     ----------

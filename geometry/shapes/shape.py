@@ -1,4 +1,4 @@
-"""What a geometry file contains before nodes are sampled on it, in the plane or in three dimensions."""
+"""Shapes as geometry files contain them, before nodes are sampled, in the plane or in three dimensions."""
 
 from dataclasses import dataclass, replace
 from typing import Protocol

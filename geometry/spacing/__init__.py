@@ -1,1 +1,1 @@
-"""Where nodes go along a curve: spacing laws, size fields, first cells."""
+"""Positions of nodes along a curve: spacing laws, size fields, first cells."""

@@ -23,7 +23,7 @@ MOST_NODES = 100_000  # per direction: more is taken for a typing error
 
 @dataclass(frozen=True)
 class Sampling:
-    """How nodes are placed on the boundary of a shape; values are checked on construction.
+    """Distribution of nodes on the boundary of a shape; values are checked on construction.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Sampling:
     corners : tuple of 4 int, optional
         Indices, from 0, of the points that become the corners of a quad domain.
     te : {'auto', 'exact', 'round', 'wedge'}, optional
-        What becomes of a blunt trailing edge of an airfoil: ``exact`` does not change it, ``round`` rounds
+        Treatment of a blunt trailing edge of an airfoil: ``exact`` does not change it, ``round`` rounds
         its corners, ``wedge`` closes it by a wedge. ``auto`` is ``wedge`` for C grids of one block, which
         need a sharp edge, and ``exact`` for all others.
     wake : float, optional

@@ -15,7 +15,8 @@ FEWEST = 3
 SLANT_DEG = 5.0
 """Largest deviation, in degrees, from the normal of a plane of symmetry of a surface that encloses no volume.
 
-The mirror image of such a surface continues it smoothly. That of half a body may have an edge in the plane.
+The mirror image of such a surface must continue it smoothly. The surface of half a closed body may meet its
+mirror image at an edge.
 """
 
 
@@ -31,11 +32,11 @@ class Plane:
 
 
 def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
-    """Return the planes across a coordinate axis with open edges, and the whole surface on one side.
+    """Return the planes normal to a coordinate axis that contain open edges and have the surface on one side.
 
-    `sides` (k, 4) are the faces at open edges, beginning with the nodes of the edge. A plane must have enough
-    open edges that are in no plane with more edges: the blunt edge at a wing root is straight too, but only
-    the root is in a plane.
+    `sides` (k, 4) are the faces at open edges; each begins with the nodes of the edge. An edge that is in two
+    such planes counts for the one with more edges, and a plane must have at least `FEWEST` edges: the blunt
+    trailing edge at a wing root is also straight, but only the root is in a plane of symmetry.
     """
     if not len(sides):
         return ()

@@ -45,10 +45,11 @@ _UNBOUNDED = 1e9
 _FLAT = 1e-13
 """Nodes nearer to the plane of symmetry than this fraction of the body's length lie in it."""
 _UNEVEN = 0.08
-"""Error of the first cell of a line, over its height, above which the line is measured in all its nodes: at a
-pointed nose or tail distances from the body are no smooth function of zeta."""
+"""Relative error of the height of the first cell of a line above which the line is measured at all its nodes:
+at a pointed nose or tail, distances from the body are not a smooth function of zeta.
+"""
 _MEASURED = 3
-"""How often these lines are measured; between their nodes the map is taken as linear."""
+"""Number of times that these lines are measured; between their nodes the map is assumed to be linear."""
 _FINE = 129
 """Number of levels of the table by which lines beyond the tip are measured."""
 

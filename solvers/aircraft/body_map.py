@@ -35,7 +35,7 @@ _NEWTON = 12
 _STEP = 1e-5
 """Step of finite differences in s / length and in zeta."""
 _COARSE = 8
-"""Every so many lines and levels of the table are searched for the first guess of a place."""
+"""Stride of the lines and levels of the table that are searched for the first guess of a place."""
 
 
 class BodyMap:

@@ -9,7 +9,7 @@ from meshonet.geometry.elementary import exp, log
 from meshonet.solvers.aircraft.body_map import BodyMap
 
 _ROUNDS = 6
-"""How often a place is scaled along its line."""
+"""Number of times that a place is scaled along its line."""
 _STILL = 1e-12
 """Smallest relative change of a distance from which the power is computed."""
 _INVERSES = 0.2, 5.0
@@ -39,8 +39,8 @@ def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Flo
 def between_walls(walls: tuple[Floats, Floats], beside: Floats, first: float) -> Floats:
     """Return the points (n, 3) at the distance `first` from the points of both `walls`, (n, 3) each.
 
-    Of these the points nearest to `beside` (n, 3) are taken. The two points on the walls must be at most
-    twice `first` apart.
+    Of all such points, those nearest to `beside` (n, 3) are returned. The two points on the walls must be at
+    most twice `first` apart.
     """
     middle, half = 0.5 * (walls[0] + walls[1]), 0.5 * (walls[1] - walls[0])
     away, square = beside - middle, (half * half).sum(axis=-1)

@@ -1,4 +1,4 @@
-"""What is planned of a grid before its nodes are made: lines of the wing, sections on key levels, counts."""
+"""Plan of an aircraft grid before its nodes are made: lines of wings, sections on key levels, counts."""
 
 from __future__ import annotations
 

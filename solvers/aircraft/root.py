@@ -1,4 +1,4 @@
-"""Where the lines of a wing along its span leave a body."""
+"""Points at which the lines of a wing along its span leave a body."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The section of a wing at its tip, filled: a ring whose cells go on as those of the collar, and a core."""
+"""Blocks inside the section of a wing at its tip: a ring whose cells match the collar, and a core."""
 
 from __future__ import annotations
 

@@ -26,7 +26,8 @@ _BASE = 2
 _SHARP = 0.001
 """Smallest height of the base of a wing given as a surface, in chords, if no height is prescribed."""
 _ROUNDS = 6
-"""How often a fraction is scaled; lines are nearly straight over a first cell."""
+"""Number of times that a fraction is scaled; few suffice, since lines are nearly straight over a first cell.
+"""
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ LARGEST_PITCH = 1e12
 
 @dataclass(frozen=True)
 class BlockRequest(FirstCell):
-    """How to make a multi-block grid of a domain. Values are checked on construction.
+    """Options for the multi-block grid of a domain. Values are checked on construction.
 
     Parameters
     ----------

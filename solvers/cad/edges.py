@@ -16,7 +16,7 @@ TURN_DEG = 12.0
 _FINEST = 0.02
 """Smallest ratio of cells where the curvature is large to cells elsewhere."""
 _SHORT = 4.0
-"""Number of cells along a short edge, to which cells beside its ends are adapted."""
+"""Number of cells along a short edge; cells of the neighbouring edges are adapted to these."""
 _GRADE = 0.2
 """Largest change of the cell size along an edge per distance."""
 _SAMPLES = 257

@@ -1,4 +1,4 @@
-r"""How each face of a CAD file becomes patches: from its corners, and which numbers of cells must agree.
+r"""Division of the faces of a CAD file into patches by their corners, and numbers of cells on sides.
 
 ::
 
@@ -35,10 +35,11 @@ _BASE = 0.7
 
 @dataclass(frozen=True)
 class FacePlan:
-    """How a face becomes patches.
+    """Division of a face into patches.
 
-    `sides` are runs of its edges, as positions in the loop, which starts at the first corner: four runs for a
-    ``quad``, a short and a long one for a ``nose``, a single run of all edges for a ``disc``.
+    `sides` are sequences of consecutive edges, as positions in the loop of the face, from the first corner
+    on: four for a ``quad``, a short and a long one for a ``nose``, a single one with all edges for a
+    ``disc``.
     """
 
     kind: Literal["quad", "nose", "disc"]
@@ -46,7 +47,7 @@ class FacePlan:
 
 
 def planned(model: CadModel) -> tuple[FacePlan, ...]:
-    """Return for each face how it becomes patches.
+    """Return the division of each face into patches.
 
     Raises InputError, with number, sides and place: faces that cannot become patches.
     """

@@ -8,7 +8,7 @@ RISING = 0.75  # part of the levels over which the dissipation rises
 
 @dataclass(frozen=True)
 class MarchSettings:
-    """How levels are smoothed."""
+    """Parameters of the smoothing of levels."""
 
     dissipation: float  # coefficient of the smoothing along a level
     # the flux along the new level weighs 1 + theta; 0 is Euler's implicit rule, more is more robust

@@ -84,13 +84,13 @@ class Measures:
 
 @dataclass(frozen=True, eq=False)
 class PlaceLinks:
-    """Sums of two places each that should be 0.
+    """Linear expressions in two places, f0 u0 + f1 u1 + rest, that should be zero.
 
     Parameters
     ----------
     pairs : (p, 2) numbers of the places.
-    factors : (p, 2) with which they are multiplied.
-    rest : (p,) what is added.
+    factors : (p, 2) factors of the two places.
+    rest : (p,) constant terms.
     """
 
     pairs: Indices

@@ -27,7 +27,7 @@ CHANGE = 1.0
 NEARLY = 0.05
 """Difference from the limit, in logarithms, within which ratios are treated as if they exceeded it."""
 LINEAR = 0.1
-"""Excess beyond which the penalty is linear, so that a ratio that cannot be reduced does not bend all
+"""Excess beyond which the penalty is linear, so that a ratio that cannot be reduced does not distort all
 cells.
 """
 HALVINGS = 10  # of a step that raises the value; it is then left out
@@ -37,7 +37,10 @@ Numbers = TypeVar("Numbers", Floats, Complexes)
 
 @dataclass(frozen=True, eq=False)
 class GrowthLimit:
-    """The term for logarithms of ratios (k,): `limit` is L, one or (k,), `wanted` (k,) is ρ0, `change` μ."""
+    """The term for logarithms of ratios (k,).
+
+    `limit` is L, a number or (k,); `wanted` (k,) is ρ0; `change` is μ.
+    """
 
     limit: float | Floats
     wanted: Floats
@@ -45,7 +48,10 @@ class GrowthLimit:
 
     @classmethod
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> GrowthLimit:
-        """Return the term of a limit for initial logarithms `growth` (k,) of the ratios."""
+        """Return the term for the initial logarithms `growth` (k,) of the ratios.
+
+        Ρ0 is `growth` within the limit.
+        """
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:

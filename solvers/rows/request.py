@@ -1,4 +1,4 @@
-"""How a row becomes a grid."""
+"""Options of the grid of a blade row."""
 
 from __future__ import annotations
 

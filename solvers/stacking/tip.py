@@ -41,7 +41,7 @@ _NOSE, _EDGE = 0.35, 0.3  # and at least so many thicknesses of the section ther
 
 @dataclass(frozen=True)
 class Cap:
-    """How a tip is closed.
+    """Settings of the cap that closes a tip.
 
     Parameters
     ----------

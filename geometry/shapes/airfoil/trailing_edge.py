@@ -123,7 +123,7 @@ def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> Clean
     """Return a blunt section with a wedge added; it starts at the tip.
 
     `tangents` are the unit directions (2,) in which the lower and the upper surface end at the corners of
-    the base. The wedge of a narrow base is finer than the points of a file, and is not cleaned as they are.
+    the base. The wedge of a narrow base is finer than the points of a file; it is not cleaned like these.
     """
     points, (lower, upper) = section.points, tangents
     gap = float(np.hypot(*(points[0] - points[-1])))

@@ -43,7 +43,7 @@ from meshonet.solvers.stages import Timings, stage
 ATTEMPTS = 5
 """Number of triangulations that are tried, each finer than the one before and with another seed.
 
-Of 201 domains two needed a second one, and none a third.
+Of 201 domains, two needed a second triangulation, and none a third.
 """
 HELD_ITERATIONS, FIRST_ITERATIONS, BEFORE_PADDING = 10, 60, 25
 """Iterations with fixed wall nodes, which untangle; with free wall nodes; with free ones before rows are

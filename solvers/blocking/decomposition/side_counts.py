@@ -22,7 +22,7 @@ from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.whole_numbers import Row, whole_numbers
 
 Sums = Mapping[str, Mapping[int, float]]
-"""How many edges of each chord are along the sides of a name."""
+"""By the name of sides and the number of a chord: number of edges of the chord along these sides."""
 _NONE: Mapping[int, int] = MappingProxyType({})
 
 

@@ -32,15 +32,17 @@ from meshonet.solvers.least_squares import NormalEquations, Residuals
 ANGLE, MOVE = 6.0, 1e-3
 """ν, σ."""
 MARGIN = 0.008
-"""How far below the limit, in logarithms, ratios are to come."""
+"""Margin below the limit, in logarithms, to which ratios are reduced."""
 AROUND, REACH = 5, 1.0
-"""Cells around ratios that exceed the limit in which nodes move, and more for each cell of excess."""
+"""Number of cells around ratios above the limit in which nodes move, and its increase with the excess."""
 ROUNDS, STEPS = 8, 3
-"""How often it is looked which nodes move, and the steps for each such set."""
+"""Number of times that the set of moving nodes is determined, and number of steps for each set."""
 RAIL = 1e9
-"""What holds nodes that slide on their tangent, by σ."""
+"""Weight, in units of σ, that keeps sliding nodes on their tangent."""
 WORTH, FEW = 0.7, 5e-4
-"""Part of what exceeds the limit that a round may leave for another one, and share of ratios that are few."""
+"""Fraction of the excess that may remain after a round so that another one follows; and share of ratios above
+the limit that counts as few.
+"""
 _ANGLES = np.radians(60.0), np.radians(120.0)  # limits of θ0, so that bad corners improve
 _WORST = np.radians(5.0), np.radians(175.0)  # angles that no step passes, unless they were beyond before
 _SLACK = 0.02  # radians by which such corners may become worse

@@ -30,7 +30,7 @@ class GrowthLines:
     ----------
     nodes : (k, 3) nodes of each pair.
     limit : (k,) logarithms of the largest ratios.
-    offset : (k,) what is added to the logarithms of the ratios before they are compared with the limits.
+    offset : (k,) terms that are added to the logarithms of the ratios before the comparison with the limits.
     """
 
     nodes: Indices
@@ -39,7 +39,10 @@ class GrowthLines:
 
     @classmethod
     def of(cls, mesh: QuadMesh, limit: float, factors: Floats | None = None) -> Self:
-        """Return all pairs of a mesh with one limit, for edges longer than these by `factors` (e,)."""
+        """Return all pairs of a mesh with the same limit.
+
+        The ratios are those of edges whose lengths are the lengths in the mesh times `factors` (e,).
+        """
         nodes = consecutive_edges(mesh)
         offset = np.zeros(len(nodes))
         if factors is not None:
@@ -51,8 +54,9 @@ class GrowthLines:
     def from_walls(cls, layout: Layout, walls: Bools, limit: float, elsewhere: float) -> Self:
         """Return all pairs of a layout, with a `limit` along lines from `walls` and across sides of blocks.
 
-        `walls` (n,) is a mask of nodes. The limit of the others, around irregular vertices, and along walls
-        in the blocks beside them, is `elsewhere`, or the ratio on the wall, whose nodes stay.
+        `walls` (n,) is a mask of nodes. The limit is `elsewhere` for all other pairs and around irregular
+        vertices. Along walls, in the blocks at the wall, it is the larger of `elsewhere` and the ratio on the
+        wall, whose nodes do not move.
         """
         mesh = layout.mesh
         nodes = consecutive_edges(mesh)
@@ -79,7 +83,7 @@ class GrowthLines:
         return cls(nodes, limits, np.zeros(len(nodes)))
 
     def some(self, which: Bools) -> Self:
-        """Return the pairs `which` (k,)."""
+        """Return the pairs in the mask `which` (k,)."""
         return type(self)(self.nodes[which], self.limit[which], self.offset[which])
 
     def growth(self, z: Complexes) -> Floats:
@@ -88,7 +92,10 @@ class GrowthLines:
 
 
 def growth_along(z: Complexes, lines: Indices) -> Floats:
-    """Return the logarithms (k,) of the ratios of the edges between the nodes of `lines` (k, 3)."""
+    """Return the logarithms (k,) of the ratio of the second edge to the first, for the nodes `lines` (k, 3).
+
+    `z` (n,) are the positions of the nodes as complex numbers.
+    """
     before, after = z[lines[:, 1]] - z[lines[:, 0]], z[lines[:, 2]] - z[lines[:, 1]]
     return np.asarray(log(modulus(after) / modulus(before)))
 

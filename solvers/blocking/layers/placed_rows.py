@@ -23,8 +23,8 @@ GROWING_COLUMNS = 75
 become shorter when growth is limited.
 """
 SHORT_COLUMNS = 20
-"""Percentage of columns that may be too short for so many first cells; there cells become lower away from the
-wall.
+"""Percentage of columns that may be too short for the rows with the prescribed first cells; in these columns
+cells become lower away from the wall.
 """
 OPENS = 0.15
 """Distance behind a sharp edge, relative to its loop, over which the first cells of a wake grow."""

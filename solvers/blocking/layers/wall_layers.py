@@ -52,9 +52,10 @@ _BISECTIONS = 14  # of a range of 240 to 1: the scale to 0.03 %
 class WallLayers:
     """Walls with their layers, and the remaining domain, which is decomposed into blocks.
 
-    `rings` are given by the number of their loop, which is the same in both domains. Along `stretches`,
-    around the loops `sheets` and along their wakes, layers are rows of the layout itself, with `sizes` given
-    by loop. `near` replaces a distant outer loop.
+    The layers around a loop are either a ring, in `rings` by the number of the loop, which is the same in
+    `domain` and in the remaining domain `rest`; or they are rows of blocks of the layout: along `stretches`,
+    around the loops `sheets` and along their wakes, with `sizes` by the number of the loop. `near` replaces
+    an outer loop that is far away.
     """
 
     domain: Domain
@@ -116,9 +117,10 @@ class WallLayers:
         return replace(layout, mesh=made_symmetric(layout.mesh, images_of(layout.mesh, self.mirrors)))
 
     def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
-        """Return whether a wake has room for layers up to the outer loop.
+        """Return whether a wake reaches the outer loop and has room for layers on its whole length.
 
-        `wake` are its nodes from the sharp edge.
+        `wake` are the numbers of the nodes of the wake in `mesh`, from the sharp edge of the loop `number`
+        on.
         """
         return bool(mesh.places.loop[wake[-1]] == 0) and self.has_room(number, mesh.nodes[wake])
 

@@ -89,8 +89,8 @@ def with_wall_rows(
 ) -> tuple[Layout, WallRows]:
     """Return a layout with rows of quads along stretches and around loops with a sharp edge, and the rows.
 
-    With it comes which blocks these are; they are symmetric to `mirrors` if its quads are. Raises
-    SolverError: the lines of the mesh do not bound blocks.
+    The second result tells which blocks of the layout are rows. If the quads of the layout are symmetric to
+    `mirrors`, the blocks are also symmetric. Raises SolverError: the lines of the mesh do not bound blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front

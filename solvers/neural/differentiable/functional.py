@@ -20,8 +20,8 @@ _AT = ((0, 0), (1, 0), (0, 1), (1, 1))  # the nodes
 Stencil = dict[tuple[int, int], Tensor]
 """Second derivatives with respect to nodes (i, j) and (i + di, j + dj), by offset (di, dj).
 
-Each array is (batch, 2, 2, ni, nj). Of two opposite offsets only the one with positive di is stored, or with
-positive dj if di is 0.
+Each array has the shape (batch, 2, 2, ni, nj). For two opposite offsets only the one with positive di is
+stored; if di is 0, the one with positive dj.
 """
 
 

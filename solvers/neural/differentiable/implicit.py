@@ -1,8 +1,8 @@
 """Grids that solve equations, as functions of their boundary nodes: gradients by implicit differentiation.
 
 With R(x, b) = 0 for inner nodes x and boundary nodes b, a functional whose derivative with respect to x is g
-has the derivative -R_bᵀ λ with respect to b, where R_xᵀ λ = g. That is one linear system, whatever the number
-of iterations was.
+has the derivative -R_bᵀ λ with respect to b, where R_xᵀ λ = g. This needs the solution of a single linear
+system, whatever the number of iterations was.
 """
 
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What differentiable operators share: the network, conversions of arrays."""
+"""Shared parts of differentiable operators: the network, conversions of arrays."""
 
 from collections.abc import Callable
 from functools import partial

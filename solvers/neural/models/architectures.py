@@ -68,7 +68,7 @@ def name_of(model: Architecture) -> str:
 
 
 def settings_of(model: Architecture) -> dict[str, Any]:
-    """Return the settings of a model as JSON keeps them."""
+    """Return the settings of a model in a form that JSON can store: tuples become lists."""
     return {key: list(v) if isinstance(v, tuple) else v for key, v in dataclasses.asdict(model).items()}
 
 

@@ -1,9 +1,10 @@
 """Symmetric blocks of symmetric domains, if they are about as good as those of the decomposition.
 
-Three ways: nodes at the means of themselves and their images, where the quads are symmetric; where only the
-blocks are, the same with equal counts of cells; and the blocks of a half, or of a quarter, and their images.
-Where lengths of edges are prescribed, a fourth one is the blocks for edges that are all alike. Of three or
-more mirrors that are not at right angles it is the blocks of a sector, turned around the centre.
+Symmetric blocks are found in several ways. If the quads are symmetric, each node moves to the mean of itself
+and of its images. If only the blocks are symmetric, the counts of cells are made equal first. Otherwise the
+blocks of a half, or of a quarter, are mirrored. If lengths of edges are prescribed, blocks for edges of equal
+length are also tried. For three or more mirrors, except at right angles, the blocks of a sector are rotated
+about the centre.
 """
 
 from __future__ import annotations
@@ -36,35 +37,39 @@ from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.refinement.refine import refine
 
 WORTH = 2.0
-"""What symmetry may cost, in degrees of mean deviation: blocks stay as found where it costs more.
+"""Largest increase of the mean deviation from 90 degrees, in degrees, for which symmetric blocks are
+preferred to those of the decomposition.
 
-The price of more blocks does not count.
+The penalty for more blocks does not count here.
 """
 AT_CENTRE = 6
-"""Quads around the centre of three or more mirrors, at the most, or as many as mirrors."""
+"""Largest number of quads around the centre of three or more mirrors; or the number of mirrors, if larger."""
 EVEN = 4
-"""Cells along the sides of all blocks when their images are looked for."""
+"""Number of cells along the sides of all blocks in the search for images."""
 FindPart = Callable[[Domain, int, Sequence[Span]], QuadMesh]
-"""From a part of a domain, which part it is (2 for a half), and stretches for rows of quads to its mesh."""
+"""Function that returns the mesh of a part of a domain; its arguments are the domain of the part, the number
+of parts (2 for a half), and stretches for rows of quads.
+"""
 Optimised = Callable[[QuadMesh], QuadMesh]
 Way = Callable[[], QuadMesh]
-"""To a mesh that may be symmetric."""
+"""Function that returns a mesh that may be symmetric."""
 Score = Callable[[BaseComplex, bool], float]
-"""Of blocks, with or without their price; lower is better."""
+"""Function that returns the score of blocks, with or without the penalty for their number; lower is better.
+"""
 
 
 def symmetric_blocks(
     blocks: BaseComplex, find: FindPart, optimised: Optimised, score: Score,
     unsized: Callable[[], QuadMesh] | None = None, worth: float = WORTH,
 ) -> BaseComplex:  # fmt: skip
-    """Return symmetric blocks of the domain of some blocks; these where there are none about as good.
+    """Return symmetric blocks of the domain of `blocks`, or `blocks` if no symmetric ones are about as good.
 
-    With three or more mirrors through a centre they are symmetric to all if that can be: as found, or in
-    sectors. With two mirrors at right angles they are symmetric to both if that can be, else to the first
-    that can be, and to the two mirrors between if the same blocks, or those of sectors, can be. Those of a
-    part have to be better, and no more, than the blocks as found if these are symmetric already. Where
-    lengths of edges are prescribed, `unsized` makes the mesh of blocks for edges that are all alike, which
-    are taken if no others are symmetric.
+    With three or more mirrors through a centre, blocks that are symmetric to all mirrors are tried: the given
+    blocks, then those of sectors. With two mirrors at right angles, blocks that are symmetric to both are
+    tried first, then blocks that are symmetric to one; blocks that are also symmetric to the two diagonal
+    mirrors are preferred. If the given blocks are already symmetric, blocks of a part replace them only if
+    they are better and not more. If lengths of edges are prescribed, `unsized` returns the mesh of blocks for
+    edges of equal length, which is used if no other blocks are symmetric.
     """
     mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
     pair = every[:1] if len(every) % 2 else every[:: max(len(every) // 2, 1)]
@@ -146,10 +151,10 @@ def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Ima
 
 
 def cut_on_mirrors(mesh: QuadMesh, images: Images, more: Bools | None = None) -> BaseComplex:
-    """Return the blocks of a mesh, cut along mirrors that go through corners of the domain with two cells.
+    """Return the blocks of a mesh, cut along mirrors that pass through corners of the domain with two cells.
 
-    They end at edges on `more` (e,) lines too. A mirror cuts a ring too, which is else cut open anywhere. So
-    images of sides of blocks are sides of blocks. Raises SolverError: a ring has no line on a mirror.
+    A mirror also cuts a ring of blocks. Images of sides of blocks are therefore sides of blocks. `more` (e,)
+    is a mask of further edges along which blocks are cut. Raises SolverError: a ring has no line on a mirror.
     """
     blocks = base_complex(mesh, more)
     ring = bool(images) and any(len(distinct(block[[0, 0, -1], [0, -1, 0]])) < 3 for block in blocks.blocks)
