@@ -36,6 +36,11 @@ _SHARES = 0.2, 0.23  # smallest and largest fraction of all cells on one side of
 _RAMP = 3.0  # cells of a wake over which growth sets in: the lines that leave its first ones converge
 _LATE = 0.05  # fraction by which growth is faster at the outlet than on average, and slower at the edge
 _STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the trailing edge
+_RISE, _FROM, _UP_TO = 3e-4, 1.0, 200.0
+"""First cells at a wake are higher by a x²/((x + b)(1 + x/c)) chords at x chords behind the edge, with these
+a, b and c: by far less than a wake is wide. Cells at its end are chords long; where they are a millionth as
+high, lines between their middles are at 80 to 89 degrees from the normal of the wake.
+"""
 _LEAST_WALL = 5  # fewest nodes of a wall, with its trailing edge counted twice
 
 
@@ -134,6 +139,11 @@ def growing(first: float, length: float, cells: int) -> Floats:
     shape = np.append(0.0, np.cumsum(-expm1(-k / _RAMP) * (1.0 + _LATE * (2.0 * k / cells - 1.0))))
     g = growth_rate(shape, 1.0, length / first, math.log(length / first) / shape[-1])
     return np.concatenate([[0.0], np.cumsum(exp(g * shape))])
+
+
+def rise(behind: Floats) -> Floats:
+    """Return how much higher (n,) first cells are at distances `behind` (n,) the edge, all in chords."""
+    return np.asarray(_RISE * behind**2 / ((behind + _FROM) * (1.0 + behind / _UP_TO)))
 
 
 def c_boundary(

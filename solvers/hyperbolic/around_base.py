@@ -50,7 +50,7 @@ def around_base(
     south = np.concatenate([lines.lower[:0:-1], lines.wall[:-1], lines.upper])
     west, east = (straight(south[k], lines.north[k], lines.nj) for k in (0, -1))
     boundary = Boundary(south, lines.north, west, east, "quad", name=lines.name, chord=lines.chord)
-    front = Front(boundary, wake, ends / first, concave=lines.turned)
+    front = Front(boundary, first, wake, ends / first, concave=lines.turned)
     nodes = marched(front, lines.nj - 1, first, growth, free_rows, constant, multiple)
     grid = _joined(nodes, between, wake, lines.name, first)
     heights = norms(
@@ -83,7 +83,7 @@ def _h_block(lines: BaseWake, first: float, growth: float | None) -> tuple[Float
     ways = lines.upper - lines.lower
     width, cells = norms(ways), len(lines.base) - 1
     behind = norms(lines.lower - lines.lower[0])
-    ends = np.minimum(first * opening(behind / lines.chord), _FULL * width / cells)
+    ends = np.minimum(first * opening(behind / lines.chord, first / lines.chord), _FULL * width / cells)
     ends[0] = float(norms(lines.base[1] - lines.base[0]))
     t = end_fractions(ends / width, cells)[..., None]
     nodes = planar_nodes(len(lines.lower), cells + 1)

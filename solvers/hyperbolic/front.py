@@ -19,16 +19,17 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.shapes.wake import rise
 from meshonet.solvers.hyperbolic.level_spacing import Edge, level_steps, sharpest_edge
 from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
 
 _OPENING = 5.0  # growth of first cells far behind the edge, in those of the wall per chord
 _NEAR = 0.3
 """Height of first cells at x chords behind the trailing edge, divided by that of the wall: 1 + a x²/(x + b),
-with these a and b.
+with these a and b, and higher by `rise`.
 """
 
-_CLOSED_AHEAD, _ASIDE, _OPEN_AHEAD, _OPEN_MORE = 1.8, 0.055, 23.0, 0.016
+_CLOSED_AHEAD, _ASIDE, _OPEN_AHEAD, _OPEN_MORE = 1.8, 0.055, 23.0, 0.015
 """Corrections of the distance of levels, relative to levels around a circle; they are fitted on airfoils, and
 leave an error of 1 %. Around slender bodies the distance is larger by the first constant times slenderness
 times the square of the growth rate of steps, and the smallest distance is less than the mean by the second
@@ -52,11 +53,18 @@ class Front:
     concave: bool  # it has corners that turn towards the grid, at its smallest cells
 
     def __init__(
-        self, boundary: Boundary, wake: int = 0, widening: Floats | None = None, *, concave: bool = False
+        self,
+        boundary: Boundary,
+        first: float,
+        wake: int = 0,
+        widening: Floats | None = None,
+        *,
+        concave: bool = False,
     ) -> None:
         """Take an ``o`` or ``c`` boundary, or a ``quad`` with a wake of `wake` cells at both ends of south.
 
-        `widening` (wake + 1,) are the factors of the first-cell height along this wake, from the edge on.
+        `first` is the height of first cells at the wall; `widening` (wake + 1,) are the factors of that
+        height along this wake, from the edge on.
         """
         self._south, self.concave = boundary.south, concave
         self._closed = boundary.periodic
@@ -74,7 +82,8 @@ class Front:
         self._wake = (wake or boundary.wake) + 1
         if widening is None:
             edge = self._south[self._wake - 1]
-            widening = opening(np.hypot(*(self._south[: self._wake] - edge).T) / boundary.chord)[::-1]
+            behind = np.hypot(*(self._south[: self._wake] - edge).T) / boundary.chord
+            widening = opening(behind, first / boundary.chord)[::-1]
         self.widening = np.ones(len(self._south))
         self.widening[: self._wake] = widening[::-1]
         self.widening[len(self._south) - self._wake :] = widening
@@ -117,9 +126,12 @@ class Front:
         return math.sqrt(b * b + 2.0 * area / math.pi) - b
 
 
-def opening(behind: Floats) -> Floats:
-    """Return the factors (n,) of first-cell heights at distances `behind` (n,) the edge, in chords."""
-    return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR))
+def opening(behind: Floats, first: float) -> Floats:
+    """Return the factors (n,) of heights of first cells at distances `behind` (n,) the edge.
+
+    Both these and `first`, the height at the wall, are in chords.
+    """
+    return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR) + rise(behind) / first)
 
 
 def _radius(ring: Floats) -> float:

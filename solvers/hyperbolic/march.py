@@ -92,7 +92,7 @@ def hyperbolic(
             parameter="method",
         )
     first = wall_spacing * boundary.chord
-    nodes = marched(Front(boundary), boundary.nj - 1, first, growth, free_rows, constant, multiple)
+    nodes = marched(Front(boundary, first), boundary.nj - 1, first, growth, free_rows, constant, multiple)
     return _solution(boundary, nodes, first)
 
 
@@ -258,9 +258,9 @@ def _marched(
         if not near:
             distance *= (0.75 * NEAREST + 0.25 * FARTHEST) * front.outer / reached
     nodes = front.nodes(levels)
+    front.close(nodes)
     _snap(nodes, front.heights(first), steps)
     _equalise(nodes, min(constant, cells - 1), front.heights(1.0))
-    front.close(nodes)
     return (nodes if np.isfinite(nodes[..., 0].sum() + nodes[..., 1].sum()) else None), steps
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from march_shapes import deviation, first_cells
 
+from meshonet import infer, quality
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -28,6 +29,7 @@ def test_a_c_grid_keeps_wall_and_wake_and_has_its_first_cells(name: str) -> None
     np.testing.assert_allclose(height[wall.start : wall.stop + 1], 1e-5, rtol=1e-8)
     behind = np.hypot(*(boundary.south[: wall.start] - boundary.south[wall.start]).T)
     opened = 1e-5 * (1 + 5 * behind**2 / (behind + 0.3))
+    opened += 3e-4 * behind**2 / ((behind + 1) * (1 + behind / 200))
     np.testing.assert_allclose(height[: wall.start], opened, rtol=1e-8)
 
 
@@ -79,3 +81,18 @@ def test_a_wake_of_any_direction_ends_on_a_straight_outlet() -> None:
     turned = Airfoil(body.curve.points @ turn).boundary(Sampling(140, 60, "c"))
     found = hyperbolic(turned, wall_spacing=1e-4).grid.nodes
     np.testing.assert_allclose(found, plain @ turn, atol=1e-6)
+
+
+@pytest.mark.parametrize(("ni", "nj"), [(401, 105), (801, 209)])
+@pytest.mark.parametrize("far", [15.0, 50.0])
+@pytest.mark.parametrize("base", [None, 0.005])
+def test_long_cells_at_the_end_of_a_wake_are_orthogonal_for_flow_solvers(
+    ni: int, nj: int, far: float, base: float | None
+) -> None:
+    """Lines between middles of cells and normals of faces: they were at up to 75 degrees, behind bases 89."""
+    opened = {} if base is None else {"base": base}
+    grid = infer("naca:2412-sharp", res=(ni, nj), topology="c", far_field=far, first_cell=6e-6, **opened)
+    report = quality(grid, profile="openfoam")
+    figures = {result.check.figure: result.figure.value for result in report.profile.results}
+    assert figures["non_orthogonality"] < (25.0 if base is None else 65.0)
+    assert figures["box_ratio"] < 3000.0

@@ -27,7 +27,7 @@ from meshonet.geometry.elementary import expm1
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.wall_plan import arcs_to_corners
-from meshonet.geometry.shapes.wake import c_far_field, growing, wake_axis
+from meshonet.geometry.shapes.wake import c_far_field, growing, rise, wake_axis
 from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, MULTIPLES, Sampling, first_within
 from meshonet.kernels._native import layer_steps
@@ -108,7 +108,7 @@ def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float |
     wall = _wall(body, on_wall, sampling, corner, ratio if corner == first else _STEEP)
     axis = wake_axis(body.leading_edge, body.trailing_edge)
     slopes, turned = _slopes(wall, axis)
-    lower, upper = _lines(wall, slopes, axis, body.chord, length, first, cells)
+    lower, upper = _lines(wall, slopes, axis, body.chord, length, first, cells, len(base) - 1)
     centre = 0.5 * (body.leading_edge + body.trailing_edge)
     radius = sampling.radius * body.chord
     behind, beside = along_and_across(0.5 * (lower[-1] + upper[-1]) - centre, axis)
@@ -263,8 +263,12 @@ def _lines(
     length: float,
     first: float,
     cells: int,
+    across: int,
 ) -> tuple[Floats, Floats]:
-    """Return the lower and the upper wake line (cells + 1, 2), from the base to the outlet."""
+    """Return the lower and the upper wake line (cells + 1, 2), from the base to the outlet.
+
+    Between them are `across` cells, which rise behind the base as those beside the lines do.
+    """
     normal = np.array([-axis[1], axis[0]])
     corners = wall[0], wall[-1]
     mean, closing = 0.5 * (slopes[0] + slopes[1]), slopes[0] - slopes[1]
@@ -274,13 +278,14 @@ def _lines(
     # one law for both, or the lines across from node to node would be slanted far behind
     places = growing(first / math.hypot(1.0, 0.5 * closing), length, cells)
     lines = []
-    for corner, slope in zip(corners, slopes, strict=True):
+    for corner, slope, way in zip(corners, slopes, (-0.5, 0.5), strict=True):
         own = outlet - float(along_and_across(corner, axis)[0])
         x = places * (own / places[-1])
         more = 1.0 - first / math.hypot(1.0, slope) / x[1]  # of its first cell, which is to be as long
         x += more * near * expm1(-x / near)
         x *= own / x[-1]
         y = -mean * chord * expm1(-x / chord) - (slope - mean) * near * expm1(-x / near)
+        y += way * across * chord * rise(x / chord)
         line = corner + x[:, None] * axis + y[:, None] * normal
         line[0] = corner
         line[1] = corner + (line[1] - corner) * (first / float(np.hypot(*(line[1] - corner))))
