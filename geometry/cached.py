@@ -1,4 +1,4 @@
-"""Properties that are worked out once and kept, without a lock between threads."""
+"""Properties that are computed once and kept, without a lock between threads."""
 
 import functools
 from collections.abc import Callable

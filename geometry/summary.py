@@ -8,7 +8,7 @@ from meshonet.geometry.errors import meant
 
 @dataclass(frozen=True)
 class Summary:
-    """Statistics of one metric over all cells, with percentiles if they were asked for."""
+    """Statistics of one metric over all cells, with percentiles if requested."""
 
     min: float
     mean: float

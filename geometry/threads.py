@@ -52,7 +52,7 @@ def threads_for(nodes: int, visits: int = 1) -> int:
 
 
 def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made]:
-    """Return what `work` returns for each of `items`, several at once if threads are free.
+    """Return the results of `work` for each of `items`, computed concurrently if threads are free.
 
     This saves time if an item takes milliseconds, mostly in kernels or in loops of NumPy. `work` may use its
     share of the threads itself; threads without an item help others. Items are begun in their order, so the
@@ -93,7 +93,7 @@ def over_blocks(work: Callable[[Item], Made], items: Sequence[Item], nodes: Sequ
 
 
 def run_in_threads(jobs: Sequence[Callable[[], Any]]) -> list[Any]:
-    """Return what each of `jobs` returns, several at once if threads are free (see `in_threads`)."""
+    """Return the results of `jobs`, computed concurrently if threads are free (see `in_threads`)."""
     return in_threads(lambda job: job(), jobs)
 
 

@@ -1,4 +1,4 @@
-"""Choices that do not depend on rounding: of candidates that are equal to `EQUAL`, the first is taken.
+"""Choices that do not depend on rounding: the first of the candidates that are equal within `EQUAL`.
 
 Symmetric shapes have many equally good candidates. Which of two is better by rounding alone depends on how a
 shape is turned or moved, or on a library; their order does not.

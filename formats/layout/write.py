@@ -95,7 +95,7 @@ class _WrittenLayout:
         ]
 
     def vertex(self, node: int) -> dict[str, Any]:
-        """Return what the file says of the vertex at `node`."""
+        """Return the entry of the file for the vertex at `node`."""
         facts: dict[str, Any] = {"at": self.nodes[node].tolist()}
         loop, cells, partner = (
             int(values[node]) for values in (self.places.loop, self.places.cells, self.places.partner)

@@ -118,7 +118,7 @@ class SurfaceWing:
 
     @property
     def chord(self) -> float:
-        """The greatest chord."""
+        """Largest chord of the wing."""
         return float(self.chords.max())
 
     @property

@@ -12,7 +12,7 @@ from meshonet.geometry.arrays import Floats
 
 @dataclass(frozen=True)
 class Motion:
-    """Rigid motion x -> turn x + shift, for example from one of two periodic sides to the other.
+    """Rigid motion x -> `turn` x + `shift`, for example from one of two periodic sides to the other.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ def arc_at(loop: Loop, place: Floats) -> Floats:
 
 
 def cells_at(loop: Loop, place: Floats) -> Indices:
-    """Return how many cells should meet at places (n,) that are corners; 0 at other places."""
+    """Return the number (n,) of cells that should meet at each of the places (n,); 0 except at corners."""
     number = np.floor(place).astype(np.intp)
     if not loop.corners:
         return np.zeros(len(place), dtype=np.intp)

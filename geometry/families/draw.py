@@ -63,7 +63,7 @@ class Draw:
 
 @dataclass(frozen=True)
 class Draws(Sequence[Draw]):
-    """A sequence of `length` members of a family, each made when it is asked for, and their splits."""
+    """A sequence of `length` members of a family, each made at its first use, and their splits."""
 
     first: Draw
     length: int
@@ -86,7 +86,7 @@ class Draws(Sequence[Draw]):
 def draws(
     name: str, count: int = 1, spread: str | None = None, seed: int = 0, way: str | None = None
 ) -> Draws:
-    """Return `count` members of the family `name`; their boundaries are generated when they are asked for.
+    """Return `count` members of the family `name`; each boundary is generated at its first use.
 
     `spread` is the range ``A:B`` of the parameter; None: the range of the family. `seed` is the seed of all
     random numbers. `way` is how members are split into training and test sets (`split`); None: no split.

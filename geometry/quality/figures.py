@@ -23,7 +23,7 @@ _SAME = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Figures:
-    """Figures of a grid by name; each group of figures is measured when it is first asked for."""
+    """Figures of a grid by name; each group of figures is measured at its first use."""
 
     grid: Grid
     quality: Quality

@@ -59,7 +59,7 @@ class RowDimensions:
 
     @property
     def lines(self) -> dict[str, str]:
-        """The report: lines of text, by their headings."""
+        """Lines of text of the report, by heading."""
         unit = f" {self.unit}" if self.unit else ""
         gaps = "".join(
             f", {name} gap {gap:.4g}{unit} ({100.0 * gap / self.span:.3g} %)"

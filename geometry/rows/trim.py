@@ -1,4 +1,4 @@
-"""Parts of hub and casing between an inlet and an outlet plane, to which they go on straight if need be."""
+"""Parts of hub and casing between an inlet and an outlet plane, extended straight if they are short."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _SAME = 1e-9  # of a curve's length
 
 @dataclass(frozen=True)
 class WallPlanes:
-    """The planes between which hub and casing are taken.
+    """Inlet and outlet plane, between which hub and casing are used.
 
     Parameters
     ----------

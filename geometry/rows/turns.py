@@ -13,7 +13,7 @@ blade.
 
 
 def whole_pitches(angles: Floats, heights: Floats, pitch: float) -> Floats:
-    """Return by how many whole pitches (p,) each profile is away from the blade of most profiles.
+    """Return the numbers (p,) of pitches between each profile and the blade to which most profiles belong.
 
     Blades may lean by more than a pitch. A step from one profile to the next therefore counts as a
     displacement only if it exceeds the lean between other profiles by whole pitches.

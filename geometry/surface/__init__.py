@@ -1,1 +1,1 @@
-"""Surfaces in space made of patches: one table of nodes, which sides are shared, which way is out."""
+"""Surfaces in space that consist of patches: a common table of nodes, shared sides, and outward direction."""

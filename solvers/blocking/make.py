@@ -91,9 +91,10 @@ def _cut_off(fine: Layout) -> str:
 
 
 def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
-    """Return the blocks of a domain; without a requested number of cells, with that of the decomposition.
+    """Return the blocks of a domain.
 
-    Raises InputError: as `make_blocks`; SolverError: the decomposition fails.
+    If the request has no number of cells, the number is that of the decomposition. Raises InputError: see
+    `make_blocks`. Raises SolverError: the decomposition fails.
     """
     domain = _checked(shape.domain, request)
     if request.pitch is not None:

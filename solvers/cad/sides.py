@@ -102,9 +102,9 @@ def _length(model: CadModel, face: CadFace, k: int) -> float:
 
 
 def cell_counts(model: CadModel, plans: tuple[FacePlan, ...], wanted: Floats) -> Indices:
-    """Return even numbers of cells of all edges, near `wanted`, that agree on opposite sides of patches.
+    """Return even numbers of cells (edges,) near `wanted` (edges,) that agree on opposite sides of patches.
 
-    Raises InputError: no numbers agree.
+    Raises InputError: there are no such numbers.
     """
     rows: list[Row] = []
     for face, plan in zip(model.faces, plans, strict=True):

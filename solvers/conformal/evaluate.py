@@ -64,8 +64,8 @@ class StripGrid:
     def fill(self, lift: Lift, out: Floats, axis: Axis | None = None, shift: Shift | None = None) -> bool:
         """Write the grid in the plane to `out` (n + 1, nj, 2), in planar layout, except for its two walls.
 
-        Return whether it is finite. The last row repeats the first bitwise. With an `axis`, rows i and n - i
-        are mirror images. A `shift` is added to phi.
+        Returns whether all nodes are finite. The last row repeats the first bitwise. With an `axis`, rows i
+        and n - i are mirror images. A `shift` is added to phi.
         """
         n, (ends, points, matrix) = len(self.theta), self._panels
         begin, far = ends[0], self.eta[ends[-1] : -1]

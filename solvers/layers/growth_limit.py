@@ -50,7 +50,7 @@ class GrowthLimit:
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> GrowthLimit:
         """Return the term for the initial logarithms `growth` (k,) of the ratios.
 
-        Ρ0 is `growth` within the limit.
+        The value ρ0 is `growth`, clipped to the limit.
         """
         return cls(limit, np.clip(growth, -limit, limit), change)
 

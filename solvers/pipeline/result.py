@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from meshonet.solvers.stacking.request import StackRequest
 
 JUMP = 5.0
-"""Ratio of neighbouring cells along a wall beyond which it is noted although no growth is asked for."""
+"""Ratio of neighbouring cells along a wall above which a note is written even if no growth is prescribed."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -78,6 +78,6 @@ class RowRequest(FirstCell):
 def row_request(**parameters: Any) -> RowRequest:
     """Return the request with the parameters, fields of `RowRequest`; ``wall_spacing`` is ``first_cell``.
 
-    Raises InputError: as `RowRequest`, or a parameter that it does not have.
+    Raises InputError: a parameter that `RowRequest` does not have; see also `RowRequest`.
     """
     return request_from(RowRequest, "a row", parameters)

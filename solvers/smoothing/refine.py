@@ -15,7 +15,7 @@ from meshonet.solvers.refinement.refine import multiplied
 def refined(grid: Grid, times: int) -> Grid:
     """Return `grid` with each cell divided into `times` x `times` cells; its nodes are kept.
 
-    Raises InputError: as `layout_of`; a connection that covers only a part of a side.
+    Raises InputError: a connection that covers only a part of a side; see also `layout_of`.
     """
     for each in grid.connections:
         if not joins_whole_sides(grid, each):

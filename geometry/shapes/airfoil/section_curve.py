@@ -98,7 +98,7 @@ def moved_note(before: CleanSection, section: CleanSection) -> str:
 
 
 def sign_changes(curve: Curve, chord: float) -> int:
-    """Return how often the curvature of a section's curve changes its sign; corners do not count."""
+    """Return the number of changes of sign of the curvature of a section's curve; corners do not count."""
     points = curve.points
     steps = norms(np.concatenate([points[1:], points[:1]]) - points)
     bend = turning(points, closed=True) * (2.0 * chord) / (steps + np.concatenate([steps[-1:], steps[:-1]]))

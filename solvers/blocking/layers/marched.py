@@ -117,6 +117,6 @@ def _march(start: Floats, cells: int, first: float, ratios: Floats, settings: Ma
 
 
 def folded_columns(levels: Floats) -> Bools:
-    """Return which columns of cells (n,) of levels (n, m, 2) around a wall contain a folded corner."""
+    """Return a mask (n,) of the columns of cells with a folded corner, for levels (n, m, 2) around a wall."""
     cells = ring_of(np.concatenate([levels, levels[:1]])).transpose(1, 2, 0, 3)
     return np.asarray((corner_jacobians(cells.reshape(-1, 4, 2)) <= 0.0).reshape(len(levels), -1).any(axis=1))

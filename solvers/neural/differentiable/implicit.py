@@ -19,7 +19,7 @@ class Equations(Protocol):
     """Equations for the inner nodes of four-sided grids."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return how many members of the batch `nodes` (batch, 2, ni, nj) should be solved at once."""
+        """Return the number of members of the batch `nodes` (batch, 2, ni, nj) to solve at once."""
         ...
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:

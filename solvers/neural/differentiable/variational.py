@@ -40,7 +40,7 @@ class Optimum:
     """The equations of the variational optimum: the gradient of the functional is zero at inner nodes."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return how many members are solved at once, so that their factors fit in the memory.
+        """Return the number of members to solve at once, so that their factors fit in the memory.
 
         Raises InputError: the factors of a single one are too large.
         """

@@ -31,7 +31,7 @@ class Winslow:
     """Winslow's equations as `implicit.Equations`; they depend on no number of a member."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return how many members are solved at once: on a CPU, a Krylov space then fits the cache."""
+        """Return the number of members to solve at once; on a CPU, their Krylov space fits the cache."""
         return len(nodes) if nodes.is_cuda else MOST // nodes[0].numel()
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:

@@ -38,7 +38,7 @@ class Plan:
             raise InputError(f"{self.rate:g} is no learning rate", "use 0 to 1, e.g. 0.001", parameter="rate")
 
     def kept(self, count: int, held_out: int, what: str) -> int:
-        """Return how many of the `count` shapes, called `what` in messages, are left to train on.
+        """Return the number of the `count` shapes, called `what` in messages, that remain for training.
 
         Raises InputError: none held out, or fewer than one batch to train on.
         """

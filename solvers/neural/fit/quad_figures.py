@@ -65,11 +65,12 @@ def _share(values: Bools) -> float:
 
 
 def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-    """Return by how much grids `z` (batch, m, n) are worse than `goal`, of the same shape, both complex.
+    """Return three measures (batch,) of how much worse grids `z` are than `goal`, (batch, m, n) complex.
 
-    For each grid, in radians: the excess over the goal of the mean of cells' largest angles, and of their
-    maximum, 0 where they are smaller; then the logarithm of the sum of angles beyond `NARROW` and `WIDE` in
-    cells where the goal's are not.
+    The first two are the differences to the goal, in radians, of the mean and of the maximum of the largest
+    angle of each cell; 0 if `z` is better. The third is log(1 + s / `SLIGHT`), where s is the sum over all
+    cells of the angles beyond the range from `NARROW` to `WIDE`, which is extended to the angles of the cell
+    in `goal`.
     """
     least, most = extremes(z)
     with torch.no_grad():

@@ -78,7 +78,7 @@ class StripOperator(Operator):
         return "conformal"
 
     def expected_error(self, boundary: Boundary, solution: Solution) -> float:
-        """Return how far one more Picard step moves the nodes of a solution, as a relative L2 distance."""
+        """Return the relative L2 distance by which a further Picard step moves the nodes of a solution."""
         better = self.solve([boundary], (solution.cycles or 0) + 1)[0]
         if better.model is None:  # the step diverges
             return math.inf
