@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find kernels -name '*.py*' -o -name '*.pxi' -o -name '*.h' -o -name '*.c' ! -name _native.c)
 
-.PHONY: help demo check test test-fast test-clients same sanitize fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs text pictures tutorials gallery site wheel dist man clean
+.PHONY: help demo format check test test-fast test-clients same sanitize fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs text pictures tutorials gallery site wheel dist man clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
@@ -16,6 +16,7 @@ help:
 	@echo 'make fuzz    every reader and command against hostile files and options, MINUTES=10 each; make kills: commands stopped at random'
 	@echo 'make sanitize  kernels compiled to notice what they must not do, and the tests that run them'
 	@echo 'make lint    style, types, import contracts and spelling'
+	@echo 'make format  imports sorted, lines broken at 110 columns'
 	@echo 'make train   the shipped models again, from random shapes (resumable; about three hours on one core)'
 	@echo 'make paper   the MeshONet paper again: docs/benchmarks/paper (hours, resumable); make paper-quick: ten minutes, in build'
 	@echo 'make bench   the benchmarks, and their pages in docs/benchmarks'
@@ -118,6 +119,10 @@ fuzz: $(VENV)/.developing
 
 kills: $(VENV)/.developing
 	$(BIN)/python benchmarks/kills.py --count $(COUNT)
+
+format: $(VENV)/.developing
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
 
 lint: $(VENV)/.developing
 	$(BIN)/ruff check .

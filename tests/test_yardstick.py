@@ -135,10 +135,11 @@ def test_transfinite_surfaces_of_gmsh_are_structured_and_keep_the_boundary(tmp_p
     assert (figures.folded, figures.boundary) == (0, 0.0)
 
 
-def test_every_network_that_can_be_trained_has_entered() -> None:
-    assert (*OPERATORS, *PHYSICS) == tuple(ARCHITECTURES)
+def test_every_network_that_has_entered_can_be_trained_and_has_its_rows() -> None:
+    entered = (*OPERATORS, *PHYSICS)
+    assert set(entered) <= set(ARCHITECTURES)
     page = (FOLDER.parent / "docs" / "benchmarks" / "yardstick.md").read_text(encoding="utf-8")
-    for model in ARCHITECTURES:
+    for model in entered:
         for what in ("four-sided", "body"):
             assert f"| {what} | meshonet train --model {model} | " in page
     assert page.startswith(HEAD.format(count=20, seed=1))

@@ -8,7 +8,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, NoValidGridError, SolverError
 from meshonet.solvers.algebraic.tfi import solve as interpolate
 from meshonet.solvers.pipeline.coarse import Coarse
-from meshonet.solvers.pipeline.fallback import ORDER, guard
+from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.pipeline.make_grid import make_grid, make_grids
 from meshonet.solvers.pipeline.methods import METHODS, Each, method_named
 from meshonet.solvers.pipeline.parameters import grid_request
@@ -22,9 +22,7 @@ METHOD_OF = "meshonet.solvers.pipeline.make_grid.method_of"
 @pytest.mark.slow
 def test_what_cannot_be_repaired_is_refused_or_marked() -> None:
     made = interpolate(impossible())
-    with pytest.raises(
-        NoValidGridError, match=f"stay folded after {', then '.join(['repair', *ORDER])}; use more"
-    ):
+    with pytest.raises(NoValidGridError, match=r"stay folded after repair(, then \w+)+; use more"):
         guard(made, impossible(), margin=2)
     assert guard(made, impossible(), allow_invalid=True).outcome is Outcome.FOLDED
 
