@@ -142,7 +142,7 @@ def growing(first: float, length: float, cells: int) -> Floats:
 
 
 def rise(behind: Floats) -> Floats:
-    """Return how much higher (n,) first cells are at distances `behind` (n,) the edge, all in chords."""
+    """Return the increase (n,) of first-cell heights at distances `behind` (n,) the edge, in chords."""
     return np.asarray(_RISE * behind**2 / ((behind + _FROM) * (1.0 + behind / _UP_TO)))
 
 

@@ -25,8 +25,8 @@ from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
 
 _OPENING = 5.0  # growth of first cells far behind the edge, in those of the wall per chord
 _NEAR = 0.3
-"""Height of first cells at x chords behind the trailing edge, divided by that of the wall: 1 + a x²/(x + b),
-with these a and b, and higher by `rise`.
+"""Height of first cells at x chords behind the trailing edge: the height at the wall times 1 + a x²/(x + b),
+with these a and b, plus `rise`.
 """
 
 _CLOSED_AHEAD, _ASIDE, _OPEN_AHEAD, _OPEN_MORE = 1.8, 0.055, 23.0, 0.015
