@@ -22,7 +22,7 @@ import numpy as np
 import torch
 from clock import clocked
 from page import arguments, publish
-from shapes import random_airfoils, random_domains  # before the next: it finds the tests' folder
+from shapes import Shape, random_airfoils, random_domains  # before the next: it finds the tests' folder
 
 from converged_o_grids import converged  # isort: skip
 
@@ -77,32 +77,32 @@ def exact(name: str, boundary: Boundary, nodes: Floats) -> Floats:
     return meshonet.optimum_derivative(grid.with_nodes(nodes)).grid.nodes
 
 
-def rows(count: int, n: int, functions: Sequence[str]) -> Iterator[str]:
+def rows(count: int, n: int, functions: Sequence[str], precisions: Sequence[str]) -> Iterator[str]:
     """Yield the table."""
     yield "| function | precision | grids | distance | folded | more | ms a grid | backward |"
     yield "| --- | --- | --- | --- | --- | --- | --- | --- |"
     domains = [shape.make(1) for shape in random_domains(count, n)]
-    airfoils = [shape.make(1) for shape in random_airfoils(count, n)] if "conformal" in functions else []
-    airfoils = [body for body in airfoils if has_grid(body)]
+    airfoils = mapped(random_airfoils(count, n)) if "conformal" in functions else []
     for name in functions:
         drawn, names = domains, ("south", "north", "west", "east")
         function: Callable[..., Any] = getattr(layer, name)
         if name == "conformal":
             drawn, names, function = airfoils, names[:2], lambda *sides: layer.conformal(*sides, n)
-        for dtype in (torch.float64, torch.float32):
+        for dtype in (getattr(torch, f"float{bits}") for bits in precisions):
             sides = [torch.tensor(np.stack([getattr(b, side) for b in drawn]), dtype=dtype) for side in names]
             row = f"| `{name}` | {str(dtype)[-2:]} bits | {' | '.join(words(name, function, sides, drawn))} |"
             print(row, file=sys.stderr, flush=True)
             yield row
 
 
-def has_grid(body: Boundary) -> bool:
-    """Return whether `conformal` makes a grid around an airfoil."""
-    try:
-        layer.conformal(torch.tensor(body.south[None]), torch.tensor(body.north[None]), 5)
-    except meshonet.MeshonetError:
-        return False
-    return True
+def mapped(shapes: Sequence[Shape]) -> list[Boundary]:
+    """Return the airfoils that have a conformal map; print how many have none."""
+    drawn = [shape.make(1) for shape in shapes]
+    sides = (torch.tensor(np.stack([getattr(body, name) for body in drawn])) for name in ("south", "north"))
+    nodes = layer.AirfoilGrids("base", 0)(*sides, 5, failed="nan")
+    have = nodes.isfinite().all((1, 2, 3)).tolist()
+    print(f"{have.count(False)} of {len(drawn)} airfoils have no conformal map", file=sys.stderr, flush=True)
+    return [body for body, has in zip(drawn, have, strict=True) if has]
 
 
 def words(
@@ -140,10 +140,12 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=1000, help="seeds of domains, and airfoils")
     parser.add_argument("--nodes", type=int, default=65, help="along a side")
     parser.add_argument("--functions", default=FUNCTIONS, help="some of these, separated by commas")
+    parser.add_argument("--precisions", default="64,32", help="bits of the sides, separated by a comma")
     options = parser.parse_args()
     torch.set_num_threads(1)
+    chosen = options.functions.split(","), options.precisions.split(",")
     publish(
-        "\n".join([HEAD, *rows(options.count, options.nodes, options.functions.split(",")), TAIL]),
+        "\n".join([HEAD, *rows(options.count, options.nodes, *chosen), TAIL]),
         options.page,
     )
 

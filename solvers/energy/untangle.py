@@ -4,7 +4,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.area import polygon_area
-from meshonet.solvers.energy.functional import Weights
+from meshonet.solvers.energy.functional import Weights, value
 from meshonet.solvers.energy.preconditioner import Descent
 
 STILL = 1e-3  # move of a node, in its own cells, below which minimising with one regularisation stops
@@ -25,8 +25,7 @@ def unfold(
     cells. `periodic` and `aspect` are those of `Descent`.
     """
     descent = Descent(nodes, weights, periodic, aspect)
-    rim = [nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]]
-    cell = abs(polygon_area(np.concatenate(rim))) / ((nodes.shape[0] - 1) * (nodes.shape[1] - 1))
+    cell = _cell_area(nodes)
     epsilon, best, idle, spent = cell, -np.inf, 0, 0
     for _ in range(REGULARISATIONS):
         _, smallest, done = descent.run(STILL, iterations, epsilon=epsilon)
@@ -39,3 +38,30 @@ def unfold(
         best = max(best, smallest)
         epsilon = min(0.5 * epsilon, max(0.2 * abs(smallest), 1e-6 * cell))
     return False, spent
+
+
+NARROW = 0.3, 1e-6  # of regularisations that widen cells: each one over that before, the last over a cell
+LONG = 300  # iterations with each of them
+
+
+def widen(nodes: Floats, weights: Weights) -> None:
+    """Lower the functional of valid planar `nodes` (ni, nj, 2) with nearly folded cells, in place.
+
+    The functional's barrier is so steep in them that a minimisation moves hardly. With regularised Jacobians
+    it does move; they become exact step by step. If that ends in folded cells or does not lower the
+    functional, the nodes stay.
+    """
+    trial = nodes.copy(order="K")
+    descent, before = Descent(trial, weights), value(nodes, weights)
+    epsilon = cell = _cell_area(nodes)
+    while epsilon > NARROW[1] * cell:
+        _, smallest, _ = descent.run(STILL, LONG, epsilon=epsilon)
+        epsilon *= NARROW[0]
+    if smallest > 0.0 and value(trial, weights) < before:
+        nodes[:] = trial
+
+
+def _cell_area(nodes: Floats) -> float:
+    """Return the mean area of the cells of planar `nodes`."""
+    rim = [nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]]
+    return abs(polygon_area(np.concatenate(rim))) / ((nodes.shape[0] - 1) * (nodes.shape[1] - 1))

@@ -11,7 +11,7 @@ from meshonet.solvers.conformal.strip import across, harmonic, picard
 
 STILL = 1e-13
 """Change (radians) in a step at which the iteration ends."""
-MOST = 20_000
+MOST = 100_000
 
 
 def converged(boundary: Boundary) -> Floats:

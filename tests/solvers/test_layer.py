@@ -199,11 +199,70 @@ def test_gradients_of_a_slow_conformal_grid_are_those_of_finite_differences() ->
     assert torch.autograd.gradcheck(lambda *sides: layer.conformal(*sides, 9), (south, north), fast_mode=True)
 
 
-def test_a_body_without_a_map_is_named() -> None:
-    _, (south, north) = inputs(layer.conformal, 2)
-    south[1] = 0.0
-    with pytest.raises(InputError, match=r"member 1 of the batch"):
+def test_bodies_without_a_map_are_named() -> None:
+    _, (south, north) = inputs(layer.conformal, 4)
+    south[1], south[3] = 0.0, south[3] * torch.tensor([1.0, 0.0])
+    with pytest.raises(SolverError, match=r"members 1, 3 of the batch: the body is a point") as caught:
         layer.conformal(south, north, 6)
+    assert caught.value.members == (1, 3)
+
+
+@pytest.mark.slow
+def test_a_conformal_grid_converges_where_the_angle_on_the_wall_turns_back() -> None:
+    """There accelerated steps stall."""
+    rough = procedural.boundary(np.random.default_rng(20_000_632), 65, 5)
+    south, north = (torch.tensor(side) for side in (rough.south, rough.north))
+    nodes = layer.conformal(south, north, 5).numpy()
+    exact = converged(rough)  # 50,000 plain steps
+    np.testing.assert_allclose(nodes, exact, rtol=0, atol=1e-10 * np.ptp(rough.north))
+
+
+@pytest.mark.slow
+def test_an_optimum_is_found_where_sides_nearly_meet_in_a_bent_gap() -> None:
+    """There steps end at the rounding of nodes before they are small beside the shortest edges."""
+    bent = random_quad(1622, 25, 25)
+    assert bent is not None
+    nodes = layer.variational(*(side[0] for side in sides_of([bent]))).numpy()
+    compiled = least(bent, tol=1e-8, max_cycles=1000).grid
+    weights = Weights(smoothness=compiled.provenance["smoothness"])
+    assert value(nodes, weights) < value(compiled.nodes, weights)
+
+
+SOLVED = (*QUADS[1:3], *LIFTED, layer.conformal)
+
+
+@pytest.mark.parametrize("function", SOLVED)
+def test_members_without_a_grid_leave_the_others_as_they_are(function: Any) -> None:
+    _, given = inputs(function, 4)
+    more = (6,) if function is layer.conformal else ()
+    broken = [side.clone() for side in given]
+    broken[0][1, 4, 1] = torch.nan
+    for side in broken:
+        side[2] = 0.0
+    found = function(*(side.requires_grad_() for side in broken), *more, failed="nan")
+    assert found.isfinite().all((1, 2, 3)).tolist() == [True, False, False, True]
+    few = [side[[0, 3]].requires_grad_() for side in given]
+    alone = function(*few, *more)
+    torch.testing.assert_close(found[[0, 3]], alone, rtol=0, atol=1e-11)
+    found.square().sum().backward()
+    alone.square().sum().backward()
+    for side, own in zip(broken, few, strict=True):
+        torch.testing.assert_close(side.grad[[0, 3]], own.grad, rtol=1e-9, atol=1e-9)
+        assert not side.grad[1:3].any()
+
+
+def test_a_batch_of_failures_alone_is_nan() -> None:
+    given = [(0.0 * side).requires_grad_() for side in sides_of(domains(9, 8, 3))]
+    nodes = layer.winslow(*given, failed="nan")
+    assert nodes.shape[1:] == (9, 8, 2)
+    assert nodes.isnan().all()
+    nodes.sum().backward()
+    assert not given[0].grad.any()
+
+
+def test_an_unknown_word_for_failures_is_refused() -> None:
+    with pytest.raises(InputError, match=r"""failed='skip'; use "raise" or "nan\""""):
+        layer.winslow(*sides_of(domains(9, 8, 2)), failed="skip")  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("function", QUADS + AROUND)

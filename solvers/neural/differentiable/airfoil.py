@@ -17,6 +17,7 @@ from meshonet.solvers.conformal.evaluate import StripGrid
 from meshonet.solvers.conformal.strip import MODES, across, wavenumbers
 from meshonet.solvers.neural.differentiable.arguments import batched, check_sides
 from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls
+from meshonet.solvers.neural.differentiable.members import Failed, MemberError, check_failed
 from meshonet.solvers.neural.differentiable.recorded import recorded
 from meshonet.solvers.neural.differentiable.sides import as_numpy
 from meshonet.solvers.neural.differentiable.strip_limit import Settled, picard
@@ -48,21 +49,23 @@ class AirfoilGrids:
         self._polish = polish
         self._device = device
 
-    def __call__(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
+    def __call__(self, south: Tensor, north: Tensor, nj: int, *, failed: Failed = "raise") -> Tensor:
         """Return the nodes (..., ni, nj, 2) of O grids around bodies.
 
         `south`, `north`: (..., ni, 2) nodes of the bodies and of the far fields, clockwise from the trailing
-        edge, the first repeated at the end; `nj`: node count from wall to far field. The arithmetic is in
-        double precision. Raises InputError: a body without a conformal lift, with the index of the member;
-        tensors of other shapes; `nj` below 2. Raises SolverError: a member does not converge.
+        edge, the first repeated at the end; `nj`: node count from wall to far field; `failed`: as in
+        `conformal`. The arithmetic is in double precision. Raises InputError: tensors of other shapes; `nj`
+        below 2. Raises SolverError: a body has no conformal lift, or a member does not converge.
         """
         check_sides(4, nj, south=south, north=north)
-        make = partial(recorded, partial(self._nodes, nj=nj))
+        check_failed(failed)
+        counts = (south.shape[-2], nj) if failed == "nan" else None
+        make = partial(recorded, partial(self._nodes, nj=nj), counts=counts)
         return batched(make, (south, north), nj, device=self._device)
 
     def _nodes(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
         edges = [torch.complex(edge[:, :-1, 0], -edge[:, :-1, 1]) for edge in (south, north)]
-        bodies = [_lifted(k, z, far) for k, (z, far) in enumerate(zip(*edges, strict=True))]
+        bodies = _lifted(*edges)
         wall, far = (torch.stack([getattr(body, name) for body in bodies]) for name in ("wall", "far"))
         a, b = strip.modes(wall, torch), strip.modes(far, torch)
         c = strip.harmonic(a, b, across().eta, torch)
@@ -85,7 +88,7 @@ class AirfoilGrids:
         return torch.cat([south[:, :, None], inner, north[:, :, None]], 2)
 
 
-def conformal(south: Tensor, north: Tensor, nj: int) -> Tensor:
+def conformal(south: Tensor, north: Tensor, nj: int, *, failed: Failed = "raise") -> Tensor:
     """Return the nodes (..., ni, nj, 2) of converged conformal O grids around airfoils.
 
     Gradients are those of the solution, by one linear system for each backward pass.
@@ -96,25 +99,34 @@ def conformal(south: Tensor, north: Tensor, nj: int) -> Tensor:
         the first repeated at the end.
     nj : int
         Node count from wall to far field.
+    failed : {"raise", "nan"}
+        As in `winslow`.
 
     Raises
     ------
     InputError
-        A body without a conformal lift, with the index of the member; tensors of other shapes, of unequal
-        counts or of different dtypes; `nj` below 2.
+        Tensors of other shapes, of unequal counts or of different dtypes; `nj` below 2.
     SolverError
-        The equations of a member of the batch do not converge; the message has its index.
+        Bodies of the batch have no conformal lift, have a coordinate that is not finite, or their equations
+        do not converge; the message has the indices, as has the attribute ``members``.
     """
-    return AirfoilGrids("base", "converged", str(south.device))(south, north, nj)
+    return AirfoilGrids("base", "converged", str(south.device))(south, north, nj, failed=failed)
 
 
-def _lifted(member: int, z: Tensor, far: Tensor) -> TorchWalls:
-    if not bool((z != z[0]).any()):
-        raise InputError(f"member {member} of the batch: the body is a point", "leave it out")
-    try:
-        return torch_walls(z, far)
-    except InputError as error:
-        raise InputError(f"member {member} of the batch: {error.problem}", error.remedy) from error
+def _lifted(bodies: Tensor, fars: Tensor) -> list[TorchWalls]:
+    """Return the walls in the strip. Raises MemberError, with the bodies without a conformal lift."""
+    found, reasons = [], {}
+    for member, (z, far) in enumerate(zip(bodies, fars, strict=True)):
+        if not bool((z != z[0]).any()):
+            reasons[member] = "the body is a point", "leave it out"
+            continue
+        try:
+            found.append(torch_walls(z, far))
+        except InputError as error:
+            reasons[member] = error.problem, error.remedy
+    if reasons:
+        raise MemberError(reasons)
+    return found
 
 
 class _Correction:

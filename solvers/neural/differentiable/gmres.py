@@ -11,20 +11,23 @@ from collections.abc import Callable
 import torch
 from torch import Tensor
 
-SPACE = 40  # dimension of the Krylov space at which the iteration is restarted
+SPACE = 40  # dimension of the Krylov space
 TINY = 1e-300  # keeps quotients finite where a residual is zero
 
 
-def gmres(times: Callable[[Tensor], Tensor], right: Tensor, tol: float, most: int) -> Tensor:
+def gmres(
+    times: Callable[[Tensor], Tensor], right: Tensor, tol: float, most: int, space: int = SPACE
+) -> Tensor:
     """Return approximate solutions x (batch, n) of A x = `right` (batch, n).
 
     `times(x)` returns A x. A member has converged if the Euclidean norm of its residual is `tol` times that
-    of `right`. After at most `most` products with the matrix the last iterate is returned, converged or not.
+    of `right`. The iteration restarts when the Krylov space has the dimension `space`. After at most `most`
+    products with the matrix the last iterate is returned, converged or not.
     """
     x, goal = torch.zeros_like(right), tol * right.norm(dim=1)
     rest, done = right, 0
     while done < most and bool((rest.norm(dim=1) > goal).any()):
-        step, spent = _cycle(times, rest, goal, min(SPACE, most - done))
+        step, spent = _cycle(times, rest, goal, min(space, most - done))
         x, done = x + step, done + spent
         if done < most:
             rest = right - times(x)

@@ -8,6 +8,7 @@ from torch import Tensor
 from meshonet.solvers.algebraic.resample.grids import check_coarse
 from meshonet.solvers.neural.differentiable.arguments import batched, check_corners, check_sides
 from meshonet.solvers.neural.differentiable.implicit import Converged, Equations
+from meshonet.solvers.neural.differentiable.members import Failed, check_failed
 from meshonet.solvers.neural.differentiable.recorded import recorded
 from meshonet.solvers.neural.differentiable.resample import between, refined
 from meshonet.solvers.neural.differentiable.transfinite import Sides, arc_lengths, interpolated
@@ -32,7 +33,10 @@ def transfinite(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Ten
     return _four_sided(lambda sides: interpolated(sides, arc_lengths(sides)), south, north, west, east)
 
 
-def winslow(south: Tensor, north: Tensor, west: Tensor, east: Tensor, *, coarse: int | None = None) -> Tensor:
+def winslow(
+    south: Tensor, north: Tensor, west: Tensor, east: Tensor, *, coarse: int | None = None,
+    failed: Failed = "raise",
+) -> Tensor:  # fmt: skip
     """Return the nodes (..., ni, nj, 2) that solve Winslow's equations, to rounding.
 
     Gradients are those of the solution, by one linear system for each backward pass.
@@ -43,21 +47,25 @@ def winslow(south: Tensor, north: Tensor, west: Tensor, east: Tensor, *, coarse:
     coarse : int, optional
         Solve on at most this number of nodes along a direction, and interpolate the grid to all nodes of the
         sides, as ``--coarse`` does, without its sweeps near kinks.
+    failed : {"raise", "nan"}
+        With "nan", nodes of members without a solution are NaN and have no gradients, in place of an error;
+        the other members are solved again without them.
 
     Raises
     ------
     InputError
         As `transfinite`, and for `coarse` below 9.
     SolverError
-        The equations of a member of the batch did not converge, or it has a coordinate that is not
-        finite; the message has its index.
+        The equations of members of the batch did not converge, or they have a coordinate that is not
+        finite; the message has their indices, as has the attribute ``members``.
     """
-    return _solved(Winslow(), coarse, south, north, west, east)
+    return _solved(Winslow(), coarse, failed, south, north, west, east)
 
 
 def variational(
-    south: Tensor, north: Tensor, west: Tensor, east: Tensor, *, coarse: int | None = None
-) -> Tensor:
+    south: Tensor, north: Tensor, west: Tensor, east: Tensor, *, coarse: int | None = None,
+    failed: Failed = "raise",
+) -> Tensor:  # fmt: skip
     """Return the nodes (..., ni, nj, 2) at the optimum of the variational functional, to rounding.
 
     The compiled solver computes the starts on the CPU. Gradients are those of the optimum, by one linear
@@ -68,26 +76,30 @@ def variational(
     south, north, west, east : as in `transfinite`.
     coarse : int, optional
         As in `winslow`: 65 makes all grids cheap, at the price of an optimum between the coarse nodes.
+    failed : {"raise", "nan"}
+        As in `winslow`.
 
     Raises
     ------
     InputError
         As `winslow`, and for more than about 400 x 400 nodes to solve on, whose systems need too much memory.
     SolverError
-        No grid without folded cells was found for a member of the batch, or it has a coordinate that is
-        not finite; the message has its index.
+        No grid without folded cells was found for members of the batch, or they have a coordinate that is
+        not finite; the message has their indices, as has the attribute ``members``.
     """
-    return _solved(Optimum(), coarse, south, north, west, east)
+    return _solved(Optimum(), coarse, failed, south, north, west, east)
 
 
-def _solved(equations: Equations, coarse: int | None, *given: Tensor) -> Tensor:
+def _solved(equations: Equations, coarse: int | None, failed: Failed, *given: Tensor) -> Tensor:
+    check_failed(failed)
+
     def make(sides: Sides) -> Tensor:
         start = interpolated(sides, arc_lengths(sides))
         nodes: Tensor = Converged.apply(equations, start)[0]  # type: ignore[no-untyped-call]
         return nodes
 
     if coarse is None:
-        return _four_sided(make, *given)
+        return _four_sided(make, *given, decides=failed == "nan", failed=failed)
     check_coarse(coarse)
 
     def lifted(sides: Sides) -> Tensor:
@@ -95,7 +107,7 @@ def _solved(equations: Equations, coarse: int | None, *given: Tensor) -> Tensor:
         nodes = make(few)
         return refined(nodes, sides) if coarse < max(side.shape[-1] for side in sides) else nodes
 
-    return _four_sided(lifted, *given, decides=True)
+    return _four_sided(lifted, *given, decides=True, failed=failed)
 
 
 def _four_sided(
@@ -106,10 +118,11 @@ def _four_sided(
     east: Tensor,
     *,
     decides: bool = False,
+    failed: Failed = "raise",
 ) -> Tensor:
     """Return the nodes (..., ni, nj, 2); `make` takes sides (batch, 2, n) and returns (batch, 2, ni, nj).
 
-    `decides`: it takes decisions by the values of tensors.
+    `decides`: it takes decisions by the values of tensors, such as which members have `failed`.
     """
     check_sides(3, south=south, north=north, west=west, east=east)
     check_corners(south, north, west, east)
@@ -117,4 +130,6 @@ def _four_sided(
     def nodes(*sides: Tensor) -> Tensor:
         return make(tuple(side.movedim(-1, 1) for side in sides)).movedim(1, -1)
 
-    return batched(partial(recorded, nodes) if decides else nodes, (south, north, west, east))
+    counts = (south.shape[-2], west.shape[-2]) if failed == "nan" else None
+    make_all = partial(recorded, nodes, counts=counts) if decides else nodes
+    return batched(make_all, (south, north, west, east))

@@ -5,14 +5,13 @@ has the derivative -R_bᵀ λ with respect to b, where R_xᵀ λ = g. This needs
 system, whatever the number of iterations was.
 """
 
-from collections.abc import Callable
 from typing import Any, Protocol
 
 import torch
 from torch import Tensor
 
 from meshonet.solvers.neural.differentiable.arguments import unit_of
-from meshonet.solvers.neural.differentiable.members import MemberError, as_one_batch
+from meshonet.solvers.neural.differentiable.members import as_one_batch, in_parts
 
 
 class Equations(Protocol):
@@ -95,18 +94,6 @@ class Adjoint(torch.autograd.Function):
     def vmap(info: Any, in_dims: Any, *inputs: Any) -> Any:
         """Solve all members of both batches as one batch."""
         return as_one_batch(Adjoint.apply, info.batch_size, in_dims, *inputs)
-
-
-def in_parts(function: Callable[..., tuple[Tensor, ...]], most: int, *tensors: Tensor) -> tuple[Tensor, ...]:
-    """Return the values of `function` for a batch, passed to it in parts of at most `most` members."""
-    parts = []
-    for first in range(0, len(tensors[0]), max(most, 1)):
-        some = slice(first, first + max(most, 1))
-        try:
-            parts.append(function(*(tensor[some] for tensor in tensors)))
-        except MemberError as error:
-            raise error.later(first) from None
-    return tuple(torch.cat(values) for values in zip(*parts, strict=True))
 
 
 def inner(nodes: Tensor) -> Tensor:

@@ -1,39 +1,92 @@
-"""Members of a batch: which one failed, and batches of batches as one."""
+"""Members of a batch: which ones failed, and batches of batches as one."""
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, Literal
 
-from torch import Tensor, isfinite
+import torch
+from torch import Tensor
 
-from meshonet.geometry.errors import SolverError
+from meshonet.geometry.errors import InputError, SolverError
+
+Failed = Literal["raise", "nan"]
+"""What members without a grid cause: an error, or nodes that are not numbers, without gradients."""
 
 
 class MemberError(SolverError):
-    """No grid for one member of a batch.
+    """No grids for some members of a batch.
 
     Parameters
     ----------
-    member : int
-        Index of the member in the batch, from 0.
-    problem, remedy : str
-        What is wrong with the member, and what a user can do.
+    reasons : dict
+        By the index of a member, from 0: what is wrong with it, and what a user can do.
     """
 
-    def __init__(self, member: int, problem: str, remedy: str) -> None:
-        super().__init__(f"member {member} of the batch: {problem}; {remedy}")
-        self._parts = member, problem, remedy
+    members: tuple[int, ...]
+    """The indices."""
 
-    def later(self, count: int) -> "MemberError":
-        """Return the same error for a batch that has `count` further members before this batch."""
-        member, problem, remedy = self._parts
-        return MemberError(member + count, problem, remedy)
+    def __init__(self, reasons: Mapping[int, tuple[str, str]]) -> None:
+        self.members, self.reasons = tuple(sorted(reasons)), dict(reasons)
+        which = f"member {self.members[0]}"
+        if len(self.members) > 1:
+            which = f"members {', '.join(map(str, self.members[:5]))}"
+        if len(self.members) > 5:
+            which += f" and {len(self.members) - 5} more"
+        problem, remedy = reasons[self.members[0]]
+        super().__init__(f"{which} of the batch: {problem}; {remedy}")
+
+    @classmethod
+    def of(cls, members: Iterable[int], problem: str, remedy: str) -> "MemberError":
+        """Return the error for several members of which the same is wrong."""
+        return cls(dict.fromkeys(members, (problem, remedy)))
 
 
-def check_finite(nodes: Tensor) -> None:
-    """Raise MemberError for the first member of `nodes` (batch, ...) with a number that is not finite."""
-    bad = (~isfinite(nodes).flatten(1).all(1)).nonzero().flatten()
+def check_finite(*parts: Tensor) -> None:
+    """Raise MemberError for the members of `parts` (batch, ...) with a number that is not finite."""
+    finite = [torch.isfinite(part).flatten(1).all(1) for part in parts]
+    bad = (~torch.stack(finite).all(0)).nonzero().flatten()
     if len(bad):
-        raise MemberError(int(bad[0]), "a coordinate is not finite", "leave it out")
+        raise MemberError.of(bad.tolist(), "a coordinate is not finite", "leave it out")
+
+
+def check_failed(failed: str) -> None:
+    """Raise InputError: not one of `Failed`."""
+    if failed not in ("raise", "nan"):
+        raise InputError(f"failed={failed!r}", 'use "raise" or "nan"')
+
+
+def without_failed(make: Callable[..., Tensor], counts: tuple[int, int], *sides: Tensor) -> Tensor:
+    """Return the nodes (batch, ni, nj, 2) that `make` returns for `sides`, NaN for members without a grid.
+
+    `counts`: ni, nj.
+    """
+    left = torch.arange(len(sides[0]), device=sides[0].device)
+    none = sides[0].new_full((len(left), *counts, 2), torch.nan)
+    while len(left):
+        try:
+            return none.index_copy(0, left, make(*(side[left] for side in sides)))
+        except MemberError as error:
+            good = torch.ones_like(left, dtype=torch.bool)
+            good[list(error.members)] = False
+            left = left[good]
+    return none
+
+
+def in_parts(function: Callable[..., tuple[Tensor, ...]], most: int, *tensors: Tensor) -> tuple[Tensor, ...]:
+    """Return the values of `function` for a batch, of which it is given at most `most` members at once.
+
+    Raises MemberError, with the failed members of all parts.
+    """
+    parts: list[tuple[Tensor, ...]] = []
+    reasons: dict[int, tuple[str, str]] = {}
+    for first in range(0, len(tensors[0]), max(most, 1)):
+        some = slice(first, first + max(most, 1))
+        try:
+            parts.append(function(*(tensor[some] for tensor in tensors)))
+        except MemberError as error:
+            reasons |= {first + k: reason for k, reason in error.reasons.items()}
+    if reasons:
+        raise MemberError(reasons)
+    return tuple(torch.cat(values) for values in zip(*parts, strict=True))
 
 
 def as_one_batch(function: Callable[..., Any], count: int, in_dims: Any, *inputs: Any) -> tuple[Any, Any]:

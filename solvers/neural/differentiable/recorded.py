@@ -6,18 +6,34 @@ gradients come from the operations that torch recorded in the forward pass.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import torch
 from torch import Tensor
 
 from meshonet.solvers.neural.differentiable.arguments import unit_of
-from meshonet.solvers.neural.differentiable.members import as_one_batch, check_finite
+from meshonet.solvers.neural.differentiable.members import as_one_batch, check_finite, without_failed
 
 
-def recorded(function: Callable[..., Tensor], *sides: Tensor) -> Tensor:
-    """Return the value of `function`, from sides (batch, n, 2) to nodes (batch, ni, nj, 2)."""
-    return _Function.apply(_Record(function, torch.is_grad_enabled()), *sides)  # type: ignore[no-untyped-call]
+def recorded(
+    function: Callable[..., Tensor], *sides: Tensor, counts: tuple[int, int] | None = None
+) -> Tensor:
+    """Return the value of `function`, from sides (batch, n, 2) to nodes (batch, ni, nj, 2).
+
+    With `counts`, ni and nj, members without a grid are NaN, in place of a MemberError.
+    """
+    call = partial(_of_unit_size, function)
+    if counts is not None:
+        call = partial(without_failed, call, counts)
+    return _Function.apply(_Record(call, torch.is_grad_enabled()), *sides)  # type: ignore[no-untyped-call]
+
+
+def _of_unit_size(function: Callable[..., Tensor], *sides: Tensor) -> Tensor:
+    """Return the value of `function` for `sides`, which it is given divided by a power of 2."""
+    check_finite(*sides)
+    unit = unit_of(torch.cat(sides, 1))
+    return unit[..., None] * function(*(side / unit for side in sides))
 
 
 @dataclass
@@ -31,14 +47,11 @@ class _Record:
 class _Function(torch.autograd.Function):
     @staticmethod
     def forward(record: _Record, *sides: Tensor) -> Tensor:
-        for side in sides:
-            check_finite(side)
-        unit = unit_of(torch.cat(sides, 1))
         if not record.wanted:
-            return unit[..., None] * record.function(*(side / unit for side in sides))
+            return record.function(*sides)
         with torch.enable_grad():
             record.sides = [side.detach().requires_grad_() for side in sides]
-            record.nodes = unit[..., None] * record.function(*(side / unit for side in record.sides))
+            record.nodes = record.function(*record.sides)
         return record.nodes.detach()
 
     @staticmethod
@@ -59,7 +72,9 @@ class _Pulled(torch.autograd.Function):
 
     @staticmethod
     def forward(record: _Record, gradient: Tensor) -> tuple[Tensor, ...]:
-        return torch.autograd.grad(record.nodes, record.sides, gradient, retain_graph=True)  # type: ignore[arg-type]
+        if record.nodes is None or not record.nodes.requires_grad:  # no member has a grid
+            return tuple(map(torch.zeros_like, record.sides))
+        return torch.autograd.grad(record.nodes, record.sides, gradient, retain_graph=True)
 
     @staticmethod
     def setup_context(ctx: Any, inputs: tuple[Any, ...], output: tuple[Tensor, ...]) -> None:

@@ -1,11 +1,14 @@
 """Winslow's equations in the periodic strip, in torch: Picard's step, and its limit with gradients.
 
 The formulas are those of `meshonet.solvers.conformal.strip`. Where nodes lie much closer than the circle's
-angles, thousands of plain steps would be needed; they are accelerated.
+angles, thousands of plain steps would be needed; they are accelerated. Where phi on the wall even turns back
+between nodes, accelerated steps may stall far from the limit; there plain steps of the compiled code lead
+nearer to it first.
 """
 
 from typing import Any
 
+import numpy as np
 import torch
 from torch import Tensor
 from torch.autograd.function import once_differentiable
@@ -14,12 +17,14 @@ from meshonet.solvers.conformal import strip
 from meshonet.solvers.conformal.strip import across, wavenumbers
 from meshonet.solvers.elliptic.winslow import left_side
 from meshonet.solvers.neural.differentiable import anderson
-from meshonet.solvers.neural.differentiable.implicit import in_parts
-from meshonet.solvers.neural.differentiable.members import MemberError
+from meshonet.solvers.neural.differentiable.gmres import gmres
+from meshonet.solvers.neural.differentiable.members import MemberError, in_parts
 
 SETTLED = 1e-13  # change (radians) in a step at which a member has converged
 ADJOINT = 1e-10  # the same of the system for gradients, relative to the largest one
 MOST = 600  # accelerated steps at the most; random airfoils take up to 200
+PLAIN = 8_000, 16_000, 32_000, 64_000  # plain steps before each further trial
+KRYLOV = 300  # dimension of the space, and products, for gradients that accelerated steps do not reach
 TOGETHER = 8  # members solved at once on a CPU, so that they fit in its cache
 
 
@@ -57,16 +62,37 @@ def _together(start: Tensor) -> int:
 
 def _limit(start: Tensor) -> tuple[Tensor]:
     """Return the limit of steps from levels `start` (batch, LEVELS, modes)."""
+    levels, near, left = start.clone(), start, torch.arange(len(start), device=start.device)
+    for count in (0, *PLAIN):
+        near = _plain(near, start[left], count) if count else near
+        levels[left, 1:-1], reached = _accelerated(near, start[left])
+        near, left = near[~reached], left[~reached]
+        if not len(left):
+            return (levels,)
+    problem, remedy = "Winslow's equations did not converge", "use layer.AirfoilGrids, or another method"
+    raise MemberError.of(left.tolist(), problem, remedy)
+
+
+def _accelerated(near: Tensor, start: Tensor) -> tuple[Tensor, Tensor]:
+    """Return the limit (batch, LEVELS - 2, modes) of steps from `near`, and whether it has been reached."""
 
     def step(inner: Tensor, members: Tensor) -> Tensor:
         return _flat(_once(_levels(inner), start[members]))
 
-    flat = _flat(start[:, 1:-1])
+    flat = _flat(near[:, 1:-1])
     inner, reached = anderson.limit(step, flat, torch.full_like(flat[:, 0], SETTLED), MOST)
-    if not bool(reached.all()):
-        problem, remedy = "Winslow's equations did not converge", "use layer.AirfoilGrids, or another method"
-        raise MemberError(int((~reached).nonzero()[0, 0]), problem, remedy)
-    return (torch.cat([start[:, :1], _levels(inner), start[:, -1:]], 1),)
+    return _levels(inner), reached
+
+
+def _plain(levels: Tensor, start: Tensor, count: int) -> Tensor:
+    """Return levels (batch, LEVELS, modes) after plain steps of the compiled code, as `_once`."""
+    back, found = 1.0 - across().smooth[:, None], []
+    for c, first in zip(*(part.mT.cpu().numpy() for part in (levels, start)), strict=True):
+        now = np.ascontiguousarray(c)
+        for _ in range(count):
+            now = strip.picard(now, 1)[0] + back * (first - now)
+        found.append(now.T)
+    return torch.from_numpy(np.stack(found)).to(start)
 
 
 def _pulled(start: Tensor, levels: Tensor, gradient: Tensor) -> tuple[Tensor]:
@@ -76,7 +102,13 @@ def _pulled(start: Tensor, levels: Tensor, gradient: Tensor) -> tuple[Tensor]:
     def step(flat: Tensor, members: Tensor) -> Tensor:
         return first[members] + _flat(slope.transposed(_levels(flat), members))
 
-    share, _ = anderson.limit(step, first, ADJOINT * first.abs().amax(1), MOST)
+    share, reached = anderson.limit(step, first, ADJOINT * first.abs().amax(1), MOST)
+    left = (~reached).nonzero().flatten()
+    if len(left):
+        share[left] = gmres(
+            lambda flat: first[left] + flat - step(flat, left),
+            first[left], 1e-3 * ADJOINT, KRYLOV, KRYLOV,
+        )  # fmt: skip
     with torch.enable_grad():
         walls = start.detach().requires_grad_()
         after = _once(levels[:, 1:-1], walls)

@@ -17,21 +17,29 @@ from torch import Tensor
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, MeshonetError
-from meshonet.solvers.energy.functional import Weights
+from meshonet.solvers.energy.functional import Weights, value
+from meshonet.solvers.energy.untangle import widen
 from meshonet.solvers.energy.variational import solve
 from meshonet.solvers.neural.differentiable.block_cholesky import BlockCholesky, storage
-from meshonet.solvers.neural.differentiable.functional import Functional, aspect_of, smallest_jacobian
+from meshonet.solvers.neural.differentiable.functional import (
+    Functional,
+    Stencil,
+    aspect_of,
+    smallest_jacobian,
+)
 from meshonet.solvers.neural.differentiable.implicit import bordered, inner
 from meshonet.solvers.neural.differentiable.members import MemberError, check_finite
 
 START, MOST = 1e-8, 1000  # tolerance and iterations of the compiled solver
 STILL = 1e-10  # displacement of a node, relative to its shortest edge, at which a member has converged
+ROUNDED = 1e-15  # displacement, relative to the largest coordinate, that rounding of the nodes hides
 KEPT = 1e-3  # the same below which the next step takes the same factor
-STEPS = 200  # of Newton's method at the most; few domains take more than 5, nearly degenerate ones some 70
+STEPS = 500  # of Newton's method at the most; few domains take more than 5, nearly degenerate ones up to 250
 HALVINGS = 30  # of a step
 FALL = 1e-4  # part of the decrease that the slope promises which a step has to reach
 ROUNDING = 1e-13  # of the functional, relative, by which it may rise
-CONVEX = 1e-3, 1e-2, 0.1, 0.3, 1.0  # shares of the way from the Hessian to its convex part
+CONVEX = 0.0, 1e-3, 1e-2, 0.1, 0.3, 1.0  # shares of the way from the Hessian to its convex part
+HARD = 20.0  # value of the functional above which the compiled solver is far from an optimum
 LARGEST = 2**34  # bytes of the factors of one member
 FACTORS = 2**28, 2**33  # bytes of factors at once, on a CPU and on a GPU
 
@@ -53,7 +61,7 @@ class Optimum:
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
         """Return the optimum, and the weight (batch,) of the edge lengths."""
         check_finite(nodes)
-        starts, weights = zip(*map(_compiled, range(len(nodes)), nodes.detach().cpu().numpy()), strict=True)
+        starts, weights = zip(*_compiled(nodes.detach().cpu().numpy()), strict=True)
         smoothness = torch.tensor(weights, dtype=nodes.dtype, device=nodes.device)
         start = torch.from_numpy(np.stack(starts)).to(nodes)
         return newton(nodes + bordered(inner(start - nodes)), smoothness), smoothness
@@ -72,22 +80,23 @@ class Optimum:
 def newton(nodes: Tensor, smoothness: Tensor) -> Tensor:
     """Return the optimum (batch, 2, ni, nj) from valid `nodes` near it.
 
-    Raises MemberError, with the index of the first member of the batch that has not converged.
+    Raises MemberError, with the members that have not converged.
     """
     nodes = nodes.clone()
     moving = torch.arange(len(nodes), device=nodes.device)
+    share = torch.zeros_like(moving)
     line = None
     for _ in range(STEPS):
         if line is None:
-            line = _Quadratic(nodes[moving], Functional(Weights().shape, smoothness[moving]))
+            line = _Quadratic(nodes[moving], Functional(Weights().shape, smoothness[moving]), share)
         state = line.stepped(nodes[moving])
         nodes[moving] = state.nodes
         far = ~(state.moved <= STILL)  # true where it is not a number
         if not bool(far.any()):
             return nodes
-        if not bool(far.all()) or not bool((state.moved < KEPT).all()):
-            moving, line = moving[far], None
-    raise MemberError(int(moving[0]), "the variational optimum did not converge", "use layer.winslow")
+        if not bool(far.all()) or not bool(((state.moved < KEPT) & (line.share == 0)).all()):
+            moving, share, line = moving[far], (line.share[far] - 1).clamp_min(0), None
+    raise MemberError.of(moving.tolist(), "the variational optimum did not converge", "use layer.winslow")
 
 
 class _Step(NamedTuple):
@@ -97,27 +106,26 @@ class _Step(NamedTuple):
 
 
 class _Quadratic:
-    """The functional near `nodes`, by its Hessian, or by a convex matrix where that is not positive."""
+    """The functional near `nodes`, by its Hessian, or by a convex matrix where that is not positive.
 
-    def __init__(self, nodes: Tensor, functional: Functional) -> None:
-        self._functional, self._aspect = functional, aspect_of(nodes)
-        stencil = functional.hessian(nodes, self._aspect)
-        self._factor = BlockCholesky(stencil)
-        where = (~self._factor.positive).nonzero().flatten()
-        if not len(where):
-            return
-        few = Functional(functional.shape, functional.smoothness[where])
-        convex = few.hessian(nodes[where], self._aspect[where], convex=True)
-        exact = {offset: blocks[where] for offset, blocks in stencil.items()}
-        shares = torch.zeros_like(few.smoothness)
-        for share in CONVEX:
-            shares[~self._factor.positive[where]] = share
-            for offset, blocks in stencil.items():
-                part = torch.lerp(exact[offset], convex[offset], shares[:, None, None, None, None])
-                blocks.index_copy_(0, where, part)
+    `share` (batch,) is the index in `CONVEX` of the first share to try; the attribute is that of the share
+    that was taken.
+    """
+
+    def __init__(self, nodes: Tensor, functional: Functional, share: Tensor) -> None:
+        self._functional, self._aspect, self.share = functional, aspect_of(nodes), share
+        stencil = exact = functional.hessian(nodes, self._aspect)
+        convex: Stencil = {}
+        while True:
+            if bool(self.share.any()):
+                convex = convex or functional.hessian(nodes, self._aspect, convex=True)
+                part = torch.tensor(CONVEX).to(nodes)[self.share][:, None, None, None, None]
+                stencil = {key: torch.lerp(exact[key], convex[key], part) for key in exact}
             self._factor = BlockCholesky(stencil)
-            if bool(self._factor.positive.all()):
+            more = ~self._factor.positive & (self.share < len(CONVEX) - 1)
+            if not bool(more.any()):
                 return
+            self.share = self.share + more
 
     def stepped(self, nodes: Tensor) -> _Step:
         """Return the nodes after a step of Newton's method from `nodes`, shortened where it has to be."""
@@ -128,7 +136,9 @@ class _Quadratic:
         value = value.detach()
         step = -self._factor.solve(slope)
         promise = FALL * (slope * step).sum((1, 2, 3))
-        far = (step.square().sum(1).sqrt() / inner(shortest_edges(nodes)[:, None])[:, 0]).amax((1, 2))
+        rounded = ROUNDED * nodes.abs().amax((1, 2, 3))[:, None, None]
+        seen = (step.square().sum(1).sqrt() - rounded).clamp_min(0.0)
+        far = (seen / inner(shortest_edges(nodes)[:, None])[:, 0]).amax((1, 2))
         size = torch.ones_like(far)
         for _ in range(HALVINGS):
             trial = nodes + bordered(size[:, None, None, None] * step)
@@ -152,14 +162,28 @@ def shortest_edges(nodes: Tensor) -> Tensor:
     return shortest
 
 
-def _compiled(member: int, nodes: Floats) -> tuple[Floats, float]:
-    """Return the grid (2, ni, nj) of the compiled solver inside the boundary nodes of `nodes`, and its β."""
-    sides = nodes[:, :, 0], nodes[:, :, -1], nodes[:, 0], nodes[:, -1]
-    south, north, west, east = (np.ascontiguousarray(side.T) for side in sides)
-    try:
-        solution = solve(Boundary(south, north, west, east), tol=START, max_cycles=MOST)
-    except MeshonetError as error:
-        raise MemberError(member, str(error), "change its sides") from error
-    if solution.notes:
-        raise MemberError(member, "no grid without folded cells was found", "change its sides")
-    return np.moveaxis(solution.grid.nodes, -1, 0), float(solution.grid.provenance["smoothness"])
+def _compiled(batch: Floats) -> list[tuple[Floats, float]]:
+    """Return the grids (2, ni, nj) of the compiled solver inside the boundary nodes of `batch`, and their β.
+
+    Raises MemberError, with the members for which it finds no valid grid.
+    """
+    found, reasons = [], {}
+    for member, nodes in enumerate(batch):
+        sides = nodes[:, :, 0], nodes[:, :, -1], nodes[:, 0], nodes[:, -1]
+        south, north, west, east = (np.ascontiguousarray(side.T) for side in sides)
+        try:
+            solution = solve(Boundary(south, north, west, east), tol=START, max_cycles=MOST)
+        except MeshonetError as error:
+            reasons[member] = str(error), "change its sides"
+            continue
+        if solution.notes:
+            reasons[member] = "no grid without folded cells was found", "change its sides"
+            continue
+        weights = Weights(smoothness=solution.grid.provenance["smoothness"])
+        start = solution.grid.nodes
+        if value(start, weights) > HARD:
+            widen(start, weights)
+        found.append((np.moveaxis(start, -1, 0), weights.smoothness))
+    if reasons:
+        raise MemberError(reasons)
+    return found

@@ -95,14 +95,14 @@ def newton(nodes: Tensor, tol: float, *, strict: bool = True) -> Tensor:
     """Return the solution of Winslow's equations near `nodes` (batch, 2, ni, nj).
 
     `tol` is the preconditioned residual at which a member has converged, relative to its extent. Raises
-    MemberError, if `strict`, with the index of the first member that has not converged.
+    MemberError, if `strict`, with the members that have not converged.
     """
     nodes = nodes.clone()
     extent = (nodes.amax((2, 3)) - nodes.amin((2, 3))).amax(1)
     moving = torch.arange(len(nodes), device=nodes.device)
     for _ in range(STEPS):
         line = _Linearised(nodes[moving])
-        far = line.first.abs().amax((1, 2, 3)) > tol * extent[moving]
+        far = ~(line.first.abs().amax((1, 2, 3)) <= tol * extent[moving])  # true where it is not a number
         if not bool(far.any()):
             return nodes
         if not bool(far.all()):
@@ -110,9 +110,8 @@ def newton(nodes: Tensor, tol: float, *, strict: bool = True) -> Tensor:
             line = _Linearised(nodes[moving])
         nodes[moving] = line.stepped()
     if strict:
-        raise MemberError(
-            int(moving[0]), "Winslow's equations did not converge", "use the variational method"
-        )
+        problem, remedy = "Winslow's equations did not converge", "use the variational method"
+        raise MemberError.of(moving.tolist(), problem, remedy)
     return nodes
 
 
