@@ -10,12 +10,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Indices, distinct
+from meshonet.geometry.arrays import Floats, Indices, distinct
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.solvers.blocking.decomposition.quads.padding import INSET, towards
+
+INSET = 0.25
+"""Part of the way from the path to the middles of cells, or to wall nodes, at which nodes of a front are."""
 
 HalfEdges = dict[tuple[int, int], tuple[int, int]]
 
@@ -25,32 +28,54 @@ def half_edges(mesh: QuadMesh) -> HalfEdges:
     return {(q[i], q[(i + 1) % 4]): (k, i) for k, q in enumerate(mesh.quads.tolist()) for i in range(4)}
 
 
-def with_row(mesh: QuadMesh, path: Sequence[int]) -> QuadMesh:
+def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wall: bool = False) -> QuadMesh:
     """Return the mesh with a row of quads inserted on the left of a path of nodes.
 
-    The path goes from wall to wall, or along a closed loop, which may be a wall. The quads of the row are the
-    last of the mesh; each begins at the path and ends at the front.
+    The path goes from wall to wall, or is `closed`; it may be a wall. The quads of the row are the last of
+    the mesh; each begins at the path and ends at the front. Where a closed path begins at a corner of one
+    quad, the row crosses itself, and its last quad is at this corner. New nodes are those of the front, or,
+    if it is a row `of_wall`, those of the path.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
+    new = list(range(n, n + count))
+    base, front = (new, path) if of_wall else (path, new)
     quads, nodes = mesh.quads.copy(), np.concatenate([mesh.nodes, mesh.nodes[path]])
-    added = Places.inside(count)
+    copies = replace(mesh.places.take(np.array(path)), partner=mesh.places.partner[path])
+    crossing = closed and mesh.places.cells[path[0]] == 1
+    places = mesh.places.and_then(copies, Places.inside(2 * crossing))
+    places.loop[front], places.arc[front], places.cells[front], places.partner[front] = -1, 0.0, 0, -1
     for i, node in enumerate(path):
-        ahead = path[i + 1] if i + 1 < count else None
-        behind = path[i - 1] if i else None
+        ahead = path[(i + 1) % count] if closed or i + 1 < count else None
+        behind = path[i - 1] if closed or i else None
         corners = _left_of(mesh, half, node, ahead, behind)
-        quads[tuple(np.array(corners).T)] = n + i
+        quads[tuple(np.array(corners).T)] = front[i]
         if ahead is not None and behind is not None:
             middle = np.mean([mesh.nodes[mesh.quads[k]].mean(axis=0) for k, _ in corners], axis=0)
-            nodes[n + i] = (1.0 - INSET) * mesh.nodes[node] + INSET * middle
+            nodes[front[i]] = (1.0 - INSET) * mesh.nodes[node] + INSET * middle
             continue
         on = int(mesh.places.loop[node])  # the end of a front slides along the loop where the wake ends
-        loop, arc = mesh.domain.loops[on], mesh.places.arc
         around = [int(mesh.quads[k, (j + d) % 4]) for k, j in corners for d in (1, 3)]
-        beside = next(v for v in around if mesh.places.loop[v] == on and v != node)
-        added.loop[i], added.arc[i] = on, towards(loop, arc[node], arc[beside])
-        nodes[n + i] = loop.at(added.arc[i : i + 1])[0]
-    row = [[path[i], path[i + 1], n + i + 1, n + i] for i in range(count - 1)]
-    return QuadMesh(mesh.domain, nodes, np.concatenate([quads, row]), mesh.places.and_then(added))
+        beside = next(v for v in around if mesh.places.loop[v] == on and v not in (ahead, behind))
+        nodes[front[i]], places.loop[front[i]], places.arc[front[i]] = _towards(mesh, node, beside)
+    ends = [*range(1, count), 0][: count if closed else count - 1]
+    row = [[base[i], base[k], front[k], front[i]] for i, k in enumerate(ends)]
+    if crossing:
+        row[0][0], row[-1][1] = n + count, n + count + 1
+        row.append([base[0], n + count, front[0], n + count + 1])
+        nodes = np.concatenate([nodes, np.zeros((2, 2))])
+        for node, k in ((n + count, 1), (n + count + 1, -1)):
+            nodes[node], places.loop[node], places.arc[node] = _towards(mesh, path[0], path[k])
+    return QuadMesh(mesh.domain, nodes, np.concatenate([quads, row]), places)
+
+
+def _towards(mesh: QuadMesh, node: int, beside: int) -> tuple[Floats, int, float]:
+    """Return the point, the loop and the arc length that are `INSET` of the way between two wall nodes."""
+    number = int(mesh.places.loop[node])
+    loop, (arc, beyond) = mesh.domain.loops[number], mesh.places.arc[[node, beside]].tolist()
+    way = beyond - arc
+    way -= loop.length * np.round(way / loop.length)
+    place = np.mod(arc + INSET * way, loop.length)
+    return loop.at(np.array([place]))[0], number, float(place)
 
 
 def _left_of(

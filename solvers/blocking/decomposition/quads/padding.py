@@ -11,17 +11,13 @@ International Meshing Roundtable (1995).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, Indices, distinct, turned_left
-from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.arrays import Bools, distinct
 from meshonet.geometry.layout.periodic_sides import following
-from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-
-INSET = 0.25
-"""Displacement of old wall nodes into the domain, relative to the shorter adjacent edge."""
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.solvers.blocking.decomposition.quads.inner_rows import with_row
 
 Span = tuple[int, float, float]
 """Number of a loop, and the arc lengths of the corners at which a stretch of it starts and ends."""
@@ -49,10 +45,11 @@ def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
     ]
 
 
-def pad(mesh: QuadMesh, loops: list[int]) -> QuadMesh:
-    """Return the mesh with a ring of quads along these loops; old wall nodes become interior nodes.
+def pad(mesh: QuadMesh, loops: Sequence[int]) -> QuadMesh:
+    """Return the mesh with a ring of quads along these loops, whose old nodes become interior ones.
 
     >>> from meshonet.geometry.domain.domain import Domain
+    >>> from meshonet.geometry.layout.quad_mesh import Places
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> places = Places(np.zeros(4, int), np.arange(4.0), np.zeros(4, int), np.full(4, -1))
     >>> one = QuadMesh(Domain.of_polygons([square]), square, np.array([[0, 1, 2, 3]]), places)
@@ -60,81 +57,31 @@ def pad(mesh: QuadMesh, loops: list[int]) -> QuadMesh:
     >>> len(ring.quads), ring.valence.tolist()
     (5, [3, 3, 3, 3, 2, 2, 2, 2])
     """
-    if not loops:
-        return mesh
-    after = following(mesh)
-    along = np.flatnonzero((after >= 0) & np.isin(mesh.places.loop, loops))
-    ahead = after[along]
-    n, k = len(mesh.nodes), len(along)
-    copy = np.full(n, -1, dtype=np.intp)
-    copy[along] = n + np.arange(k)
-    ring = np.stack([copy[along], copy[ahead], ahead, along], axis=1)
-    before = np.empty(n, dtype=np.intp)
-    before[ahead] = along
-    nodes = np.concatenate([mesh.nodes, mesh.nodes[along]])
-    nodes[along] += _inwards(mesh.nodes, before[along], along, ahead)
-    return QuadMesh(mesh.domain, nodes, np.concatenate([mesh.quads, ring]), _moved(mesh.places, along))
-
-
-def _inwards(nodes: Floats, before: Indices, along: Indices, ahead: Indices) -> Floats:
-    """Return by what wall nodes (k,) move inside, between those before and ahead of them."""
-    here, last, coming = nodes[along], nodes[before], nodes[ahead]
-    tangent = coming - last
-    tangent /= np.hypot(*tangent.T)[:, None]
-    shorter = np.minimum(np.hypot(*(here - last).T), np.hypot(*(coming - here).T))
-    return np.asarray(INSET * shorter[:, None] * turned_left(tangent))
+    for number in loops:
+        first = int(np.argmax(mesh.places.loop == number))
+        mesh = with_row(mesh, _chain(mesh, first, first)[:-1], closed=True, of_wall=True)
+    return mesh
 
 
 def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
     """Return the mesh with a row of quads along a stretch between two corners with one quad each.
 
-    Old nodes at these corners move along the adjacent walls. If both corners are the same, the row is closed.
+    Its quads are last, each from the wall to the front. If both corners are the same, the row is closed.
     """
     number, begin, end = span
-    places, loop = mesh.places, mesh.domain.loops[number]
-    after = following(mesh)
-    along = np.flatnonzero((after >= 0) & (places.loop == number))
-    arcs = places.arc[along]
-    chain = [int(along[np.argmin(np.abs(arcs - begin))])]
-    last = int(along[np.argmin(np.abs(arcs - end % loop.length))])
+    on, length = np.flatnonzero(mesh.places.loop == number), mesh.domain.loops[number].length
+    first, last = (int(on[np.abs(mesh.places.arc[on] - arc % length).argmin()]) for arc in (begin, end))
+    chain = _chain(mesh, first, last)
+    closed = first == last
+    padded = with_row(mesh, chain[:-1] if closed else chain, closed=closed, of_wall=True)
+    inner = padded.places.cells[len(mesh.nodes) + 1 : len(mesh.nodes) + len(chain) - 1]
+    inner[inner > 0] = 2
+    return padded
+
+
+def _chain(mesh: QuadMesh, first: int, last: int) -> list[int]:
+    """Return the nodes of a loop from one to another, or once around."""
+    after, chain = following(mesh), [first]
     while chain[-1] != last or len(chain) == 1:
         chain.append(int(after[chain[-1]]))
-    line, n = np.array(chain), len(mesh.nodes)
-    new = n + np.arange(len(line))
-    nodes = np.concatenate([mesh.nodes, mesh.nodes[line]])
-    row = np.stack([new[:-1], new[1:], line[1:], line[:-1]], axis=1)
-    inner = line[1:-1]
-    nodes[inner] += _inwards(mesh.nodes, line[:-2], inner, line[2:])
-    moved = _moved(places, line)
-    if line[0] == line[-1]:  # all of the loop: the row crosses itself, in a quad at a corner of its own
-        corner, first = n + len(line), int(line[0])
-        ends = (int(new[0]), int(line[1]), begin), (int(new[-1]), int(line[-2]), end)
-        row = np.concatenate([row, [[corner, new[0], first, new[-1]]]])
-        nodes[first] += _inwards(mesh.nodes, line[-2:-1], line[:1], line[1:2])[0]
-        nodes = np.concatenate([nodes, mesh.nodes[line[:1]]])
-        moved = Places(*(np.append(values, values[new[0]]) for values in vars(moved).values()))
-        moved.cells[new[[0, -1]]], moved.cells[corner] = 0, 1
-    else:
-        previous = int(np.flatnonzero(after == line[0])[0])
-        ends = (int(line[0]), previous, begin), (last, after[last], end)
-        moved.cells[new[[0, -1]]] = 1
-    for node, beyond, arc in ends:
-        moved.loop[node], moved.arc[node] = number, towards(loop, arc, places.arc[beyond])
-        nodes[node] = loop.at(moved.arc[node : node + 1])[0]
-    return QuadMesh(mesh.domain, nodes, np.concatenate([mesh.quads, row]), moved)
-
-
-def towards(loop: Loop, arc: float, beyond: float) -> float:
-    """Return the arc length at the fraction `INSET` of the shorter way from `arc` to `beyond` on a loop."""
-    way = beyond - arc
-    way -= loop.length * np.round(way / loop.length)
-    return float(np.mod(arc + INSET * way, loop.length))
-
-
-def _moved(places: Places, along: Indices) -> Places:
-    """Return the places after those of the nodes `along` a loop went to copies behind all others."""
-    copies = replace(places.take(along), partner=places.partner[along])
-    copies.cells[copies.cells > 0] = 2
-    moved = places.and_then(copies)
-    moved.loop[along], moved.arc[along], moved.cells[along], moved.partner[along] = -1, 0.0, 0, -1
-    return moved
+    return chain
