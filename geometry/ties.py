@@ -82,7 +82,7 @@ def made_unlike(costs: Floats) -> Floats:
     """Return costs (..., n), perturbed so that hardly any sums of them are equal.
 
     A linear programme with these costs then has only one solution. The relative change is far below real
-    differences, and depends on the index only: it is made from the digits of square roots.
+    differences; it depends on the index only and is computed from the digits of square roots.
     """
     digits = np.mod(1e3 * np.sqrt(np.arange(costs.size) + 0.618), 1.0)
     return costs + _NOISE * np.abs(costs) * digits.reshape(costs.shape)

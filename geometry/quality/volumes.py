@@ -125,7 +125,7 @@ def _metric(grid: Grid, volumes: Sequence[Floats], k: int) -> list[Floats]:
 def padded_volumes(grid: Grid) -> list[Floats]:
     """Return for each block its cell volumes, with one layer of cells added around it: (ni+1, nj+1, nk+1).
 
-    In the layer are the volumes of the cells across connections, and elsewhere those of the nearest cells.
+    The layer contains the volumes of the cells across connections; elsewhere it repeats the nearest cells.
     """
     padded = over_blocks(_padded, grid.blocks, _nodes_of(grid))
 

@@ -58,7 +58,7 @@ class Report(Timed):
         return f"{self.item.label}: {folded} folded cells are in {self.output}" if folded else ""
 
     def row(self) -> MemberRow | None:
-        """Return its row in a table, if it was judged."""
+        """Return the row of the grid in a table of verdicts; None if the grid was not judged."""
         if not self.judgement:
             return None
         from meshonet_cli.terminal.summary import MemberRow, figures

@@ -164,10 +164,10 @@ def collar(
 ) -> tuple[Floats, float]:
     """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and an angle.
 
-    Cells have the height `first` at the root and `last` (n,) at the outer loop. For `straight` = 0 the lines
-    are those of an elliptic grid, for 1 parabolas along the normals of the root, and means of both between.
-    The second result is the smallest sine of an angle between these lines and the lines across them, before
-    nodes are placed on the lines.
+    Cells have the height `first` at the root and `last` (n,) at the outer loop. With `straight` = 0 the lines
+    are those of an elliptic grid, with 1 they are parabolas along the normals of the root; values between
+    give weighted means of both. The second result is the smallest sine of an angle between these lines and
+    the lines across them, before nodes are placed on the lines.
     """
     arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)

@@ -18,7 +18,7 @@ _MOST, _SMALL = 500, 1e-8
 
 
 def harmonic(mesh: HexMesh, moves: Bools) -> Floats:
-    """Return the nodes (n, 3) of a mesh; fixed nodes are unchanged."""
+    """Return new nodes (n, 3) of a mesh; nodes outside the mask `moves` (n,) are unchanged."""
     edges = _edges(mesh)
     start = mesh.nodes.copy()
     start[moves] = mesh.nodes[~moves].mean(axis=0)

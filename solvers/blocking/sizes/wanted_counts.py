@@ -13,7 +13,7 @@ _PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
 
 
 class WantedCounts:
-    """Target numbers of cells of chords, for metrics that differ only in their sizes."""
+    """Target numbers of cells of chords, for metrics with the same points but different sizes."""
 
     def __init__(self, chords: Chords, metric: SizeMetric) -> None:
         self.chords = chords

@@ -12,7 +12,7 @@ Device = Literal["auto", "cpu", "cuda"]
 
 @dataclass(frozen=True)
 class Plan:
-    """Settings of the loop."""
+    """Settings of the training loop."""
 
     epochs: int  # passes over the training shapes
     batch: int = 30  # shapes a step
