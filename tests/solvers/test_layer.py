@@ -352,6 +352,28 @@ def test_sides_that_bound_no_batch_are_refused(change: Any, said: str) -> None:
         layer.winslow(change(given), *given[1:])
 
 
+@pytest.mark.parametrize("function", [layer.transfinite, layer.winslow])
+def test_gradients_at_a_repeated_node_are_finite(function: Any) -> None:
+    given = sides_of(domains(9, 8, 4))
+    given[0][1, 4] = given[0][1, 5]
+    given = [side.requires_grad_() for side in given]
+    function(*given).square().sum().backward()
+    assert all(bool(side.grad.isfinite().all()) for side in given)
+
+
+def test_arrays_that_are_no_tensors_are_refused() -> None:
+    given = sides_of(domains(9, 8, 2))
+    with pytest.raises(InputError, match=r"south is a ndarray; give tensors of torch"):
+        layer.winslow(given[0].numpy(), *given[1:])
+
+
+@pytest.mark.parametrize("function", [*QUADS[:3], layer.QuadGrids()])
+def test_members_through_two_levels_of_vmap_are_those_of_one_batch(function: Any) -> None:
+    given = [side[:4] for side in sides_of(domains(9, 8, 8))]
+    nested = torch.func.vmap(torch.func.vmap(function))(*(side.unflatten(0, (2, 2)) for side in given))
+    torch.testing.assert_close(nested.flatten(0, 1), function(*given), rtol=0, atol=1e-11)
+
+
 @pytest.mark.parametrize("function", QUADS)
 def test_sides_without_common_corners_are_refused_with_the_member(function: Any) -> None:
     sides = sides_of(domains(9, 9, 3))

@@ -17,6 +17,8 @@ def check_sides(least: int, nj: int = 2, **sides: Tensor) -> None:
     names = list(sides)
     first = sides[names[0]]
     for name, side in sides.items():
+        if not isinstance(side, Tensor):
+            raise InputError(f"{name} is a {type(side).__name__}", "give tensors of torch")
         if side.ndim < 2 or side.shape[-1] != 2 or side.shape[-2] < least:
             problem = f"{name} has shape {tuple(side.shape)}"
             raise InputError(problem, f"give (..., n, 2) with n at least {least}")

@@ -38,6 +38,8 @@ def arc_lengths(sides: Sides) -> tuple[Tensor, ...]:
     fractions = []
     for side in sides:
         steps = side[..., 1:] - side[..., :-1]
-        along = torch.cumsum(torch.hypot(steps[:, 0], steps[:, 1]), -1)
+        still = (steps == 0).all(1)  # between equal nodes, where a length has no gradient
+        moved = torch.where(still[:, None], torch.ones_like(steps), steps)
+        along = torch.cumsum(torch.hypot(moved[:, 0], moved[:, 1]).masked_fill(still, 0.0), -1)
         fractions.append(torch.cat([torch.zeros_like(along[:, :1]), along / along[:, -1:]], -1))
     return tuple(fractions)
