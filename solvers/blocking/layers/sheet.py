@@ -16,6 +16,7 @@ import numpy as np
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.decomposition.quads.inner_rows import HalfEdges, half_edges, with_row
+from meshonet.solvers.blocking.decomposition.quads.padding import along_wall
 
 
 def has_sharp_edge(loop: Loop) -> bool:
@@ -44,12 +45,8 @@ def with_sheet(mesh: QuadMesh, number: int) -> QuadMesh:
 
 def _edge(mesh: QuadMesh, number: int) -> list[int]:
     """Return the nodes of a loop in order, the domain on their left, from its sharp edge on."""
-    on = mesh.on_wall[mesh.edge_of] & (mesh.places.loop[mesh.quads] == number)
-    after = dict(zip(mesh.quads[on].tolist(), np.roll(mesh.quads, -1, axis=1)[on].tolist(), strict=True))
-    chain = [next(node for node in after if mesh.places.cells[node] == 4)]
-    while after[chain[-1]] != chain[0]:
-        chain.append(after[chain[-1]])
-    return chain
+    edge = int(np.argmax((mesh.places.loop == number) & (mesh.places.cells == 4)))
+    return along_wall(mesh, edge, edge)[:-1]
 
 
 def _turned(mesh: QuadMesh, half: HalfEdges, node: int, beside: int, steps: int) -> int:

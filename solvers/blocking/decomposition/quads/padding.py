@@ -59,7 +59,7 @@ def pad(mesh: QuadMesh, loops: Sequence[int]) -> QuadMesh:
     """
     for number in loops:
         first = int(np.argmax(mesh.places.loop == number))
-        mesh = with_row(mesh, _chain(mesh, first, first)[:-1], closed=True, of_wall=True)
+        mesh = with_row(mesh, along_wall(mesh, first, first)[:-1], closed=True, of_wall=True)
     return mesh
 
 
@@ -71,7 +71,7 @@ def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
     number, begin, end = span
     on, length = np.flatnonzero(mesh.places.loop == number), mesh.domain.loops[number].length
     first, last = (int(on[np.abs(mesh.places.arc[on] - arc % length).argmin()]) for arc in (begin, end))
-    chain = _chain(mesh, first, last)
+    chain = along_wall(mesh, first, last)
     closed = first == last
     padded = with_row(mesh, chain[:-1] if closed else chain, closed=closed, of_wall=True)
     inner = padded.places.cells[len(mesh.nodes) + 1 : len(mesh.nodes) + len(chain) - 1]
@@ -79,7 +79,7 @@ def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
     return padded
 
 
-def _chain(mesh: QuadMesh, first: int, last: int) -> list[int]:
+def along_wall(mesh: QuadMesh, first: int, last: int) -> list[int]:
     """Return the nodes of a loop from one to another, or once around."""
     after, chain = following(mesh), [first]
     while chain[-1] != last or len(chain) == 1:

@@ -23,8 +23,6 @@ def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images
     `mirrors` are the mirrors of the domain that are tried, by default all.
     """
     mirrors = mirrors_of(mesh.domain) if mirrors is None else mirrors
-    if (mesh.places.partner >= 0).any():
-        return []
     images = []
     for mirror in mirrors:
         known = mesh.of_quads.get(mirror)
