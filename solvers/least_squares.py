@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, Indices
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.solvers.sparse import SparsePattern
 
 
@@ -17,9 +18,9 @@ class Residuals:
 
     Parameters
     ----------
-    derivatives : (k, m) derivatives of each residual with respect to its m unknowns.
-    weight : (k,) second derivatives of the sum with respect to the residuals.
-    slope : (k,) first derivatives of the sum with respect to the residuals.
+    derivatives : (..., k, m) derivatives of each residual with respect to its m unknowns.
+    weight : (..., k) second derivatives of the sum with respect to the residuals.
+    slope : (..., k) first derivatives of the sum with respect to the residuals.
     """
 
     derivatives: Floats
@@ -33,7 +34,8 @@ class NormalEquations:
     Parameters
     ----------
     size : number of unknowns, n.
-    kinds : for each kind of residuals the indices (k, m) of the unknowns, -1 for values that are held fixed.
+    kinds : for each kind of residuals the indices (..., k, m) of the unknowns, -1 for values that are held
+        fixed. Those along the first axes are added one after the other.
 
     >>> equations = NormalEquations(1, [np.array([[0], [0]])])
     >>> two = Residuals(np.array([[1.0], [1.0]]), np.ones(2), np.array([-1.0, -3.0]))
@@ -42,18 +44,13 @@ class NormalEquations:
     """
 
     def __init__(self, size: int, kinds: Sequence[Indices]) -> None:
-        self._size, self._kinds = size, kinds
-        self._pairs: list[list[tuple[int, int, Bools]]] = []
+        self._size = size
+        self._kinds = [_Kind.of(unknowns, size) for unknowns in kinds]
         diagonal = np.arange(size)
-        rows, columns = [diagonal], [diagonal]
-        for unknowns in kinds:
-            moves = unknowns.T >= 0
-            m = len(moves)
-            pairs = [(i, j, moves[i] & moves[j]) for i in range(m) for j in range(i, m)]
-            rows += [unknowns[both, i] for i, _, both in pairs]
-            columns += [unknowns[both, j] for _, j, both in pairs]
-            self._pairs.append(pairs)
-        self._pattern = SparsePattern(size, np.concatenate(rows), np.concatenate(columns))
+        rows, columns = (
+            np.concatenate([diagonal, *(kind.entries[end] for kind in self._kinds)]) for end in (0, 1)
+        )
+        self._pattern = SparsePattern(size, rows, columns)
 
     def step(self, residuals: Sequence[Residuals], diagonal: Floats, slope: Floats) -> Floats:
         """Return the changes (n,) of the unknowns.
@@ -62,11 +59,55 @@ class NormalEquations:
         unknown. Raises SolverError: the equations are singular.
         """
         values, right = [diagonal], -slope
-        for unknowns, pairs, each in zip(self._kinds, self._pairs, residuals, strict=True):
-            columns = np.ascontiguousarray(each.derivatives.T)
-            weighted = each.weight * columns
-            values += [(weighted[i] * columns[j])[both] for i, j, both in pairs]
-            for i, column in enumerate(columns):
-                moves = unknowns[:, i] >= 0
-                right -= np.bincount(unknowns[moves, i], (each.slope * column)[moves], self._size)
+        for kind, each in zip(self._kinds, residuals, strict=True):
+            own, sums = kind.terms(each, self._size)
+            values.append(own)
+            for part in sums:
+                right -= part
         return self._pattern.factor(np.concatenate(values)).solve(right)
+
+
+@dataclass(frozen=True, eq=False)
+class _Kind:
+    """Which products of derivatives are added where.
+
+    Parameters
+    ----------
+    shape : (l, k, m): l times k residuals of m unknowns each.
+    pairs : (2, p) pairs of the unknowns of a residual.
+    entries : (2, e) rows and columns of the matrix to which products are added.
+    products : (e,) which of (l, p, k) these are.
+    moving : (f,) which of derivatives (l, m, k) are by unknowns.
+    bins : (f,) where these are added, in sums (l m, n).
+    """
+
+    shape: tuple[int, int, int]
+    pairs: Indices
+    entries: Indices
+    products: Indices
+    moving: Indices
+    bins: Indices
+
+    @classmethod
+    def of(cls, unknowns: Indices, size: int) -> _Kind:
+        """Return the kind with unknowns (..., k, m) of `size`."""
+        k, m = unknowns.shape[-2:]
+        own = np.ascontiguousarray(unknowns.reshape(math.prod(unknowns.shape[:-2]), k, m).swapaxes(1, 2))
+        pairs = np.array(np.triu_indices(m))
+        ends = own[:, pairs]
+        products = np.flatnonzero((ends >= 0).all(axis=1))
+        moving = np.flatnonzero(own >= 0)
+        return cls(
+            (len(own), k, m), pairs, ends.swapaxes(0, 1).reshape(2, -1)[:, products], products, moving,
+            own.ravel()[moving] + size * (moving // max(k, 1)),
+        )  # fmt: skip
+
+    def terms(self, residuals: Residuals, size: int) -> tuple[Floats, Floats]:
+        """Return the products (e,), and sums (l m, n) of slopes times derivatives by each unknown."""
+        count, k, m = self.shape
+        columns = np.ascontiguousarray(residuals.derivatives.reshape(count, k, m).swapaxes(1, 2))
+        weighted = residuals.weight.reshape(count, 1, k) * columns
+        products = weighted[:, self.pairs[0]] * columns[:, self.pairs[1]]
+        sloped = (residuals.slope.reshape(count, 1, k) * columns).ravel()[self.moving]
+        sums = np.bincount(self.bins, sloped, count * m * size)
+        return products.ravel()[self.products], np.asarray(sums, dtype=np.float64).reshape(-1, size)

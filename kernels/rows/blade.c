@@ -5,7 +5,7 @@
 
 #define NEWTON 8        /* steps */
 #define CONVERGED 1e-14 /* of the span: steps that are rounding */
-#define ROUNDS 3        /* in which a cell that is nearly as high as it has to be becomes exactly so */
+#define ROUNDS 5        /* in which a cell that is nearly as high as it has to be becomes exactly so */
 #define BATCH 64        /* columns */
 
 /* Value and slope of spline k at a place, h first. */

@@ -73,8 +73,13 @@ class Measures:
         if closed:
             turns, places = np.divmod(places, self.arcs[-1])
         k = np.clip(np.searchsorted(self.arcs, places, side="right") - 1, 0, len(self.arcs) - 2)
-        slope = (self.values[:, k + 1] - self.values[:, k]) / (self.arcs[k + 1] - self.arcs[k])
-        return self.values[:, k] + slope * (places - self.arcs[k]) + turns * self.whole, slope
+        slope = self._slopes.take(k, axis=1)
+        return self.values.take(k, axis=1) + slope * (places - self.arcs[k]) + turns * self.whole, slope
+
+    @cached_property
+    def _slopes(self) -> Floats:
+        """(k, m - 1) between the positions."""
+        return np.diff(self.values, axis=1) / np.diff(self.arcs)
 
     @property
     def whole(self) -> Floats:
@@ -208,8 +213,8 @@ class _Line:
         """Those of the places that move; most lines are even, and need none."""
         unknown = np.full(self.triples.max() + 1, -1, dtype=np.intp)
         unknown[self.free] = np.arange(len(self.free))
-        kinds = [unknown[self.triples]] * len(self.measures.values)
-        return NormalEquations(len(self.free), [*kinds, unknown[self.links.pairs]])
+        ratios = np.tile(unknown[self.triples], (len(self.measures.values), 1, 1))
+        return NormalEquations(len(self.free), [ratios, unknown[self.links.pairs]])
 
     def _steps(self, places: Floats) -> tuple[Floats, Floats]:
         """Return the steps (k, r + 1 or n) of each measure, and the derivatives (k, n) of the measures."""
@@ -218,60 +223,59 @@ class _Line:
             value = np.concatenate([value, value[:, :1] + self.measures.whole], axis=1)
         return np.diff(value, axis=1), slope
 
-    def growth(self, places: Floats) -> Floats:
+    def _growth(self, steps: Floats) -> Floats:
         """Return the logarithms (k, r) of the ratios of neighbouring steps."""
-        steps = self._steps(places)[0]
         logs = log(steps)
         return np.diff(logs, axis=1, append=logs[:, :1]) if self.closed else np.diff(logs, axis=1)
 
     def _limits(self, limit: float) -> Floats:
-        """Return the limits (k,) of the measures."""
-        return np.broadcast_to(limit * np.asarray(self.measures.slack), (len(self.measures.values),))
+        """Return the limits (k, 1) of the measures."""
+        shape = len(self.measures.values), 1
+        return np.broadcast_to(limit * np.asarray(self.measures.slack).reshape(-1, 1), shape)
 
     def exceeded(self, places: Floats, limit: float) -> bool:
         """Return whether a ratio exceeds the limit of its measure."""
-        return bool((np.abs(self.growth(places)) > self._limits(limit)[:, None]).any())
+        return bool((np.abs(self._growth(self._steps(places)[0])) > self._limits(limit)).any())
 
     def evened(self, places: Floats, limit: float) -> Floats:
         """Return the places after some steps of Gauss-Newton."""
         places, start, weight = places.copy(), places[self.free], EXCESS
         limits = self._limits(limit)
-        terms = [
-            GrowthLimit.at(each, most - MARGIN, self.change)
-            for each, most in zip(self.growth(places), limits, strict=True)
-        ]
+        steps, slope = self._steps(places)
+        growth = self._growth(steps)
+        term = GrowthLimit.at(growth, limits - MARGIN, self.change)
 
         def values(at: Floats) -> Floats:
             moved = places.copy()
             moved[self.free] = at
-            if self._steps(moved)[0].min() <= 0.0:
+            steps = self._steps(moved)[0]
+            if steps.min() <= 0.0:
                 return np.array([np.inf])
-            value = sum(
-                term.values(each, weight).sum() for term, each in zip(terms, self.growth(moved), strict=True)
-            )
+            value = sum(term.values(self._growth(steps), weight).sum(axis=1).tolist())
             linked = (self.links.values(moved) ** 2).sum()
             return np.array([value + (self.stiffness * (at - start) ** 2).sum() + linked])
 
         part = np.zeros(len(self.free), dtype=np.intp)
         for _ in range(STEPS):
             weight = min(weight * RISE, MOST_WEIGHT)
-            steps, slope = self._steps(places)
-            residuals = [
-                term.residuals(growth, self._derivatives(each, rise), weight)
-                for term, growth, each, rise in zip(terms, self.growth(places), steps, slope, strict=True)
-            ]
             tied = self.links.values(places)
-            residuals.append(Residuals(self.links.factors, np.ones(len(tied)), tied))
+            residuals = [
+                term.residuals(growth, self._derivatives(steps, slope), weight),
+                Residuals(self.links.factors, np.ones(len(tied)), tied),
+            ]
             pull = self.stiffness * (places[self.free] - start)
             step = self.equations.step(residuals, self.stiffness, pull)
             places[self.free] += damped(values, places[self.free], step, part)
-            if not self.exceeded(places, limit):
+            steps, slope = self._steps(places)
+            growth = self._growth(steps)
+            if not (np.abs(growth) > limits).any():
                 break
         return places
 
     def _derivatives(self, steps: Floats, slope: Floats) -> Floats:
-        """Return those (r, 3) of the logarithms of ratios by the places, of one measure."""
+        """Return those (k, r, 3) of the logarithms of ratios by the places, of each measure."""
         first, middle, last = self.triples.T
-        before, after = steps[first], steps[middle]
-        rise = slope[middle]
-        return np.stack([slope[first] / before, -rise / before - rise / after, slope[last] / after], axis=1)
+        before, after = steps.take(first, axis=1), steps.take(middle, axis=1)
+        rise = slope.take(middle, axis=1)
+        one, other = slope.take(first, axis=1) / before, slope.take(last, axis=1) / after
+        return np.stack([one, -rise / before - rise / after, other], axis=-1)

@@ -37,9 +37,9 @@ Numbers = TypeVar("Numbers", Floats, Complexes)
 
 @dataclass(frozen=True, eq=False)
 class GrowthLimit:
-    """The term for logarithms of ratios (k,).
+    """The term for logarithms of ratios (..., k).
 
-    `limit` is L, a number or (k,); `wanted` (k,) is ρ0; `change` is μ.
+    `limit` is L, a number or an array like them; `wanted` (..., k) is ρ0; `change` is μ.
     """
 
     limit: float | Floats
@@ -48,20 +48,20 @@ class GrowthLimit:
 
     @classmethod
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> GrowthLimit:
-        """Return the term for the initial logarithms `growth` (k,) of the ratios.
+        """Return the term for the initial logarithms `growth` (..., k) of the ratios.
 
         The value ρ0 is `growth`, clipped to the limit.
         """
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:
-        """Return the contribution of each ratio (k,) to the term, for w = `weight`."""
+        """Return the contribution of each ratio (..., k) to the term, for w = `weight`."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         near = np.minimum(excess, LINEAR)
         return np.asarray(weight * near * (2.0 * excess - near) + self.change * (growth - self.wanted) ** 2)
 
     def residuals(self, growth: Floats, derivatives: Floats, weight: float) -> Residuals:
-        """Return the residuals for a Gauss-Newton step, from derivatives (k, m) of the logarithms."""
+        """Return the residuals for a Gauss-Newton step, from derivatives (..., k, m) of the logarithms."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         pull = weight * np.minimum(1.0, LINEAR / np.maximum(excess, LINEAR))
         stiffness = np.where(np.abs(growth) > self.limit - NEARLY, self.change + pull, self.change)

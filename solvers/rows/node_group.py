@@ -15,17 +15,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, norms
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.rows.row import Row
+from meshonet.solvers.rows.exact_cells import exact_in_corners
+from meshonet.solvers.rows.raised import Rise, raise_layers
 from meshonet.solvers.rows.span_lines import SpanLines, key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, LineArcs, Spacing
 from meshonet.solvers.rows.zones import Zone
 
 _IN_GAP = 5
 """Number of heights in a gap at which lines are measured."""
-_EXACT = 12
-"""Largest number of rounds that make first cells of nodes next to two walls exact."""
-_CLOSE = 1e-13
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,28 +121,17 @@ class NodeGroup:
         values[beside] = end
 
     def _exact_in_corners(self, own: Floats) -> None:
-        """Make both first cells exact of nodes next to the blade and to hub, tip or casing.
-
-        In each round a node moves along both lines, by what is missing of both lengths if the lines stay
-        straight.
-        """
+        """Make both first cells exact of nodes next to the blade and to hub, tip or casing."""
         walls, beside, sizes = self._ends
         begins = own[beside][:, :, 0], own[walls][:, :, 1]
-        starts = [self.row.channel.in_space(begin) for begin in begins]
-        node = own[beside][:, :, 1]
-        for _ in range(_EXACT):
-            at = self.row.channel.in_space(node)
-            one, other = (at - start for start in starts)
-            lengths = norms(one), norms(other)
-            off = self.first - lengths[0], sizes[:, None] - lengths[1]
-            if max(np.abs(off[0]).max() / self.first, (np.abs(off[1]) / sizes[:, None]).max()) < _CLOSE:
-                break
-            cosine = (one * other).sum(axis=-1) / (lengths[0] * lengths[1])
-            rest = 1.0 - cosine * cosine
-            ways = (off[0] - cosine * off[1]) / rest, (off[1] - cosine * off[0]) / rest
-            moves = [
-                (way / length)[..., None] * (node - begin)
-                for way, length, begin in zip(ways, lengths, begins, strict=True)
-            ]
-            node = node + moves[0] + moves[1]
-        own[beside, :, 1] = node
+        lengths = self.first, sizes[:, None]
+        own[beside, :, 1] = exact_in_corners(own[beside][:, :, 1], begins, lengths, self.row.channel.in_space)
+
+    def store(self, values: Floats, rises: Sequence[Rise], space: Floats) -> None:
+        """Store nodes of s, theta, h (levels, m, 3) in x, y, z (levels, n, 3) of all, layers raised."""
+        self.row.channel.store(values, self.ids, space)
+        if rises:
+            shape = len(values), self.columns, -1, 3
+            own = space[:, self.ids].reshape(shape)
+            raise_layers(rises, own, values.reshape(shape)[:, :, 0, 2], self._ends, self.first)
+            space[:, self.ids] = own.reshape(values.shape)

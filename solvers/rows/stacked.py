@@ -20,6 +20,7 @@ from meshonet.solvers.rows.columns import respaced_columns
 from meshonet.solvers.rows.key_sections import KeySection
 from meshonet.solvers.rows.key_tables import KeyTables
 from meshonet.solvers.rows.node_group import NodeGroup
+from meshonet.solvers.rows.raised import Rise, rises_of
 from meshonet.solvers.rows.row_nodes import RowNodes
 from meshonet.solvers.rows.span_lines import SpanLines
 from meshonet.solvers.rows.span_spacing import LineArcs, Spacing
@@ -79,6 +80,11 @@ class StackedRow:
     def levels(self) -> tuple[int, ...]:
         """Numbers of the levels that bound the zones."""
         return tuple(np.cumsum([0, *(zone.cells for zone in self.zones)]).tolist())
+
+    @cached_property
+    def _rises(self) -> list[Rise]:
+        lines = self.lines.of(self.columns.ravel())
+        return rises_of(self.row, self.zones, self.around, lines, self.first)
 
     @property
     def bounds(self) -> list[tuple[int, int]]:
@@ -149,10 +155,13 @@ class StackedRow:
     ) -> Floats:
         """Return s, theta, h of a group of layers, and store those at the blade."""
         values = group.values(arcs, spacings)
-        start = int(np.flatnonzero(self.columns[:, 0] == group.ids[0])[0])
-        own = values.reshape(len(values), group.columns, -1, 3)
-        made.beside[:, start : start + group.columns] = own[:, :, :2]
+        made.beside[:, self._part(group)] = values.reshape(len(values), group.columns, -1, 3)[:, :, :2]
         return values
+
+    def _part(self, group: NodeGroup) -> slice:
+        """Return which columns a group of layers has."""
+        start = int(np.flatnonzero(self.columns[:, 0] == group.ids[0])[0])
+        return slice(start, start + group.columns)
 
     def _fill(
         self, made: RowNodes, group: NodeGroup, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]
@@ -162,4 +171,5 @@ class StackedRow:
 
     def _store(self, made: RowNodes, group: NodeGroup, values: Floats) -> None:
         """Store the nodes of a group, given at s, theta, h."""
-        self.row.channel.store(values, group.ids, made.space)
+        rises = [rise.of_columns(self._part(group)) for rise in self._rises] if group.columns else []
+        group.store(values, [rise for rise in rises if rise.moves.any()], made.space)

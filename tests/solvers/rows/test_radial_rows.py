@@ -40,6 +40,18 @@ def nodes_of(grid: Grid, patch: str) -> np.ndarray:
     return np.concatenate([grid.at(each).reshape(-1, 3) for each in grid.patches if each.name == patch])
 
 
+def first_heights(grid: Grid, name: str) -> np.ndarray:
+    """Heights (n,) of first cells at a patch."""
+    heights = []
+    for patch in grid.patches:
+        if patch.name == name:
+            axis, end = patch.place
+            rows = np.moveaxis(grid.blocks[patch.block].nodes, axis, 0)
+            rows = rows if end == 0 else rows[::-1]
+            heights.append(np.linalg.norm(rows[1] - rows[0], axis=-1).ravel())
+    return np.concatenate(heights)
+
+
 def from_curve(points: np.ndarray, curve: np.ndarray) -> np.ndarray:
     """Distances (n,) of points x, y, z from the surface that a curve of x and r describes."""
     p = np.stack([points[:, 0], np.hypot(points[:, 1], points[:, 2])], axis=1)
@@ -72,13 +84,7 @@ def test_inlet_and_outlet_are_at_the_ends_of_the_curves(name: str) -> None:
 
 @pytest.mark.parametrize("name", ROWS)
 def test_first_cells_have_their_height_in_space_at_the_blade(name: str) -> None:
-    grid, wanted = made(name), FIRST * ROWS[name].chord
-    for patch in grid.patches:
-        if patch.name == "blade":
-            axis, end = patch.place
-            rows = np.moveaxis(grid.blocks[patch.block].nodes, axis, 0)
-            rows = rows if end == 0 else rows[::-1]
-            assert np.linalg.norm(rows[1] - rows[0], axis=-1) == pytest.approx(wanted, rel=1e-9)
+    assert first_heights(made(name), "blade") == pytest.approx(FIRST * ROWS[name].chord, rel=1e-9)
 
 
 def test_first_cells_are_the_smallest_where_the_radius_is_small() -> None:
@@ -148,6 +154,23 @@ def test_checkmesh_takes_the_faces_at_a_narrow_edge_cut_at_a_slant() -> None:
     skewness = faces(grid).face_skewness
     assert skewness
     assert skewness.max < 4.0
+
+
+@pytest.mark.parametrize("seed", [64, 72, 100])
+def test_checkmesh_takes_first_cells_next_to_a_narrow_gap_off_blades_that_lean_far(seed: int) -> None:
+    row = radial_rows.radial_row(seed)
+    grid = make_row(row, RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
+    skewness = faces(grid).face_skewness
+    assert skewness
+    assert skewness.max < 4.0
+    assert grid.quality().folded == 0
+    assert first_heights(grid, "blade") == pytest.approx(FIRST * row.chord, rel=1e-9)
+
+
+def test_first_cells_at_the_shroud_are_exact_where_the_channel_narrows() -> None:
+    row = radial_rows.radial_row(108)
+    grid = make_row(row, RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
+    assert first_heights(grid, "shroud") == pytest.approx(FIRST * row.chord, rel=1e-9)
 
 
 def test_corners_of_a_flat_edge_are_nodes_at_all_heights() -> None:

@@ -1,0 +1,48 @@
+"""First cells of exact height at walls, of nodes next to one wall, and of those next to two."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, norms
+
+_ROUNDS = 60
+"""Rounds in which first cells of nodes next to two walls are made exact at most."""
+_CLOSE = 1e-13
+
+
+def exact_in_corners(
+    nodes: Floats, begins: tuple[Floats, Floats], sizes: tuple[float, Floats],
+    in_space: Callable[[Floats], Floats],
+) -> Floats:  # fmt: skip
+    """Return nodes (..., 3) moved so that lines to them from two nodes are `sizes` long.
+
+    In each round a node moves along both lines, by what is missing of both lengths if the lines stay
+    straight.
+
+    Parameters
+    ----------
+    nodes : in any coordinates.
+    begins : of the lines (..., 3), likewise.
+    sizes : lengths of the lines, the second for (...).
+    in_space : maps coordinates to x, y, z.
+    """
+    starts = [in_space(begin) for begin in begins]
+    for _ in range(_ROUNDS):
+        at = in_space(nodes)
+        one, other = (at - start for start in starts)
+        lengths = norms(one), norms(other)
+        off = sizes[0] - lengths[0], sizes[1] - lengths[1]
+        if max(np.abs(off[0]).max() / sizes[0], (np.abs(off[1]) / sizes[1]).max()) < _CLOSE:
+            break
+        cosine = (one * other).sum(axis=-1) / (lengths[0] * lengths[1])
+        rest = 1.0 - cosine * cosine
+        ways = (off[0] - cosine * off[1]) / rest, (off[1] - cosine * off[0]) / rest
+        moves = [
+            (way / length)[..., None] * (nodes - begin)
+            for way, length, begin in zip(ways, lengths, begins, strict=True)
+        ]
+        nodes = nodes + moves[0] + moves[1]
+    return nodes

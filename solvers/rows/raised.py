@@ -1,0 +1,166 @@
+"""Layers that rise or fall from the blade next to a narrow gap, so that their first cells lean less.
+
+::
+
+    casing -----------------------         Lines off the blade lie in surfaces of revolution. Where the blade
+              gap    ____________ raised   leans far over these, so do its cells. Where they are narrow along
+    tip    .________/____________ even     the span, as next to a gap, the middle of a cell is far beside its
+          /  blade                         face on the blade. There these lines rise from the blade, or fall.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Indices, norms, smooth_step
+from meshonet.geometry.rows.row import Row
+from meshonet.solvers.rows.exact_cells import exact_in_corners
+from meshonet.solvers.rows.span_lines import SpanLines
+from meshonet.solvers.rows.zones import Zone
+
+LEAN = 1.5
+"""Tangent of the angle from the normal of the blade by which first cells lean there at most.
+
+OpenFOAM's skewness of a narrow face is this over 0.4, and is to be less than 4.
+"""
+NARROW = 0.4
+"""Cells along the span next to a gap, in first cells of the blade, below which layers rise."""
+_MOST = 0.12
+"""Of the width of a gap, by which nodes move at most."""
+_DEEP, _PART = 2.0, 0.25
+"""Widths of the gap from it, and largest part of the blade's span, in which nodes move."""
+_STEP = 1e-5
+"""Differences of places around the blade and of heights, for its tangents."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rise:
+    """Moves of nodes of layers next to one end of the blade.
+
+    Parameters
+    ----------
+    end : height at which the blade ends.
+    up : 1 where the gap is above it, -1 below.
+    gap : height of the gap.
+    deep : (k,) distances in height, on the side of the blade, at which moves have died out.
+    moves : (k, 3) of the nodes next to the blade at its end, in space, of each column.
+    """
+
+    end: float
+    up: float
+    gap: float
+    deep: Floats
+    moves: Floats
+
+    @classmethod
+    def of(cls, row: Row, zone: Zone, blade: Zone, around: SpanLines, lines: SpanLines) -> Rise:
+        """Return the moves next to a gap, `zone`.
+
+        Parameters
+        ----------
+        row, blade : the row, and the zone of the blade.
+        around : u of the blade at which columns begin.
+        lines : s, theta (k (rows + 1)) of their nodes.
+        """
+        end, up, width = (blade.high, 1.0, row.tip_gap)
+        if zone.low == 0.0:
+            end, up, width = blade.low, -1.0, row.hub_gap
+        walls, first_nodes = _at_end(row, end, up, around, lines)
+        along, moves = _moves(row, walls, first_nodes)
+        length = norms(moves)
+        moves *= np.minimum(1.0, _MOST * width / np.where(length > 0.0, length, np.inf))[:, None]
+        deep = np.minimum(_DEEP * width / along, _PART * (blade.high - blade.low))
+        return cls(end, up, zone.high - zone.low, deep, moves)
+
+    def of_columns(self, part: slice) -> Rise:
+        """Return the moves of some columns."""
+        return replace(self, deep=self.deep[part], moves=self.moves[part])
+
+    def shares(self, heights: Floats) -> Floats:
+        """Return the parts (levels, k) of these moves at `heights` (levels, k) of the blade."""
+        off = self.up * (heights - self.end)
+        away = np.where(off > 0.0, off / self.gap, -off / self.deep)
+        return np.asarray(smooth_step(np.clip(1.0 - away, 0.0, 1.0)))
+
+
+def rises_of(
+    row: Row, zones: Sequence[Zone], around: SpanLines, lines: SpanLines, first: float
+) -> list[Rise]:
+    """Return the moves of columns that begin at `around` (k,), where there are any (see `Rise.of`).
+
+    `first` is the height of first cells at the blade.
+    """
+    blade = next(zone for zone in zones if not zone.gap)
+    narrow = [zone for zone in zones if zone.gap and zone.ends[0] < NARROW * first]
+    rises = [Rise.of(row, zone, blade, around, lines) for zone in narrow]
+    return [rise for rise in rises if rise.moves.any()]
+
+
+def raise_layers(
+    rises: Sequence[Rise], space: Floats, heights: Floats, ends: tuple[Indices, Indices, Floats], first: float
+) -> None:
+    """Move nodes of columns, `space` (levels, k, rows, 3), first cells staying exact.
+
+    Parameters
+    ----------
+    rises : the moves.
+    space : x, y, z (levels, k, rows, 3).
+    heights : (levels, k) of the nodes on the blade.
+    ends : levels that bound zones, those next to them, and the heights of cells between.
+    first : height of first cells at the blade.
+    """
+    rows = space.shape[2]
+    left = np.clip((rows - 1.0 - np.arange(float(rows))) / (rows - 2.0), 0.0, 1.0)[1:, None]
+    walls, beside, sizes = ends
+    for rise in rises:
+        columns = np.flatnonzero(rise.moves.any(axis=1))
+        own = space[:, columns]
+        blade, lines = own[:, :, :1], own[:, :, 1:] - own[:, :, :1]
+        moves = rise.shares(heights)[:, columns, None] * rise.moves[columns]
+        lines += smooth_step(left) * moves[:, :, None]
+        longer = first / norms(lines[:, :, 0])
+        own[:, :, 1:] = blade + lines * (1.0 + left**2 * (longer - 1.0)[..., None, None])
+        begin, way = own[walls][:, :, 1:], own[beside][:, :, 1:] - own[walls][:, :, 1:]
+        own[beside, :, 1:] = begin + way * (sizes[:, None, None] / norms(way))[..., None]
+        begins, lengths = (own[beside][:, :, 0], own[walls][:, :, 1]), (first, sizes[:, None])
+        own[beside, :, 1] = exact_in_corners(own[beside][:, :, 1], begins, lengths, np.asarray)
+        space[:, columns] = own
+
+
+def _at_end(row: Row, end: float, up: float, around: SpanLines, lines: SpanLines) -> tuple[Floats, Floats]:
+    """Return s, theta, h of places on the blade at its end, and of the nodes next to it (k, 3).
+
+    The former (4, k, 3) are where columns begin, next to there along the span, and on both sides around.
+    """
+    inside = end - up * _STEP
+    u, nodes = around.at(np.array([[end], [inside]])), lines.at(np.array([[end]]))[0]
+    count = u.shape[1]
+    walls, out = np.empty((4, count, 3)), np.full((count, 3), end)
+    for k, (at, height) in enumerate(((u[0], end), (u[1], inside), (u[0] - _STEP, end), (u[0] + _STEP, end))):
+        walls[k, :, :2], walls[k, :, 2] = row.surface.at(np.mod(at, 1.0), np.full((1, count), height)), height
+    columns = nodes.reshape(count, -1, 2)
+    out[:, :2] = columns[:, 1] + walls[0, :, :2] - columns[:, 0]
+    return walls, out
+
+
+def _moves(row: Row, walls: Floats, first_nodes: Floats) -> tuple[Floats, Floats]:
+    """Return lengths (k,) of a unit of height along the blade, and moves (k, 3) for cells to lean little.
+
+    Lines off the blade lean by their part along it. A move adds to it some of a line along the span.
+    """
+    wall, inside, before, after = row.channel.in_space(walls)
+    off, along = row.channel.in_space(first_nodes) - wall, wall - inside
+    length = norms(along)
+    along /= length[:, None]
+    normal = np.cross(after - before, along)
+    normal /= norms(normal)[:, None]
+    straight = (off * normal).sum(axis=1)
+    aside = off - straight[:, None] * normal
+    half = (aside * along).sum(axis=1)
+    more = (aside * aside).sum(axis=1) - (LEAN * straight) ** 2
+    root = np.sqrt(np.maximum(half * half - more, 0.0))
+    move = np.where(more > 0.0, np.where(half > 0.0, root, -root) - half, 0.0)
+    return length / _STEP, move[:, None] * along
