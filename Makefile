@@ -11,7 +11,7 @@ help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
 	@echo 'make check   before each commit, a minute: lint, and the nodes of thirty commands are where they were'
 	@echo 'make test    the test suite; make test-fast: its core, in a minute'
-	@echo 'make test-clients  files written here, read by cgnscheck and OpenFOAM, and tutorials with them: minutes'
+	@echo 'make test-clients  files read by cgnscheck and OpenFOAM, tutorials with them, torch with a C++ compiler: minutes'
 	@echo 'make same    forty commands as other processors would run them: the same bits everywhere'
 	@echo 'make fuzz    every reader and command against hostile files and options, MINUTES=10 each; make kills: commands stopped at random'
 	@echo 'make sanitize  kernels compiled to notice what they must not do, and the tests that run them'
@@ -60,7 +60,7 @@ PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest
 
 # without what runs programs that are not from PyPI, for minutes: make test-clients
 test: $(VENV)/.developing
-	$(PYTEST) -n 2 -m 'not client' $(TESTS)
+	$(PYTEST) -n 2 --dist worksteal -m 'not client' $(TESTS)
 
 # the core of it, in less than a minute beside other work; one process, since each of several reads all tests first
 FAST := tests/geometry tests/test_api.py tests/test_architecture.py tests/solvers/test_tfi.py tests/solvers/test_multigrid.py \
@@ -73,7 +73,7 @@ test-fast: $(VENV)/.developing
 test-clients: $(VENV)/.developing
 	{ command -v cgnscheck && command -v checkMesh && command -v simpleFoam; } >/dev/null || \
 	  { apt-get update -qq && apt-get install -y -qq --no-install-recommends cgns-convert openfoam; }
-	MESHONET_CLIENTS=1 $(PYTEST) -n 2 -m client tests/formats tests/test_tutorials.py
+	MESHONET_CLIENTS=1 $(PYTEST) -n 2 -m client tests/formats tests/test_tutorials.py tests/test_bench_gpu.py
 
 # the same nodes, counts and reports with other kernels of BLAS, functions of NumPy, numbers of cores, and on emulated
 # processors where qemu-user is installed or can be from Debian

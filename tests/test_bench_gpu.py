@@ -20,6 +20,14 @@ def script(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     return importlib.import_module("bench_gpu")
 
 
+@pytest.fixture(params=["stood in for", pytest.param("itself", marks=pytest.mark.client("c++"))])
+def compiler(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """torch's compiler, whose C++ compiler takes half a minute, or one that leaves steps as they are."""
+    if request.param != "itself":
+        monkeypatch.setattr("torch.compile", lambda step, **_: step)
+
+
+@pytest.mark.usefixtures("compiler")
 @pytest.mark.filterwarnings("ignore:.*")  # of torch, while it compiles
 def test_it_measures_every_function_operator_and_model(script: ModuleType, tmp_path: Path) -> None:
     page = script.main(["--device", "cpu", "--quick", "--page", str(tmp_path / "gpu.md")])

@@ -3,6 +3,8 @@
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -13,19 +15,32 @@ from command_line import ROOT, Meshonet, Outcome, Process, dataset, duct, ellips
 from meshonet.solvers.neural.model_file import QUAD, write_model
 from meshonet.solvers.neural.quad.encoding import HEADS
 from meshonet.solvers.neural.quad.network import shapes
-from meshonet_cli.app import run
+from meshonet_cli import app
+from meshonet_cli.commands import COMMANDS, Command
+
+_MADE = app.application
+
+
+@cache
+def _parser(commands: tuple[Command, ...], overview: bool) -> Any:
+    return _MADE(commands, overview=overview)
 
 
 @pytest.fixture
 def meshonet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Meshonet:
-    """The program, called in this process, in a folder of its own."""
+    """The program, called in this process, in a folder of its own; parsers are made once for all tests."""
     monkeypatch.chdir(tmp_path)
+
+    def parser(commands: Sequence[Command] = COMMANDS, *, overview: bool = False) -> Any:
+        return _parser(tuple(commands), overview)
+
+    monkeypatch.setattr(app, "application", parser)
 
     def call(*words: object) -> Outcome:
         arguments = [str(word) for word in words]
         monkeypatch.setattr(sys, "argv", ["meshonet", *arguments])
         capsys.readouterr()
-        code = run(arguments)
+        code = app.run(arguments)
         out, err = capsys.readouterr()
         return Outcome(code, out, err)
 
