@@ -98,9 +98,9 @@ def _near(mesh: QuadMesh, lines: GrowthLines, growth: Floats) -> Bools:
     uneven = np.abs(growth) > lines.limit
     near = np.zeros(len(mesh.nodes), dtype=bool)
     reach = AROUND + np.floor(REACH * (np.abs(growth[uneven]) / lines.limit[uneven] - 1.0)).astype(np.intp)
-    middle = lines.nodes[uneven, 1]
+    middle, begins = lines.nodes[uneven, 1], lines.begins[uneven]
     for cells in range(int(reach.max(initial=0)), 0, -1):
-        near[middle[reach >= cells]] = True
+        near[middle[reach >= cells]] = near[begins[reach >= cells]] = True
         near[mesh.quads[near[mesh.quads].any(axis=1)]] = True
     return near
 
@@ -191,7 +191,7 @@ class _Patch:
     def _step(self, z: Complexes, weight: float) -> Complexes:
         """Return by how much nodes (m,) move in a step of Gauss-Newton."""
         nodes = self.lines.nodes
-        before, after = (z[nodes[:, k + 1]] - z[nodes[:, k]] for k in (0, 1))
+        before, after = self.lines.edges(z)
         along, back = (z[self.corners[:, k]] - z[self.corners[:, 0]] for k in (1, 2))
         by_line = np.stack([1.0 / before, -1.0 / before - 1.0 / after, 1.0 / after], axis=1)
         by_corner = np.stack([1.0 / along - 1.0 / back, -1.0 / along, 1.0 / back], axis=1)

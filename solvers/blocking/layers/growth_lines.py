@@ -4,7 +4,8 @@ The limit is strict along lines that start at walls and across the sides of bloc
 
     wall |--|---|----|-----|------| ...     through all blocks that the line crosses
 
-Elsewhere, for example along walls, another limit applies.
+At a periodic side the second edge begins at the other node of the pair. Elsewhere, for example along walls,
+another limit applies.
 """
 
 from __future__ import annotations
@@ -31,11 +32,13 @@ class GrowthLines:
     nodes : (k, 3) nodes of each pair.
     limit : (k,) logarithms of the largest ratios.
     offset : (k,) terms that are added to the logarithms of the ratios before the comparison with the limits.
+    begins : (k,) nodes at which second edges begin: the middle ones, or their partners at periodic sides.
     """
 
     nodes: Indices
     limit: Floats
     offset: Floats
+    begins: Indices
 
     @classmethod
     def of(cls, mesh: QuadMesh, limit: float, factors: Floats | None = None) -> Self:
@@ -43,12 +46,12 @@ class GrowthLines:
 
         The ratios are those of edges whose lengths are the lengths in the mesh times `factors` (e,).
         """
-        nodes = consecutive_edges(mesh)
+        nodes, begins = _pairs(mesh)
         offset = np.zeros(len(nodes))
         if factors is not None:
-            before, after = _edges_of(mesh, nodes)
+            before, after = _edges_of(mesh, nodes, begins)
             offset = log(factors[after] / factors[before])
-        return cls(nodes, np.full(len(nodes), limit), offset)
+        return cls(nodes, np.full(len(nodes), limit), offset, begins)
 
     @classmethod
     def from_walls(cls, layout: Layout, walls: Bools, limit: float, elsewhere: float) -> Self:
@@ -59,8 +62,8 @@ class GrowthLines:
         wall, whose nodes do not move.
         """
         mesh = layout.mesh
-        nodes = consecutive_edges(mesh)
-        before, after = _edges_of(mesh, nodes)
+        nodes, begins = _pairs(mesh)
+        before, after = _edges_of(mesh, nodes, begins)
         leaving = _leaving(layout, walls)
         rows = _beside_walls(layout, walls)
         beside = np.zeros(len(mesh.edges), dtype=bool)  # along walls in the blocks beside them
@@ -80,15 +83,20 @@ class GrowthLines:
         limits = np.where(strict, limit, elsewhere)
         own = along & ~strict
         limits[own] = np.maximum(elsewhere, _growth_of_walls(mesh, walls, nodes, rows)[middle[own]])
-        return cls(nodes, limits, np.zeros(len(nodes)))
+        return cls(nodes, limits, np.zeros(len(nodes)), begins)
 
     def some(self, which: Bools) -> Self:
         """Return the pairs in the mask `which` (k,)."""
-        return type(self)(self.nodes[which], self.limit[which], self.offset[which])
+        return type(self)(self.nodes[which], self.limit[which], self.offset[which], self.begins[which])
 
     def growth(self, z: Complexes) -> Floats:
         """Return the logarithms (k,) of the ratios of edges between nodes `z` (n,), with the offset."""
-        return growth_along(z, self.nodes) + self.offset
+        before, after = self.edges(z)
+        return np.asarray(log(modulus(after) / modulus(before)) + self.offset)
+
+    def edges(self, z: Complexes) -> tuple[Complexes, Complexes]:
+        """Return the first and the second edge (k,) of pairs between nodes `z` (n,)."""
+        return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
 
 def growth_along(z: Complexes, lines: Indices) -> Floats:
@@ -115,6 +123,36 @@ def consecutive_edges(mesh: QuadMesh) -> Indices:
     return np.concatenate([*parts, _around_irregular(mesh)])
 
 
+def _pairs(mesh: QuadMesh) -> tuple[Indices, Indices]:
+    """Return the nodes (k, 3) of all pairs of consecutive edges, and where (k,) the second edges begin."""
+    nodes, (across, begins) = consecutive_edges(mesh), _across_periodic(mesh)
+    return np.concatenate([nodes, across]), np.concatenate([nodes[:, 1], begins])
+
+
+def _across_periodic(mesh: QuadMesh) -> tuple[Indices, Indices]:
+    """Return `_pairs` across periodic sides, their ends included, where one edge leads inwards on both."""
+    images, on = np.flatnonzero(mesh.places.partner >= 0), mesh.tied
+    own = mesh.places.partner[images]
+    end, _ = _leading(mesh.edges[mesh.on_wall], on)
+    last = (end[images] >= 0) & (end[own] >= 0)
+    images, own = np.append(images, end[images[last]]), np.append(own, end[own[last]])
+    on[images] = on[own] = True
+    inwards, count = _leading(mesh.edges, on)
+    single = (count[images] == 1) & (count[own] == 1)
+    images, own = images[single], own[single]
+    return np.stack([inwards[own], own, inwards[images]], axis=1), images
+
+
+def _leading(edges: Indices, on: Bools) -> tuple[Indices, Indices]:
+    """Return a node off the mask `on` (n,) to which `edges` lead from each on it, and how many do."""
+    to, count = np.full(len(on), -1, dtype=np.intp), np.zeros(len(on), dtype=np.intp)
+    for ends in (edges, edges[:, ::-1]):
+        off = ends[on[ends[:, 0]] & ~on[ends[:, 1]]]
+        to[off[:, 0]] = off[:, 1]
+        count += np.bincount(off[:, 0], minlength=len(on))
+    return to, count
+
+
 def _around_irregular(mesh: QuadMesh) -> Indices:
     """Return the nodes (k, 3) of edges at irregular vertices inside that have one edge between them.
 
@@ -130,9 +168,9 @@ def _around_irregular(mesh: QuadMesh) -> Indices:
     return np.concatenate(parts)
 
 
-def _edges_of(mesh: QuadMesh, nodes: Indices) -> tuple[Indices, Indices]:
-    """Return the first and the second edge (k,) of pairs with these `nodes` (k, 3)."""
-    return mesh.edges_between(nodes[:, 0], nodes[:, 1]), mesh.edges_between(nodes[:, 1], nodes[:, 2])
+def _edges_of(mesh: QuadMesh, nodes: Indices, begins: Indices) -> tuple[Indices, Indices]:
+    """Return the first and the second edge (k,) of pairs with these `nodes` (k, 3) and `begins` (k,)."""
+    return mesh.edges_between(nodes[:, 0], nodes[:, 1]), mesh.edges_between(begins, nodes[:, 2])
 
 
 def _sides(layout: Layout) -> list[Indices]:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from periodic_domains import BOTH, HEIGHT, LENGTH, bank, circle, parallelogram
 
+from meshonet import quality
 from meshonet.formats.mesh.unstructured import unstructured
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.periodic import with_periodic_sides
@@ -143,3 +144,17 @@ def test_layers_at_one_of_two_periodic_ends_are_refused():
     request = BlockRequest(cells=4000, periodic=BOTH, first_cell=2e-3, walls=("upper",))
     with pytest.raises((InputError, SolverError), match="periodic sides"):
         make_blocks(DomainShape(other), request)
+
+
+@pytest.mark.parametrize("cells", [4000, 8000])
+def test_layers_grow_no_faster_across_periodic_sides(cells):
+    """Across the sides that a row of unlike cylinders is cut at, neighbours differed by 1.4 to 1.8."""
+    box = np.array([[0.0, 0.0], [12.0, 0.0], [12.0, 4.0], [0.0, 4.0]])
+    tubes = [circle(*tube)[:-1] for tube in ((2.5, 2.0, 0.5), (6.5, 1.5, 0.4), (9.5, 2.4, 0.3))]
+    names = [["lower", "outlet", "upper", "inlet"], "a", "b", "c"]
+    shape = DomainShape(Domain.of_polygons([box, *tubes], "row", names))
+    layers = {"first_cell": 0.01, "walls": ("a", "b", "c"), "growth": 1.2}
+    request = BlockRequest(periodic=(("lower", "upper"),), cells=cells, **layers)
+    figures = quality(make_blocks(shape, request).grid).figures
+    assert figures("wall_growth").value < 1.2 * (1.0 + 1e-6)
+    assert figures("growth").value < 1.25
