@@ -42,7 +42,7 @@ def test_a_base_rounded_at_its_corners_is_named() -> None:
     assert note == "the outline is changed: its base, 0.004 chords wide, is rounded at its corners"
 
 
-@pytest.mark.parametrize("te", ["round", "wedge"])
+@pytest.mark.parametrize("te", ["round", "wedge", "exact"])
 def test_a_treatment_of_the_base_without_one_is_named(te: TrailingEdge) -> None:
     (note,) = Airfoil(selig(0.12)).boundary(Sampling(121, 31, "o", te=te)).notes
     assert note == f"{{te}} {te} changes nothing, as the trailing edge is not blunt"

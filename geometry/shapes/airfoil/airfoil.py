@@ -285,7 +285,7 @@ class Airfoil:
             remedy = "leave {wake} out, or use {topology} c"
             raise InputError("an O grid has no wake", remedy, source=self.name)
         notes = body.notes + shape_notes(self._section, self.curve, self.chord)
-        if te != "exact":
+        if te != "exact" or sampling.te == "exact":
             notes += edge_notes(self, body, te, sampling.te)
         if topology == "c":
             if sampling.topology == "auto":

@@ -192,7 +192,7 @@ def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, asked: Trailin
         return (Change(f"{base} is closed by a wedge {length:.3g} chords long"),)
     if before.blunt and te == "round":
         return (Change(f"{base} is rounded at its corners"),)
-    if not before.blunt and asked in ("round", "wedge"):
+    if not before.blunt and asked != "auto":
         return (f"{{te}} {te} changes nothing, as the trailing edge is not blunt",)
     return ()
 
