@@ -11,6 +11,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.solvers.blocking.decomposition.field.cross_field import cross_field
 from meshonet.solvers.blocking.decomposition.field.frames import cut_frames, frame_sizes
 from meshonet.solvers.blocking.decomposition.field.parametrisation import Parametrisation
+from meshonet.solvers.blocking.decomposition.surface.split_edges import split_edges_between_walls
 from meshonet.solvers.blocking.decomposition.surface.surface import Triangulation
 from meshonet.solvers.blocking.decomposition.surface.triangulation import triangulate
 
@@ -74,12 +75,12 @@ def seamless_map(domain: Domain, count: int = 1500, seed: int = 0, fewer: bool =
 
     Raises SolverError: the field or the map has no solution; InputError: the domain cannot be triangulated.
     """
-    surface = triangulate(domain, count, seed=seed)
+    surface = split_edges_between_walls(triangulate(domain, count, seed=seed))
     field = cross_field(surface, fewer)
     singular = field.singular
     if len(singular):
         finer = surface.points[singular], _FINER * surface.edge_size(singular)
-        surface = triangulate(domain, count, finer=finer, seed=seed)
+        surface = split_edges_between_walls(triangulate(domain, count, finer=finer, seed=seed))
         field = cross_field(surface, fewer)
     frames = cut_frames(field)
     return SeamlessMap(

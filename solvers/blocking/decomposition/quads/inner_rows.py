@@ -14,11 +14,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, distinct
+from meshonet.geometry.arrays import Floats, Indices, distinct, turned_left
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 
 INSET = 0.25
-"""Part of the way from the path to the middles of cells, or to wall nodes, at which nodes of a front are."""
+"""Part of the shorter edge of a wall, or of the way to the middles of cells, that a front is off its path."""
 
 HalfEdges = dict[tuple[int, int], tuple[int, int]]
 
@@ -50,6 +50,9 @@ def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wa
         corners = _left_of(mesh, half, node, ahead, behind)
         quads[tuple(np.array(corners).T)] = front[i]
         if ahead is not None and behind is not None:
+            if of_wall:
+                nodes[front[i]] += _inwards(*mesh.nodes[[behind, node, ahead]])
+                continue
             middle = np.mean([mesh.nodes[mesh.quads[k]].mean(axis=0) for k, _ in corners], axis=0)
             nodes[front[i]] = (1.0 - INSET) * mesh.nodes[node] + INSET * middle
             continue
@@ -66,6 +69,12 @@ def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wa
         for node, k in ((n + count, 1), (n + count + 1, -1)):
             nodes[node], places.loop[node], places.arc[node] = _towards(mesh, path[0], path[k])
     return QuadMesh(mesh.domain, nodes, np.concatenate([quads, row]), places)
+
+
+def _inwards(before: Floats, here: Floats, after: Floats) -> Floats:
+    """Return by what a wall node (2,) moves inside, between those before and after it."""
+    shorter, tangent = min(np.hypot(*(here - before)), np.hypot(*(after - here))), after - before
+    return np.asarray(INSET * shorter * turned_left(tangent / np.hypot(*tangent)))
 
 
 def _towards(mesh: QuadMesh, node: int, beside: int) -> tuple[Floats, int, float]:
