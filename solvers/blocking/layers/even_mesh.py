@@ -20,7 +20,7 @@ from functools import partial
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Complexes, Floats, Indices
+from meshonet.geometry.arrays import Bools, Complexes, Floats, Indices, complex_of, pairs_of
 from meshonet.geometry.blocks.shared_nodes import joined_labels
 from meshonet.geometry.elementary import angle, modulus, times
 from meshonet.geometry.layout.quad_mesh import QuadMesh
@@ -43,15 +43,17 @@ WORTH, FEW = 0.7, 5e-4
 """Fraction of the excess that may remain after a round so that another one follows; and share of ratios above
 the limit that counts as few.
 """
+NO_PAIRS = np.empty((0, 2), dtype=np.intp)
 _ANGLES = np.radians(60.0), np.radians(120.0)  # limits of θ0, so that bad corners improve
 _WORST = np.radians(5.0), np.radians(175.0)  # angles that no step passes, unless they were beyond before
 _SLACK = 0.02  # radians by which such corners may become worse
 
 
-def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines) -> QuadMesh:
+def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines, following: Indices = NO_PAIRS) -> QuadMesh:
     """Return the mesh with nodes moved where edges along its grid lines grow too fast.
 
-    `held` (n,) nodes are fixed.
+    `held` (n,) nodes are fixed. `following` (k, 2) are nodes on loops, and each with one that moves with it,
+    so that first cells keep their heights.
 
     Other nodes on loops slide along them, except corners and periodic sides. Where a limit cannot be
     reached, it is exceeded as little as good angles permit.
@@ -59,19 +61,38 @@ def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines) -> QuadMesh:
     sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0)
     sliding[_periodic(mesh)] = False  # both nodes of a pair would have to move alike
     fixed = held | (mesh.wall_nodes & ~sliding)
+    fixed[following[:, 1]] |= fixed[following[:, 0]]
     weight, before = EXCESS, np.inf
     for _ in range(ROUNDS):
         z = mesh.nodes[:, 0] + 1j * mesh.nodes[:, 1]
         growth = lines.growth(z)
         free = _near(mesh, lines, growth) & ~fixed
+        free[following[:, 1]] = free[following[:, 0]]
         excess = np.maximum(np.abs(growth) - lines.limit, 0.0).sum()
         many = np.count_nonzero(np.abs(growth) > lines.limit) > FEW * len(growth)
         if not free.any() or (many and excess > WORTH * before):
             break
         before = excess
-        z, weight = _Patch.of(mesh, lines, z, free, _tangents(mesh, sliding & free)).evened(z, weight)
-        mesh = on_loops(mesh.with_nodes(np.stack([z.real, z.imag], axis=1)), sliding & free)
+        on, pairs = sliding & free, following[free[following[:, 0]]]
+        tangents = _tangents(mesh, on)
+        z, weight = _Patch.of(mesh, lines, z, free, tangents, pairs).evened(z, weight)
+        mesh = _followed(mesh, on_loops(mesh.with_nodes(pairs_of(z)), on), tangents, pairs)
     return mesh
+
+
+def _followed(before: QuadMesh, after: QuadMesh, tangents: Complexes, pairs: Indices) -> QuadMesh:
+    """Return the mesh `after` a step with the second nodes of pairs (k, 2) where they were from the first.
+
+    `tangents` (n,) are those of the loops before.
+    """
+    if len(pairs) == 0:
+        return after
+    first, second = pairs.T
+    turn = _tangents(after, np.isin(np.arange(len(tangents)), first))[first] / tangents[first]
+    away = complex_of(before.nodes[second] - before.nodes[first])
+    nodes = after.nodes.copy()
+    nodes[second] = nodes[first] + pairs_of(times(away, turn))
+    return after.with_nodes(nodes)
 
 
 def _periodic(mesh: QuadMesh) -> Indices:
@@ -128,12 +149,19 @@ class _Patch:
     across: Floats
     """(m,) what the stiffness of the second is multiplied by: those that slide stay on the tangent."""
     equations: NormalEquations
+    pairs: Indices
+    """(k, 2) nodes on loops, and those that move with them."""
     part: Indices
     """(n,) number of the part of the patch that a node is in, -1 for none; parts do not change each other."""
 
     @classmethod
-    def of(cls, mesh: QuadMesh, lines: GrowthLines, z: Complexes, free: Bools, tangents: Complexes) -> _Patch:
-        nodes = np.flatnonzero(free)
+    def of(
+        cls, mesh: QuadMesh, lines: GrowthLines, z: Complexes, free: Bools, tangents: Complexes,
+        pairs: Indices,
+    ) -> _Patch:  # fmt: skip
+        own = free.copy()
+        own[pairs[:, 1]] = False
+        nodes = np.flatnonzero(own)
         lines = lines.some(np.asarray(free[lines.nodes].any(axis=1)))
         quads = mesh.quads[free[mesh.quads].any(axis=1)]
         corners = np.concatenate(
@@ -147,6 +175,9 @@ class _Patch:
             np.minimum.at(shortest, end, length)
         unknown = np.full((len(z), 2), -1, dtype=np.intp)
         unknown[nodes] = np.arange(2 * len(nodes)).reshape(-1, 2)
+        unknown[pairs[:, 1]] = unknown[pairs[:, 0]]
+        tangents = tangents.copy()
+        tangents[pairs[:, 1]] = tangents[pairs[:, 0]]
         kinds = [unknown[of].reshape(len(of), 6) for of in (lines.nodes, corners)]
         return cls(
             nodes, lines, corners,
@@ -158,7 +189,7 @@ class _Patch:
             ),
             z[nodes], MOVE / shortest[nodes] ** 2,
             np.where(tangents == 0, 1.0, tangents), np.where(tangents[nodes] == 0, 1.0, RAIL),
-            NormalEquations(2 * len(nodes), kinds), _parts(free, (lines.nodes, quads)),
+            NormalEquations(2 * len(nodes), kinds), pairs, _parts(free, (lines.nodes, quads)),
         )  # fmt: skip
 
     def evened(self, z: Complexes, weight: float) -> tuple[Complexes, float]:
@@ -166,17 +197,15 @@ class _Patch:
         z, part = z.copy(), self.part[self.nodes]
         for _ in range(STEPS):
             weight = min(weight * RISE, MOST_WEIGHT)
-            z[self.nodes] += damped(
-                partial(self._values, z, weight), z[self.nodes], self._step(z, weight), part
-            )
+            step = damped(partial(self._values, z, weight), z[self.nodes], self._step(z, weight), part)
+            z = self._placed(z, z[self.nodes] + step)
             if (np.abs(self.lines.growth(z)) <= self.lines.limit).all():
                 break
         return z, weight
 
     def _values(self, z: Complexes, weight: float, at: Complexes) -> Floats:
         """Return E of each part (p,) with moving nodes at `at` (m,); infinite beyond the `worst` angles."""
-        z = z.copy()
-        z[self.nodes] = at
+        z = self._placed(z, at)
         angles = _angles(z, self.corners)
         least, most = self.worst
         turned = np.where((angles > least) & (angles < most), ANGLE * (angles - self.angles) ** 2, np.inf)
@@ -188,6 +217,24 @@ class _Patch:
         value += np.bincount(self.part[self.corners].max(axis=1), turned, count)
         return np.asarray(value, dtype=np.float64)
 
+    def _placed(self, z: Complexes, at: Complexes) -> Complexes:
+        """Return the nodes (n,) with those that move at `at` (m,), and others that move with them."""
+        placed = z.copy()
+        placed[self.nodes] = at
+        first, second = self.pairs.T
+        placed[second] += placed[first] - z[first]
+        return placed
+
+    def _alike(self, nodes: Indices, derivatives: Complexes) -> Complexes:
+        """Return derivatives (k, 3) by `nodes` (k, 3): those by nodes that move with another are at that."""
+        leader = np.arange(len(self.part))
+        leader[self.pairs[:, 1]] = self.pairs[:, 0]
+        for i, j in ((0, 1), (0, 2), (1, 2)):
+            alike = leader[nodes[:, i]] == leader[nodes[:, j]]
+            derivatives[alike, i] += derivatives[alike, j]
+            derivatives[alike, j] = 0.0
+        return derivatives
+
     def _step(self, z: Complexes, weight: float) -> Complexes:
         """Return by how much nodes (m,) move in a step of Gauss-Newton."""
         nodes = self.lines.nodes
@@ -195,6 +242,8 @@ class _Patch:
         along, back = (z[self.corners[:, k]] - z[self.corners[:, 0]] for k in (1, 2))
         by_line = np.stack([1.0 / before, -1.0 / before - 1.0 / after, 1.0 / after], axis=1)
         by_corner = np.stack([1.0 / along - 1.0 / back, -1.0 / along, 1.0 / back], axis=1)
+        if len(self.pairs):
+            by_line, by_corner = self._alike(nodes, by_line), self._alike(self.corners, by_corner)
         growth, turned = self.lines.growth(z), _angles(z, self.corners) - self.angles
         axes = self.axes[self.nodes]
         pull = times(np.conj(axes) * self.stiffness, (z[self.nodes] - self.start))

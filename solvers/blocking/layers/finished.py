@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools
+from meshonet.geometry.arrays import Bools, Indices, norms
 from meshonet.geometry.errors import NoValidGridError, SolverError
 from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric
-from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
+from meshonet.solvers.blocking.layers.even_mesh import NO_PAIRS, evened_mesh
 from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.blocking.layers.marched import AT_SHARP_EDGE
 from meshonet.solvers.energy.quads import optimise
@@ -22,16 +23,19 @@ NEAR_FOLDS = 5
 """Cells around folded ones that are optimised with them."""
 
 
-def finished(layout: Layout, settings: LayerSettings, held: Bools) -> Layout:
+def finished(layout: Layout, settings: LayerSettings, held: Bools, following: Indices = NO_PAIRS) -> Layout:
     """Return the layout with limited growth of its cells.
 
-    Nodes `held` (n,) are fixed. Raises NoValidGridError, with the place: cells are folded.
+    Nodes `held` (n,) are fixed; `following` (k, 2) are nodes on walls and others that move with them.
+    Raises NoValidGridError, with the place: cells are folded.
     """
     inner = held.copy()
     for number in layout.layers:
         block = layout.blocks[number]
         inner[block[:, : 2 * block.shape[1] // 3]] = True
-    layout = evened(unfolded(layout, inner), settings, held)  # which moves nothing near folded cells
+    inner[following[:, 1]] = True
+    layout = unfolded(layout, inner)
+    layout = evened(layout, settings, held, following)  # which moves nothing near folded cells
     corner = smallest_jacobians(layout.mesh.nodes, layout.mesh.quads)
     if corner.min() <= 0.0:
         x, y = layout.mesh.nodes[layout.mesh.quads[int(corner.argmin())]].mean(axis=0)
@@ -40,25 +44,41 @@ def finished(layout: Layout, settings: LayerSettings, held: Bools) -> Layout:
     return layout
 
 
-def evened(layout: Layout, settings: LayerSettings, held: Bools | None = None) -> Layout:
+def evened(
+    layout: Layout, settings: LayerSettings, held: Bools | None = None, following: Indices = NO_PAIRS
+) -> Layout:
     """Return the layout with cells whose growth is limited, as far as the first cells permit it.
 
-    Nodes `held` (n,) are fixed.
+    Nodes `held` (n,) are fixed; `following` (k, 2) are nodes on walls and others that move with them.
     """
     places = layout.mesh.places
     held = np.zeros(len(places.loop), dtype=bool) if held is None else held.copy()
     for number in layout.layers:
         held[layout.blocks[number][:, : settings.constant + 1]] = True
-    walls = (places.loop > 0) | (held & (places.loop == 0) & ~layout.mesh.tied)
+    sliding = np.zeros(len(places.loop), dtype=bool)
+    sliding[following[:, 0]] = True
+    walls = (places.loop > 0) | ((held | sliding) & (places.loop == 0) & ~layout.mesh.tied)
     try:
         if settings.limit:
-            lines = GrowthLines.from_walls(layout, walls, settings.steepest, settings.elsewhere)
+            lines = GrowthLines.from_walls(layout, walls, settings.steepest, settings.elsewhere, sliding)
         else:
             lines = GrowthLines.of(layout.mesh, settings.elsewhere)
-        mesh = evened_mesh(layout.mesh, held, lines)
+        mesh = evened_mesh(layout.mesh, held, lines, following)
     except SolverError:  # nodes that coincide
         return layout
-    return replace(layout, mesh=made_symmetric(mesh))
+    mesh = made_symmetric(mesh)
+    if len(following):  # means of images are nearer, where the loop is not quite symmetric
+        mesh = made_symmetric(_as_far(mesh, layout.mesh, following))
+    return replace(layout, mesh=mesh)
+
+
+def _as_far(mesh: QuadMesh, before: QuadMesh, pairs: Indices) -> QuadMesh:
+    """Return the mesh with second nodes of pairs (k, 2) as far from the first as they were `before`."""
+    first, second = pairs.T
+    nodes, away = mesh.nodes.copy(), mesh.nodes[second] - mesh.nodes[first]
+    far = norms(before.nodes[second] - before.nodes[first])
+    nodes[second] = nodes[first] + away * (far / norms(away))[:, None]
+    return mesh.with_nodes(nodes)
 
 
 def unfolded(layout: Layout, held: Bools) -> Layout:

@@ -54,12 +54,14 @@ class GrowthLines:
         return cls(nodes, np.full(len(nodes), limit), offset, begins)
 
     @classmethod
-    def from_walls(cls, layout: Layout, walls: Bools, limit: float, elsewhere: float) -> Self:
+    def from_walls(
+        cls, layout: Layout, walls: Bools, limit: float, elsewhere: float, sliding: Bools | bool = False
+    ) -> Self:
         """Return all pairs of a layout, with a `limit` along lines from `walls` and across sides of blocks.
 
         `walls` (n,) is a mask of nodes. The limit is `elsewhere` for all other pairs and around irregular
         vertices. Along walls, in the blocks at the wall, it is the larger of `elsewhere` and the ratio on the
-        wall, whose nodes do not move.
+        wall, unless its nodes are `sliding` (n,).
         """
         mesh = layout.mesh
         nodes, begins = _pairs(mesh)
@@ -82,7 +84,8 @@ class GrowthLines:
         strict &= ~mesh.irregular[middle] | mesh.wall_nodes[middle]
         limits = np.where(strict, limit, elsewhere)
         own = along & ~strict
-        limits[own] = np.maximum(elsewhere, _growth_of_walls(mesh, walls, nodes, rows)[middle[own]])
+        stays = walls & ~np.asarray(sliding)
+        limits[own] = np.maximum(elsewhere, _growth_of_walls(mesh, stays, nodes, rows)[middle[own]])
         return cls(nodes, limits, np.zeros(len(nodes)), begins)
 
     def some(self, which: Bools) -> Self:

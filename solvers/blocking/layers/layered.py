@@ -225,5 +225,6 @@ def _joined(walls: WallLayers, rows: WallRows, layout: Layout) -> Layout:
     whole = attach(layout, walls.domain, attached)
     whole = replace(whole, mesh=made_symmetric(whole.mesh))
     held = np.zeros(len(whole.mesh.nodes), dtype=bool)
-    held[: len(mesh.nodes)] = held_nodes(layout, rows, settings) | mesh.tied
-    return finished(whole, settings, held)
+    own, following = held_nodes(layout, rows, settings, len(walls.sheets))
+    held[: len(mesh.nodes)] = own | mesh.tied
+    return finished(whole, settings, held, following)

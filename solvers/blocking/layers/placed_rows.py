@@ -81,16 +81,27 @@ def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings
     return replace(layout, mesh=mesh.with_nodes(nodes, arcs))
 
 
-def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings) -> Bools:
-    """Return a mask (n,) of the nodes of rows that define first-cell heights: next to walls, and corners."""
-    held = np.zeros(len(layout.mesh.nodes), dtype=bool)
+def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings, sheets: int) -> tuple[Bools, Indices]:
+    """Return a mask (n,) of nodes of rows that stay, and pairs (k, 2) of nodes that move together.
+
+    Those are nodes on walls and the ones of first cells above them; at corners, and in the first `sheets`
+    rows, they stay.
+    """
+    mesh, cells = layout.mesh, settings.constant + 1
+    held, pairs = np.zeros(len(mesh.nodes), dtype=bool), []
     for row in range(len(rows.loops)):
         for table in rows.columns(layout, row):
-            on = layout.mesh.places.loop[table[:, 0]] == rows.loops[row]
-            held[table[on, : settings.constant + 1]] = True
+            on = mesh.places.loop[table[:, 0]] == rows.loops[row]
+            stays = on & ((mesh.places.cells[table[:, 0]] > 0) | mesh.tied[table[:, 0]] | (row < sheets))
+            held[table[stays, :cells]] = True
+            wall = table[on & ~stays, :cells]
+            pairs += [np.stack([wall[:, 0], wall[:, k]], axis=1) for k in range(1, cells)]
     for corner, _ in _corners(layout, rows):
-        held[corner] = True
-    return held
+        held[corner[:cells, :cells]] = True
+    every = np.unique(np.concatenate([np.empty((0, 2), dtype=np.intp), *pairs]), axis=0)
+    stay = held[every].any(axis=1)
+    held[every[stay]] = True
+    return held, every[~stay]
 
 
 def _corners(layout: Layout, rows: WallRows) -> list[tuple[Indices, list[int]]]:

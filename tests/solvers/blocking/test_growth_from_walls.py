@@ -43,6 +43,26 @@ def test_cells_of_a_grid_grow_by_no_more_than_the_limit_that_is_asked_for(limit,
     assert lines.growth_across.max <= limit
 
 
+STEP = np.array([[0.0, 1.0], [4.0, 1.0], [4.0, 0.0], [14.0, 0.0], [14.0, 2.0], [0.0, 2.0]])
+SIDES = {"south": (0, 1, 1), "north": (-1, -2, 1), "west": (0, 1, 0), "east": (-1, -2, 0)}
+
+
+@pytest.mark.parametrize("constant", [1, 2])
+def test_nodes_on_walls_move_with_first_cells_above_them_where_cells_along_walls_grow_too_fast(constant):
+    names = ("wall", "wall", "wall", "outlet", "wall", "inlet")
+    domain = Domain((Loop.of_polygon(STEP, None, names),))
+    loops, stretches = layered_walls(domain, ("wall",))
+    settings = LayerSettings.limited(1e-3, 1.2, constant=constant)
+    grid = to_grid(layered(domain, loops, settings, stretches=stretches, cells=12000), walls=("wall",))
+    for growth in block_figures(grid).lines.growth.families().values():
+        assert growth.max < 1.25
+    for patch in grid.patches:
+        if patch.name == "wall":
+            wall, above, axis = SIDES[patch.side]
+            nodes = np.moveaxis(grid.blocks[patch.block].nodes, axis, 0)
+            np.testing.assert_allclose(np.hypot(*(nodes[above] - nodes[wall]).T)[1:-1], 1e-3, rtol=1e-6)
+
+
 @pytest.fixture
 def annulus():
     """A ring of two blocks with 8 cells around, 3 across, and a wall inside."""
