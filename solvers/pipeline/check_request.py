@@ -11,14 +11,15 @@ from meshonet.solvers.pipeline.methods import METHODS, method_named
 if TYPE_CHECKING:
     from meshonet.solvers.pipeline.request import GridRequest
 
+LIMITS = {"tol": (0.0, 1.0, "1e-8")}
+"""Settings of single methods, each with the open interval of its values and an example."""
+
 
 def check_request(request: GridRequest) -> None:
     """Raise InputError for a value out of range, or for options that need or exclude each other."""
     if request.method not in ("best", "auto") and request.method.partition(":")[0] not in METHODS:
         method_named(request.method)  # which says what there is
     _check_first_cells(request)
-    if request.method == "hyperbolic" and not request.at_walls:
-        raise InputError("{method} hyperbolic without a first cell", "give {first_cell} or {y_plus} as well")
     if request.wall_angle is not None and request.method != "steger-sorenson":
         problem = f"method {request.method} sets no angle"
         raise InputError(problem, "use {method} steger-sorenson", parameter="wall_angle")
@@ -31,9 +32,11 @@ def check_request(request: GridRequest) -> None:
     if request.repair and request.settings.get("answer") == "raw":
         problem = "{repair} would change a raw answer"
         raise InputError(problem, "leave one of {repair} and {answer} out")
-    tol = request.settings.get("tol")
-    if tol is not None and not 0 < tol < 1:
-        raise InputError(f"{tol:g} is not between 0 and 1", "use e.g. 1e-8", parameter="tol")
+    for name, (low, high, example) in LIMITS.items():
+        value = request.settings.get(name)
+        if value is not None and not low < value < high:
+            problem = f"{value:g} is not between {low:g} and {high:g}"
+            raise InputError(problem, f"use e.g. {example}", parameter=name)
     for name, least in (("threads", 1), ("constant_layers", 1), ("layers", 3)):
         value = getattr(request, name)
         if value is not None and value < least:
@@ -50,6 +53,8 @@ def _check_first_cells(request: GridRequest) -> None:
     request.check_first_cell()
     for side, height in request.sides.items():
         check_height(height, f"spacing_{side}")
+    if request.method == "hyperbolic" and not request.at_walls:
+        raise InputError("{method} hyperbolic without a first cell", "give {first_cell} or {y_plus} as well")
     if not request.at_walls and not request.sides:
         for name in ("constant_layers", "growth"):
             if getattr(request, name) is not None:
