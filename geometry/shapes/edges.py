@@ -12,8 +12,10 @@ import numpy as np
 from meshonet.geometry.arrays import SIDES, Floats, extent_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.patches import may_be_wall
+from meshonet.geometry.domain.loop import turns_sharply
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.polygon.self_intersection import check_outline
 from meshonet.geometry.shapes.domain_shape import DomainShape, itself
 from meshonet.geometry.shapes.named_edges import Labelled, runs
@@ -103,7 +105,11 @@ def _sampled(
     names = [edge.name or "outer" for edge in chain]
     cells = [called for called, count in zip(names, counts, strict=True) for _ in range(_PARTS * count)]
     labelled = Labelled(outline, np.stack([fine, np.roll(fine, -1, axis=0)], axis=1), cells, walls)
-    shape = polygon_shape([PolygonRing(ring, (0, a, b, c), names, places)], name, notes)
+    # blocks follow the points: where these turn sharply within an edge there is a corner, too
+    sharp = np.flatnonzero(turns_sharply(turning(ring, closed=True))).tolist()
+    corners = sorted({0, a, b, c, *sharp})
+    owners = [names[sum(start <= k for start in (a, b, c))] for k in corners]
+    shape = polygon_shape([PolygonRing(ring, corners, owners, places)], name, notes)
     return replace(shape, many=False, one=partial(itself, labelled))
 
 

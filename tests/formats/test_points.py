@@ -181,6 +181,19 @@ def test_two_open_curves_are_the_walls_of_a_channel(case, titles):
     assert [p.stop - p.start for p in b.patches] == [20, 6, 20, 6]
 
 
+def test_the_steps_of_a_channels_wall_are_corners_of_its_domain():
+    (shape,) = parse("# floor\n0 0\n3 0\n3 -1\n6 -1\n6 0\n9 0\n\n# roof\n0 1\n9 1\n", "slot.csv")
+    (loop,) = shape.domain.loops
+    points = loop.curve.points[list(loop.corners)].tolist()
+    assert sorted(points) == [[0, 0], [0, 1], [3, -1], [3, 0], [6, -1], [6, 0], [9, 0], [9, 1]]
+    ends = [*loop.corners[1:], loop.corners[0]]
+    named = {tuple(sorted((a, b))): n for a, b, n in zip(loop.corners, ends, loop.names, strict=True)}
+    assert sorted(named.values()) == ["floor"] * 5 + ["inlet", "outlet", "roof"]
+    for (a, b), name in named.items():
+        ys = loop.curve.points[[a, b], 1]
+        assert (name == "roof") == (ys == 1).all()
+
+
 def test_two_bodies_left_open_are_no_channel():
     t = np.linspace(0, 2 * np.pi, 40)[:-1]
     circle = np.stack([np.cos(t), np.sin(t)], axis=1)
