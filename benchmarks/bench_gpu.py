@@ -2,8 +2,9 @@
 
     python benchmarks/bench_gpu.py [--device cuda] [--quick] [--page docs/benchmarks/gpu.md]
 
-One command under eight minutes: what does not fit is left out, and its row says so. Without a CUDA device the
-page says that. `--device cpu --quick` runs all of it on a CPU with few and small grids, to see that it works.
+No measurement starts after seven minutes, and the command ends within eight; rows say which were not made.
+Without a CUDA device the page says that. `--device cpu --quick` runs all of it on a CPU with few and small
+grids, to see that it works.
 """
 
 from __future__ import annotations
@@ -33,32 +34,35 @@ from meshonet.solvers.neural.devices import Device
 from meshonet.solvers.neural.inference import infer_many
 from meshonet.solvers.neural.registry import load
 
-HEAD = """# GPU
+TITLE = """# GPU
 
 <!-- made by python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md -->
-
+"""
+HEAD = """
 Use this page to find the speed of training and of batched grids on a GPU. For its use see [threads and
 GPUs](../guide/threads-and-gpu.md). The page is made by
-`python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md`. This takes less than eight minutes: what does
-not fit into seven is left out, and its row says so. Four things are measured.
+`python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md`. The benchmark starts no measurement after
+seven minutes and ends within eight; rows say which were not made. Four things are measured.
 
-- **Layers**: the functions of `meshonet.layer`, exact solvers beside the network `quad-general`. Sides are in
-  the memory of the device. The table has the grids per second without and with gradients, the peak memory,
-  whether two runs give bitwise equal nodes, and the largest distance from the nodes of the compiled solver
-  or operator on the CPU. Batches of 65 x 65 nodes become larger while the time suffices. Single grids of
-  800 x 800 and 3200 x 3200 nodes follow. Rows with `coarse=65` solve on 65 x 65 nodes, interpolate, and are
-  compared with the same function on the CPU. The aims are 100,000 grids of 65 x 65 nodes per second,
-  800 x 800 nodes in 3 ms, and 3200 x 3200 nodes in 40 ms; for these the paper reports 278 ms on an RTX 4090.
+- **Layers**: the functions of `meshonet.layer`: exact solvers, and for comparison the network `quad-general`.
+  Sides are in the memory of the device. The table has the grids per second without and with gradients, the
+  peak memory, whether two runs give bitwise equal nodes, and the largest distance from the nodes of the
+  compiled solver or operator on the CPU. Grids of 65 x 65 nodes are made in batches; larger batches follow
+  while time is left, then single grids of 800 x 800 and 3200 x 3200 nodes. Rows with `coarse=65` solve on
+  65 x 65 nodes, interpolate, and are compared with the same function on the CPU. The aims are 100,000 grids
+  of 65 x 65 nodes per second, 800 x 800 nodes in 3 ms, and 3200 x 3200 nodes in 40 ms. For 3200 x 3200 nodes
+  [the paper](paper/index.md) reports 278 ms on an RTX 4090.
 - **Operators**: grids per second and peak memory of `infer --device cuda` with `airfoil-o`, `quad-general`
   and `hole-o`, for 256 grids of 65 x 65 and of 200 x 200 nodes.
-- **Training**: shapes per second and peak memory of `meshonet`, `fno2d` and `quad`, for two batch sizes, with
-  `--amp`, and with `--compile` for the smaller one. Speed and last loss are also given relative to training
-  without these options. Compiling is not counted: speeds are those of the second half of the epochs.
+- **Training**: shapes per second and peak memory of `meshonet` (here the network of the paper), `fno2d` and
+  `quad`, for two batch sizes, with `--amp`, and with `--compile` for the smaller one. Speed and last loss are
+  also given relative to training without these options. Compiling is not counted: speeds are those of the
+  second half of the epochs.
 - **Equality**: nodes may differ from those of the CPU by 1e-10 of the size of the domain. A larger distance
   is marked TOO FAR.
 """
 
-NONE = "No GPU was available when this page was made, so it has no values yet."
+NONE = "This page has no figures yet: no GPU was available when it was made."
 EQUAL = 1e-10
 """The largest distance of nodes from those of the CPU."""
 
@@ -219,11 +223,11 @@ def from_compiled(name: str, boundary: Boundary, nodes: Floats) -> float:
 def page(device: Device, quick: bool) -> str:
     """Return the page."""
     if device == "cuda" and not torch.cuda.is_available():
-        return f"{HEAD}\n{NONE}\n"
+        return f"{TITLE}\n{NONE}\n{HEAD}"
     machine = torch.cuda.get_device_name() if device == "cuda" else processor()
     extent, begun = QUICK if quick else Extent(), time.perf_counter()
     left = Time(extent.limit)
-    lines = [HEAD, f"{machine}, torch {torch.__version__}."]
+    lines = [TITLE + HEAD, f"{machine}, torch {torch.__version__}."]
     with tempfile.TemporaryDirectory() as folder:
         for title, rows in (
             ("Layers", layer_rows(device, extent, left)),

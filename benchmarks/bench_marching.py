@@ -8,6 +8,7 @@ in rows ``| names | script | N | s0 | marchDist |``. One thread.
 
 from __future__ import annotations
 
+import re
 import resource
 import subprocess
 import sys
@@ -43,9 +44,11 @@ HEAD = """# Volumes marched from surfaces: quality and time
 Use this page to find the quality and the CPU time of volume grids that are marched from surfaces. For the
 method see [marching from surfaces](../guide/marching-surfaces.md).
 
-- *levels*: number of node layers from the surface to the far field. *first cell, distance*: prescribed
-  first-cell height, and distance of the far field.
-- *tries*: number of marches until the grid was valid, each with more smoothing than the one before.
+- *patches, nodes*: numbers of patches and of nodes of the surface. *levels*: number of node layers from the
+  surface to the far field.
+- *first cell, distance*: prescribed first-cell height, and distance of the far field, in the unit of the
+  surface.
+- *tries*: number of marches until the grid was valid, each with other smoothing parameters.
 - *folded*: number of cells in which a corner Jacobian, or a Bezier coefficient of the Jacobian, is not
   positive.
 - *first cell*: largest relative error of the first-cell height over all wall nodes.
@@ -56,7 +59,8 @@ method see [marching from surfaces](../guide/marching-surfaces.md).
 - *growth*: prescribed relative growth of the layer height from layer to layer; then the largest relative
   change of edge length along a grid line, as marched / after nodes are redistributed along the lines.
 - *CPU*: CPU time in seconds from patches in memory to tested blocks, best of 3; then in microseconds per
-  node; *process*: CPU time of the whole command for surfaces from files, including the written volume.
+  node of the volume; *process*: CPU time of the whole command for surfaces from files, including the
+  written volume.
   One thread of {machine}, while other programs used the machine.
 
 """
@@ -198,8 +202,8 @@ def row_of(case: Case, process: bool) -> str:
     ]
     growth = max(worst_growth(edges) for edges in lines)
     steps = case.march.steps(surface.size)
-    tried = [note for note in solution.notes if "marches were made" in note]
-    tries = int(tried[0].split()[0]) if tried else 1
+    tried = [found for note in solution.notes if (found := re.search(r"best of (\d+) marches", note))]
+    tries = int(tried[0][1]) if tried else 1
     levels = grid.blocks[0].counts[2]
     whole = f"{process_seconds(case.path, case.march):.2f}" if case.path and process else ""
     cells = [

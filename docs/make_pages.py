@@ -29,7 +29,7 @@ MODELS_HEAD = """# Shipped models
 
 Look here for the training parameters of the models that are part of meshonet. To choose a model see
 [neural operators](../theory/operators.md). The accuracy of each model is in
-[held-out errors](../benchmarks/models.md). `meshonet models` prints the same data.
+[held-out errors](../benchmarks/models.md). `meshonet models NAME` prints the same data.
 
 Each model is a safetensors file in `solvers/neural/pretrained/`. The metadata of the file contain the
 training parameters and the held-out errors. `make train` repeats the training.

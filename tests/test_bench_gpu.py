@@ -66,4 +66,4 @@ def test_the_trainings_of_a_gpu_are_those_that_the_models_take(script: ModuleTyp
 
 def test_without_a_gpu_the_page_says_so(script: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(script.torch.cuda, "is_available", lambda: False)
-    assert script.main([]).endswith(f"{script.NONE}\n")
+    assert script.main([]).startswith(f"{script.TITLE}\n{script.NONE}\n")

@@ -4,9 +4,9 @@ A polygon is a domain, with its holes; a closed line is a body, or an outline wi
 the walls of a channel, four the edges of a domain. Any other number of open lines whose ends meet are the
 sides of a domain, with closed lines among them as holes. A line ``# name`` above one of WKT names it.
 Collections hold several. A third coordinate is dropped. Properties of a GeoJSON feature besides ``name``:
-``names``, for each ring one name or a list of one for each stretch between corners; ``corners``, for each
-ring a list of numbers of its points, counted from 0; and ``periodic``, pairs of names of sides of the outer
-ring that are translated copies of each other.
+``names``, for each ring one name, or a list with one name for each stretch between corners; ``corners``, for
+each ring a list of numbers of its points, counted from 0; and ``periodic``, pairs of names of sides of the
+outer ring that are translated copies of each other.
 https://www.ogc.org/standards/sfa , https://www.rfc-editor.org/rfc/rfc7946
 """
 

@@ -4,7 +4,7 @@
 domain                                         by default made as
 =============================================  =====================================================
 four convex corners, all others kinks          one four-sided block
-a hole in a smooth loop, far away              one O block
+one hole, and a smooth loop far from it        one O block
 any other                                      several blocks, found by a decomposition
 =============================================  =====================================================
 """
@@ -77,7 +77,7 @@ class DomainShape:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the four edges of the domain as a single block.
 
-        Raises InputError: a domain that cannot be a single block; the errors of its shape.
+        Raises InputError: the domain cannot be a single block, or its nodes cannot be distributed.
         """
         if self.domain.periodic:
             remedy = "make many blocks of it with infer or solve-pde"

@@ -41,16 +41,23 @@ def arcs_by_curvature(
     """Return arc lengths (cells + 1,) from one end of the trailing edge around the nose to the other.
 
     The cell size h is a smooth minimum of four sizes, 1/h⁴ = Σ 1/hₖ⁴: those at the trailing and at the
-    leading edge, each growing with the distance from it; `TURN` over the curvature, with the same limit of
-    growth; and a largest size, such that the integral of ds/h is the number of cells. If cells are too few
-    for the first three, those of curvature and of the leading edge are increased, and growth is up to `HURRY`
-    times as fast (with `hurried`, as for C grids, whose wake takes half of the nodes). If that does not
-    suffice, all sizes are scaled up.
+    leading edge, each increasing by `GROWTH` times the distance from it; `TURN` over the curvature, reduced
+    where its slope along the wall exceeds `GROWTH`; and a largest size, such that the integral of ds/h is the
+    number of cells. If cells are too few for the first three, those of curvature and of the leading edge are
+    increased, and growth is up to `HURRY` times as fast (with `hurried`, as for C grids, whose wake takes
+    half of the nodes). If these are more than `_SCARCE` times as large, growth increases again, and in the
+    end all sizes are scaled up.
 
-    `stations` are the arc lengths of the lower end, the nose and the upper end; `steps` the cell sizes at the
-    trailing and at the leading edge; `exact` whether these are prescribed, within 0.5 % if the adjustment
-    suffices. From the trailing edge cells grow by the factor exp(`at_edge`) each, if that is more than
-    elsewhere.
+    Parameters
+    ----------
+    stations : arc lengths of the lower end, the nose and the upper end.
+    cells : number of cells between the two ends.
+    chord : length that curvature is measured by: it is averaged over 0.2 % of the chord.
+    steps : cell sizes at the trailing and at the leading edge.
+    exact : whether each of these is prescribed. The first cells then deviate from it by less than 0.5 %,
+        unless twelve corrections of the sizes near the edge do not suffice.
+    hurried : whether growth may be `HURRY` times as fast if cells are too few.
+    at_edge : logarithm of the growth factor of cells from the trailing edge on, if larger than `GROWTH`.
     """
     lower, nose, upper = stations
     s = _samples(stations, steps)

@@ -37,9 +37,9 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
 
 
 def height_note(y_plus: str, reynolds: float | None, where: str, height: str) -> str:
-    """Return a sentence on how the `height` of a first cell was computed from y+."""
-    centre = "half of that y+ at its centre"
-    return f"y+ {y_plus} at Re {reynolds:g} {where} is {height}, {centre}: {FORMULA} ({SOURCE})"
+    """Return a sentence on how the `height` of first cells was computed from y+."""
+    cells = f"needs first cells of height {height}, with their centres at half that y+"
+    return f"y+ {y_plus} at Re {reynolds:g} {where} {cells}: {FORMULA} ({SOURCE})"
 
 
 def first_cell_note(

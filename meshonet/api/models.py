@@ -7,9 +7,9 @@ from meshonet.solvers.neural.registry import described, shipped
 _USES = {
     "airfoil-o": "O grids around airfoils, conformal",
     "hole-o": "O grids around bodies with corners, variational",
-    "hole-winslow": "O grids around bodies with corners, Winslow's",
+    "hole-winslow": "O grids around bodies with corners, by Winslow's equations",
     "quad-general": "four-sided domains, variational",
-    "quad-winslow": "four-sided domains, Winslow's",
+    "quad-winslow": "four-sided domains, by Winslow's equations",
 }
 _SPEEDS = {
     "airfoil-o": "10 ms at 800 x 800",

@@ -5,14 +5,15 @@
     theta = pi   +-----------+    +--( <=> )--+    +--( <=> )--+   crown
                  |    top    |    |    fin    |    |    fin    |
                  +-----------+    +-----------+    +-----------+
-                 |  ( <=> )  |    |           |     /   high    /    lines from one rectangle to the other,
-                 +-----------+    |    low    |    +-----------+     each with as many on this side
-                 |    low    |    |           |    |  ( <=> )  |
+                 |  ( <=> )  |    |           |     /   high    /    lines from the rectangle of the wing
+                 +-----------+    |    low    |    +-----------+     to that of the fin: both have equal
+                 |    low    |    |           |    |  ( <=> )  |     numbers of nodes on these sides
                  |           |    |           |    +-----------+
                  |           |    |           |    |    low    |
     theta = 0    +-----------+    +-----------+    +-----------+   keel
 
-Beside both s, theta and zeta of the sides change smoothly from those of the wing to those of the fin.
+Along the front and the back of `high`, s and zeta change smoothly from those of the wing's rectangle to those
+of the fin's.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ _FOLLOWING = 0.7
 evenly.
 """
 _HALVINGS = 40
-"""Largest and smallest factor of cells that is tried."""
+"""Steps of the bisection for the factor of the cells below a fin."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,8 +125,8 @@ class ColumnLevel:
 
     Parameters
     ----------
-    plan : numbers of cells.
-    levels : collars of its wing and fin on this level.
+    plan : numbers of cells of the column.
+    levels : the collars on this level: of the wing, of the fin, or of both; that of the fin is last.
     below : theta of the nodes from the keel to the first collar, if they are prescribed.
     keel, crown : zeta at keel and crown, if it differs from that of the first collar.
     """
@@ -185,9 +186,9 @@ class ColumnLevel:
         return wing.box.high / float(wing.scale[1]), fin.box.low / float(fin.scale[1])
 
     def _above(self) -> tuple[Floats, Floats]:
-        """Return theta (n,) of lines from the first collar to that of a fin or the crown, and a fade.
+        """Return theta (n,) of lines from the first collar to that of a fin or the crown, and weights.
 
-        This goes smoothly from 0 at the first collar to 1.
+        The blending weights (n,) rise smoothly from 0 at the first collar to 1 at the other end.
         """
         if len(self.levels) == 1:
             theta = self.levels[0].low_and_top[1]
@@ -252,14 +253,14 @@ class ColumnLevel:
 
 
 def _fade(theta: Floats) -> Floats:
-    """Return what goes smoothly from 0 at the first of angles (n,) to 1 at the last."""
+    """Return blending weights (n,), from 0 at the first of angles `theta` (n,) smoothly to 1 at the last."""
     return smooth_step((theta - theta[0]) / (theta[-1] - theta[0]))
 
 
 def _followed(own: Floats, others: Floats) -> Floats:
-    """Return angles (n,) of which the cells are most of the way between their `own` and those of `others`.
+    """Return angles (n,) whose cells are means of those of `own` and `others`, with weight `_FOLLOWING`.
 
-    Last cells are their own, and from there on cells change by `WIDEST` at most.
+    The last cell is that of `own`, and cells away from it change by a factor of at most `WIDEST` each.
     """
     mine, wanted = (log(np.diff(each)[::-1]) for each in (own, others))
     cone = log(np.float64(WIDEST)) * np.arange(len(mine))

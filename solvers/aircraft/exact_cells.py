@@ -9,18 +9,19 @@ from meshonet.geometry.elementary import exp, log
 from meshonet.solvers.aircraft.body_map import BodyMap
 
 _ROUNDS = 6
-"""Number of times that a place is scaled along its line."""
+"""Number of trial values of t."""
 _STILL = 1e-12
-"""Smallest relative change of a distance from which the power is computed."""
+"""Smallest relative change of a distance from which the exponent is estimated."""
 _INVERSES = 0.2, 5.0
-"""Range of the reciprocal of the power."""
+"""Range of the reciprocal of the exponent."""
 
 
 def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Floats:
     """Return the places (..., 3) on the lines from `wall` to `beside` (..., 3) at the distance `first`.
 
-    Near the wall the distance from it is a power of the fraction of the way. The exponent is 1 except at a
-    pointed nose or tail; it is computed from two fractions.
+    Near the wall, the distance is proportional to a power of the fraction t of the line from `wall` to
+    `beside`. The exponent (1 except at a pointed nose or tail) is estimated from the last two trial values of
+    t.
     """
     away, foot = beside - wall, space.points(wall)
     scale = inverse = np.ones(away.shape[:-1])

@@ -20,8 +20,8 @@ from meshonet.solvers.energy.walls import Walls, turned
 ALLOWED = np.radians(30.0)  # that a wall turns by within an edge
 BENT = 5.0  # weight of the squares of what it turns by beyond that, over the number of cells
 MANY = 1000  # cells: with more, what a tip cut off wins grows with their number, and so does that weight
-SPREAD = 6  # cells away whose areas count for that of a cell
-SPOILT = 0.1  # share of cells turned over from which on areas say nothing
+SPREAD = 6  # rounds of averaging of the areas of neighbouring cells
+SPOILT = 0.1  # fraction of folded cells above which the areas of cells are no guide
 
 SHARP = 320.0  # degrees: where the domain takes up more, angles are relieved
 WIDE = 160.0  # degrees of a single cell from which on they are
@@ -131,9 +131,10 @@ class Problem:
         )
 
     def _crossed(self) -> Indices:
-        """Return pairs (k, 2) of edges at irregular nodes inside, with one edge between them.
+        """Return pairs (k, 2) of edges at irregular inner nodes, with exactly one other edge between the two.
 
-        These are the edges that leave a side of a block to both sides where the side ends in the node.
+        At a regular node such edges follow each other along a grid line. The growth of cells is limited from
+        one to the other here too.
         """
         mesh, parts = self.mesh, [np.empty((0, 2), dtype=np.intp)]
         irregular = mesh.irregular & ~mesh.wall_nodes & self.moves
@@ -146,7 +147,10 @@ class Problem:
         return np.ascontiguousarray(np.concatenate(parts))
 
     def _areas(self) -> Floats:
-        """Return the areas (m,) of cells; for untangling, if one is folded, target areas near these."""
+        """Return the areas (m,) of cells, or, if a cell is folded, their target areas for untangling.
+
+        The target is the larger of the area and the mean area of the cells around, or a smallest area.
+        """
         z, n = self.nodes[self.quads], len(self.nodes)
         across, other = z[:, 2] - z[:, 0], z[:, 3] - z[:, 1]
         signed = 0.5 * cross2(across, other)

@@ -4,9 +4,9 @@ A level is a grid line along xi, made by one step of the march.
 
 ::
 
-    o: the front is closed; the far field is a circle that encloses the area of the boundary's far field c:
-    the front runs from outlet to outlet, and its ends move along the outlet; cells beside the wake may become
-       higher downstream; the far field is half a circle with two straight sides, of the same area
+    o: the front is closed; the far field is a circle that encloses the area of the boundary's far field
+    c: the front runs from outlet to outlet, and its ends move along the outlet; cells beside the wake may
+       become higher downstream; the far field is half a circle with two straight sides, of the same area
 
 The last level has not exactly this shape; the march is to reach its radius with the least distance of the
 last level from the centre of the body.

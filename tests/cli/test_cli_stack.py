@@ -103,7 +103,7 @@ def test_changed_trailing_edges_are_told_and_y_plus_says_its_height(meshonet: Me
     done = meshonet("stack", str(wing), *SMALL[:4], "--y-plus", "90", "--reynolds", "1e5", "-o", "w.h5")
     assert done.code == 0, done.err
     assert "NACA 2412 is changed: its trailing edge" in done.err
-    assert "y+ 90 at Re 100000 on a chord of 2 is" in done.err
+    assert "y+ 90 at Re 100000 on a chord of 2 needs first cells of height" in done.err
 
 
 def test_z_of_a_duct_can_be_an_angle_and_that_of_a_wing_cannot(meshonet: Meshonet, wing: Path) -> None:

@@ -228,13 +228,14 @@ class Counts:
 
     Parameters
     ----------
-    coarse : (chords,) counts of the optimised layout, divided by `stride`.
-    stride, times : factors of the counts before and after the optimisation.
+    coarse : (chords,) counts of the first optimised layout: the final ones over `stride` and `times`.
+    stride : factor of these counts for the second optimisation; 1 if there is only one.
+    times : factor of the counts after the last optimisation, from the optimised to the fine layout.
     scale : factor of the sizes along walls.
     metric : target sizes.
     layers : (rows,) ratio of the layers of each row to the number that its thickness requires. It is known
-        after an optimisation and averaged geometrically with the previous value, because both depend on each
-        other.
+        after an optimisation. It is averaged geometrically with its previous value, because the thickness in
+        turn depends on the number of layers.
     """
 
     coarse: Indices

@@ -87,7 +87,8 @@ def march_surface(surface: Surface, settings: VolumeMarch, *, wing: bool = False
     grid = volume_grid(surface, volume.blocks, np.any(inside, axis=0))
     notes = [*surface.notes, *assumed]
     if tries > 1:
-        notes.append(f"{tries} marches were made: others left folded cells or worse ones")
+        others = "the others had folded cells or a smaller scaled Jacobian"
+        notes.append(f"the best of {tries} marches is used: {others}")
     return Solution(
         grid,
         "hyperbolic",

@@ -87,9 +87,10 @@ class VolumeMarch:
 
 
 class Smoothing(NamedTuple):
-    """Parameters of ``kernels/surfaces/march.h`` in its order, without the size of the surface.
+    """Parameters of ``kernels/surfaces/march.h`` in its order, without `size`, and two of the graph.
 
-    With `outer` up to 6 the levels around a sphere stay spheres; 16 makes better cells behind swept wings.
+    `outer` is the factor by which the explicit smoothing within levels is larger far from the wall. Up to 6
+    the levels around a sphere remain spheres; 16 makes better cells behind swept wings.
     """
 
     explicit: float = 0.3
@@ -109,11 +110,15 @@ class Smoothing(NamedTuple):
     near: float = 2.0
     relaxations: int = 30
     splay: float = 0.0
+    """Relative excess distance of ghost nodes at free edges (`meshonet.solvers.hyperbolic.volume.graph`)."""
     boost: float = 3.0
-    """Parameters at free edges and at irregular nodes (`meshonet.solvers.hyperbolic.volume.graph`)."""
+    """Additional smoothing at irregular nodes, as a fraction of the smoothing elsewhere."""
 
     def numbers(self, size: float) -> tuple[float, ...]:
-        """Return the parameters in the form of the kernels, for a surface of extent `size`."""
+        """Return the parameters in the form of the kernels, which have no `splay` and `boost`.
+
+        `size` is half the extent of the surface.
+        """
         return (*self[:5], size, *self[5:16])
 
 

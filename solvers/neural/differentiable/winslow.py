@@ -28,14 +28,14 @@ PRODUCTS = 40, 400  # with the matrix at the most: for a step, for gradients
 
 
 class Winslow:
-    """Winslow's equations as `implicit.Equations`; they depend on no number of a member."""
+    """Winslow's equations as `implicit.Equations`; they are the same for all members of a batch."""
 
     def most(self, nodes: Tensor) -> int:
         """Return the number of members to solve at once; on a CPU, their Krylov space fits the cache."""
         return len(nodes) if nodes.is_cuda else MOST // nodes[0].numel()
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions, and zeros."""
+        """Return the solutions (batch, 2, ni, nj), and zeros (batch,): members have equal equations."""
         check_finite(nodes)
         return nested(nodes), nodes.new_zeros(len(nodes))
 
