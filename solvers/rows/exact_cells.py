@@ -9,7 +9,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, norms
 
 _ROUNDS = 60
-"""Rounds in which first cells of nodes next to two walls are made exact at most."""
+"""Largest number of rounds in which first cells of nodes next to two walls are made exact."""
 _CLOSE = 1e-13
 
 
@@ -19,8 +19,8 @@ def exact_in_corners(
 ) -> Floats:  # fmt: skip
     """Return nodes (..., 3) moved so that lines to them from two nodes are `sizes` long.
 
-    In each round a node moves along both lines, by what is missing of both lengths if the lines stay
-    straight.
+    In each round a node moves along both lines, as far as would make both lengths exact if the map to space
+    were linear.
 
     Parameters
     ----------

@@ -22,18 +22,18 @@ from meshonet.solvers.rows.span_lines import SpanLines
 from meshonet.solvers.rows.zones import Zone
 
 LEAN = 1.5
-"""Tangent of the angle from the normal of the blade by which first cells lean there at most.
+"""Tangent of the largest angle between first cells and the normal of the blade next to narrow gaps.
 
 OpenFOAM's skewness of a narrow face is this over 0.4, and is to be less than 4.
 """
 NARROW = 0.4
 """Cells along the span next to a gap, in first cells of the blade, below which layers rise."""
 _MOST = 0.12
-"""Of the width of a gap, by which nodes move at most."""
+"""Largest move of nodes, as a fraction of the width of the gap."""
 _DEEP, _PART = 2.0, 0.25
-"""Widths of the gap from it, and largest part of the blade's span, in which nodes move."""
+"""Nodes move up to this many widths of the gap from the end of the blade, at most this part of its span."""
 _STEP = 1e-5
-"""Differences of places around the blade and of heights, for its tangents."""
+"""Steps of u and of the height from which tangents of the blade are computed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +149,8 @@ def _at_end(row: Row, end: float, up: float, around: SpanLines, lines: SpanLines
 def _moves(row: Row, walls: Floats, first_nodes: Floats) -> tuple[Floats, Floats]:
     """Return lengths (k,) of a unit of height along the blade, and moves (k, 3) for cells to lean little.
 
-    Lines off the blade lean by their part along it. A move adds to it some of a line along the span.
+    A line off the blade leans by its component in the tangent plane of the blade. The move, along the span,
+    limits this component to `LEAN` times the normal one, as far as it can.
     """
     wall, inside, before, after = row.channel.in_space(walls)
     off, along = row.channel.in_space(first_nodes) - wall, wall - inside

@@ -7,8 +7,8 @@
           -> (if it is folded: only a part of the correction) -> splines -> grid with all nodes of the edges
 
 If the network imitates Winslow's grids, its grid is first refined to at most 65 x 65 nodes, and a few Picard
-steps reduce the residual. The last step is
-`meshonet.solvers.algebraic.resample.quad`, as in `meshonet.solvers.pipeline.coarse`.
+steps reduce the residual. The last step is `meshonet.solvers.algebraic.resample.quad`, as in
+`meshonet.solvers.pipeline.coarse`.
 """
 
 from __future__ import annotations
