@@ -165,3 +165,13 @@ def first_within(steps: tuple[int, ...], most: float) -> int:
         if step <= most:
             return step
     return steps[-1]
+
+
+def nodes_beside(cells: int, every: int) -> str:
+    """Return the numbers of nodes next to `cells` whose numbers of cells are multiples of `every`, in words.
+
+    >>> nodes_beside(49, 4), nodes_beside(3, 4)
+    ('49 or 53', '5')
+    """
+    less = cells // every * every + 1
+    return f"{less} or {less + every}" if less > 1 else f"{less + every}"

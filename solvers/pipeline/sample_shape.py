@@ -60,7 +60,8 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
         k = 2**request.refine
         _check_refined(sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ, request.refine)
         return _behind_base(shape, _times(sampling, k) if k > 1 else sampling, request)
-    boundary = edges_of(shape, sampling)
+    # nodes on a base are those of the refined grid
+    boundary = edges_of(shape, replace(sampling, base_nodes=None) if request.refine else sampling)
     if request.at_walls and boundary.topology == "quad" and not isinstance(shape, Boundary):
         boundary = _along_walls(boundary, shape, sampling, request)
     if request.refine:

@@ -75,6 +75,26 @@ def test_so_many_nodes_as_are_asked_for_are_on_the_base() -> None:
         made(blunt(0.08), base_nodes=11)
 
 
+def test_a_base_of_few_nodes_is_noted_with_its_growth_and_a_number_that_keeps_the_default() -> None:
+    def note(nodes: int) -> str:
+        result = made(blunt(0.08), growth=None, base_nodes=nodes)
+        return next((each for each in result.notes if "nodes on the base" in each), "")
+
+    few = made(blunt(0.08), growth=None, base_nodes=41)
+    told = re.search(r"41 nodes on the base, .* grow by (\S+) from .*; {base_nodes} (\d+) or more", note(41))
+    assert told is not None
+    steps = np.hypot(*np.diff(few.grid.blocks[1].nodes[0], axis=0).T)
+    assert float(told[1]) == pytest.approx((steps[1:20] / steps[:19]).max(), rel=0.01)
+    assert note(int(told[2])) == ""
+
+
+@pytest.mark.parametrize(("topology", "near"), [("c", "49 or 53"), ("o", "49 or 57")])
+def test_numbers_of_nodes_on_a_base_that_can_be_coarsened_are_named(topology: str, near: str) -> None:
+    sampling = Sampling(201, 60, topology, base_nodes=50)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=f"a base of 50 nodes .*; use {near}$"):
+        make_grid(blunt(0.08), GridRequest(sampling=sampling, first_cell=1e-4, refine=2))
+
+
 def test_too_few_nodes_are_refused_with_a_number_that_suffices() -> None:
     with pytest.raises(InputError, match="leave too few for the wall; use at least") as told:
         made(blunt(0.08), ni=101)

@@ -25,11 +25,19 @@ from meshonet.geometry.arrays import Floats, along_and_across
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import expm1
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import Advice
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.wall_plan import arcs_to_corners
 from meshonet.geometry.shapes.wake import c_far_field, growing, rise, wake_axis
 from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth
-from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, MULTIPLES, Sampling, first_within
+from meshonet.geometry.spacing.sampling import (
+    DEFAULT_NI,
+    DEFAULT_NJ,
+    MULTIPLES,
+    Sampling,
+    first_within,
+    nodes_beside,
+)
 from meshonet.kernels._native import layer_steps
 
 if TYPE_CHECKING:
@@ -89,7 +97,7 @@ def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float |
     points = body.curve.points
     corners = points[1], points[-1]
     steps = sampling.corner_steps((sampling.ni or DEFAULT_NI + 1) - 1)
-    base = _base(corners, first, ratio, sampling.base_nodes, steps, growth)
+    base, grown = _base(corners, first, ratio, sampling.base_nodes, steps, growth)
     length = (sampling.wake or sampling.radius) * body.chord
     cells = _wake_cells(sampling, first, length, ratio, steps, growth)
     refined = sampling.refined
@@ -116,7 +124,7 @@ def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float |
         raise InputError("the wake does not reach the outlet inside the far field", "use a larger far field")
     north = c_far_field(len(wall) - 1, cells, centre, radius, axis, float(behind))
     nj = sampling.nj or DEFAULT_NJ
-    notes = body.outline_notes
+    notes = (*body.outline_notes, *grown)
     return BaseWake(
         wall, base, lower, upper, north, nj, body.curve, body.name, body.unit, notes, first, turned
     )
@@ -147,30 +155,32 @@ def _base(
     nodes: int | None,
     every: tuple[int, ...],
     growth: float | None,
-) -> Floats:
-    """Return the nodes (m, 2) of the base from its lower corner; cells grow from `first` at both corners."""
+) -> tuple[Floats, tuple[str, ...]]:
+    """Return the nodes (m, 2) of the base from its lower corner; cells grow from `first` at both corners.
+
+    With them is a note if the given number of `nodes` makes cells grow by more than `GROWTH`.
+    """
     a, b = corners
     width = float(np.hypot(*(b - a)))
     fewest = _fewest(width, first, ratio)
-    cells = fewest
+    notes: tuple[str, ...] = ()
+    cells = _whole(fewest, every) if nodes is None else nodes - 1
+    if cells % every[-1]:
+        problem = f"a base of {nodes} nodes has {cells} cells, and {{refine}} needs a multiple of {every[-1]}"
+        raise InputError(problem, f"use {nodes_beside(cells, every[-1])}", parameter="base_nodes")
     if nodes is not None:
-        cells = nodes - 1
-        if cells % every[-1]:
-            problem = (
-                f"a base of {nodes} nodes has {cells} cells, and {{refine}} needs a multiple of {every[-1]}"
-            )
-            near = _whole(cells, every) + 1
-            raise InputError(problem, f"use {near}", parameter="base_nodes")
-        needed = layer_steps(np.empty(cells), width, min(first, width / cells), min(first, width / cells), 1)
+        end = min(first, width / cells)
+        needed = layer_steps(np.empty(cells), width, end, end, 1)
+        problem = f"{nodes} nodes on the base, {width:.3g} wide, grow by {needed:.3g} from first cells of"
+        least = _whole(fewest, every[-1:]) + 1
         if needed > (growth or LARGEST):
-            problem = f"{nodes} nodes on the base, {width:.3g} wide, grow by {needed:.3g} from first cells of"
-            raise InputError(f"{problem} {first:.3g}", f"use {fewest + 1} or more", parameter="base_nodes")
-    else:
-        cells = _whole(cells, every)
+            raise InputError(f"{problem} {first:.3g}", f"use {least} or more", parameter="base_nodes")
+        if needed > (growth or GROWTH):
+            notes = (Advice(f"{problem} {first:.3g}; {{base_nodes}} {least} or more keep to {GROWTH:g}"),)
     t = end_fractions(np.array([min(first / width, 1.0 / cells)]), cells)[0]
     out = (1.0 - t)[:, None] * a + t[:, None] * b
     out[0], out[-1] = a, b
-    return np.asarray(out)
+    return np.asarray(out), notes
 
 
 def _fewest(width: float, first: float, ratio: float) -> int:

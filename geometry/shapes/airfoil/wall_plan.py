@@ -23,7 +23,7 @@ from meshonet.geometry.elementary import geomspace
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.laws import LAWS
-from meshonet.geometry.spacing.sampling import Sampling, first_within
+from meshonet.geometry.spacing.sampling import Sampling, first_within, nodes_beside
 
 if TYPE_CHECKING:
     from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -128,9 +128,7 @@ def half_of_base(cells: int, nodes: int, sampling: Sampling) -> int:
     """
     base = nodes - 1
     if base % (2 * sampling.refined):
-        every = 2 * sampling.refined
-        less = base // every * every + 1
-        near = f"{less} or {less + every}" if less > 1 else f"{less + every}"
+        near = nodes_beside(base, 2 * sampling.refined)
         problem = f"a base of {base + 1} nodes has none in its middle, where an O grid begins"
         if base % 2 == 0:
             halves = f"each half of a base of {base + 1} nodes has {base // 2} cells"
