@@ -13,6 +13,7 @@ import numpy as np
 
 from meshonet.formats.format import size_of, size_remedy
 from meshonet.formats.hdf5.file import created
+from meshonet.formats.hdf5.names import UniqueNames
 from meshonet.formats.mesh.metadata import connections_text, plain
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
@@ -48,6 +49,7 @@ class Writer:
         self._bytes = 0
         self._count = 0
         self._first: tuple[str, ...] = ()
+        self._names = UniqueNames()
         self._common: dict[str, Any] = {}  # what the provenances of all grids say
 
     def append(self, sample: Boundary | Grid) -> None:
@@ -69,7 +71,8 @@ class Writer:
             if values.shape != shape:
                 problem = f"{name} of sample {self._count} has shape {values.shape}"
                 raise InputError(problem, f"the first has {shape}")
-        texts = {"names": sample.name, "titles": sample.origin.title, "split": sample.origin.split}
+        name = self._names.add(sample.name)
+        texts = {"names": name, "titles": sample.origin.title, "split": sample.origin.split}
         rows = [[p.name, p.side, p.start, p.stop, p.block, p.across, p.kind] for p in sample.patches]
         texts["parts"] = json.dumps([row if _is_of_blocks(sample) else row[:4] for row in rows])
         if isinstance(sample, Grid) and sample.provenance:

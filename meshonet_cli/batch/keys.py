@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from meshonet.formats.hdf5.names import UniqueNames
 from meshonet.formats.inputs import is_dataset
 from meshonet.formats.registry import is_designation
 from meshonet.geometry.blocks.boundary import Boundary
@@ -17,7 +18,7 @@ class Keys:
     """The keys of the samples that a dataset, or a part of one, has so far."""
 
     def __init__(self) -> None:
-        self._taken: set[str] = set()
+        self._names = UniqueNames()
 
     def named(self, item: Item[Any], what: Any) -> Any:
         """Return the grid or boundary `what` with its key as name.
@@ -26,12 +27,7 @@ class Keys:
         """
         if not isinstance(what, Grid | Boundary):
             return what
-        wanted = item.stem if _of_file(item) else what.name
-        key, again = wanted, 1
-        while wanted and key in self._taken:
-            again += 1
-            key = f"{wanted}-{again}"
-        self._taken.add(key)
+        key = self._names.add(item.stem if _of_file(item) else what.name)
         if key == what.name:
             return what
         return replace(what, name=key, origin=replace(what.origin, title=what.origin.title or what.name))

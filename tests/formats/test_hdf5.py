@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, memory, ring
 
+import meshonet
 from meshonet.formats.hdf5.check import Checked, opened
 from meshonet.formats.hdf5.read import read_grids, read_shapes
 from meshonet.formats.hdf5.write import write_boundaries, write_grids, writing
@@ -150,6 +151,15 @@ def test_parameters_and_split_go_with_the_samples(tmp_path: Path) -> None:
     assert [boundary.origin for boundary in back] == [boundary.origin for boundary in written]
     with h5py.File(tmp_path / "b.h5") as file:
         assert list(file["parameters"].attrs["names"]) == ["height", "width"]
+
+
+def test_samples_of_one_name_are_numbered_once(tmp_path: Path) -> None:
+    grid = meshonet.tfi("naca:2412", res=(21, 11))
+    meshonet.write([grid, grid, replace(grid, name="NACA 2412-2"), grid], tmp_path / "g.h5")
+    again = list(meshonet.read_all(tmp_path / "g.h5"))
+    assert [one.name for one in again] == ["NACA 2412", "NACA 2412-2", "NACA 2412-2-2", "NACA 2412-3"]
+    meshonet.write(again, tmp_path / "again.h5")
+    assert [one.name for one in meshonet.read_all(tmp_path / "again.h5")] == [one.name for one in again]
 
 
 def test_a_dataset_without_parameters_has_none(tmp_path: Path) -> None:

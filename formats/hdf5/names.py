@@ -1,0 +1,23 @@
+"""Names of the samples of a dataset, each once."""
+
+
+class UniqueNames:
+    """The names that the samples of a dataset, or of a part of one, have so far.
+
+    >>> names = UniqueNames()
+    >>> [names.add(name) for name in ("tip", "root", "tip", "", "", "tip")]
+    ['tip', 'root', 'tip-2', '', '', 'tip-3']
+    """
+
+    def __init__(self) -> None:
+        self._last: dict[str, int] = {}  # number of the last sample of each name
+
+    def add(self, name: str) -> str:
+        """Return `name`, with a number at its end if there is a sample of this name; no name remains none."""
+        unique, number = name, self._last.get(name, 1)
+        while name and unique in self._last:
+            number += 1
+            unique = f"{name}-{number}"
+        self._last[name] = number
+        self._last.setdefault(unique, 1)
+        return unique
