@@ -114,7 +114,8 @@ def _geometries(text: str) -> list[tuple[str, BaseGeometry, str]]:
                 geometries.append((f"line {number}", from_wkt(line), name))
                 name = ""
             except ShapelyError as error:
-                raise InputError(f"is not WKT ({_short(error)})", _ASK, place=f"line {number}") from None
+                remedy = _ASK if "(" in line else f"{_ASK}; a name is a line '# {printable(line)[:40]}'"
+                raise InputError(f"is not WKT ({_short(error)})", remedy, place=f"line {number}") from None
     return geometries
 
 

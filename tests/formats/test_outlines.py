@@ -115,6 +115,10 @@ ASK = "give a POLYGON or a closed LINESTRING"
 OUTER = [[0, 0], [4, 0], [4, 2], [0, 0]]
 WKT = {
     "prose": ("hello", f"line 1: is not WKT .*; {ASK}"),
+    "name without #": (
+        "axis\nLINESTRING (0 0, 1 0)",
+        f"line 1: is not WKT .*; {ASK}; a name is a line '# axis'$",
+    ),
     "second line": (f"{HEXAGON}\nPOLYGON ((0 0, 1", "line 2: is not WKT"),
     "point": ("POINT (1 2)", f"has an empty Point or a Point, which is no outline; {ASK}"),
     "empty": ("POLYGON EMPTY", "has an empty Polygon"),
