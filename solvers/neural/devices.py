@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -87,7 +88,7 @@ def _grids(device: Device, operator: Operator, polish: Polish) -> Callable[[Sequ
     grids: Any
     quad = operator.topology == "quad"
     if isinstance(operator, StripOperator):
-        grids = AirfoilGrids(operator, _steps(polish), device)
+        grids = partial(AirfoilGrids(operator, _steps(polish), device), failed="nan")
     elif polish not in ("auto", "off", 0):
         raise InputError("steps of descent are not taken on a device", "leave {polish} or {device} out")
     else:
@@ -111,15 +112,6 @@ def _steps(polish: Polish) -> int:
 def _nodes(
     grids: Callable[[Sequence[Boundary]], Tensor], boundaries: Sequence[Boundary], *, lifted: bool
 ) -> list[Floats | None]:
-    """Return the nodes of each boundary; None for one without a conformal lift.
-
-    One such boundary makes its whole batch fail; then each boundary is computed alone.
-    """
-    try:
-        return list(grids(boundaries).cpu().numpy())
-    except InputError:
-        if not lifted:
-            raise
-    if len(boundaries) == 1:
-        return [None]
-    return [_nodes(grids, [boundary], lifted=True)[0] for boundary in boundaries]
+    """Return the nodes of each boundary; if they are `lifted`, None for one without a conformal lift."""
+    nodes = grids(boundaries).cpu().numpy()
+    return [None if lifted and np.isnan(each).any() else each for each in nodes]

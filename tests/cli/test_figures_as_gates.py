@@ -17,7 +17,8 @@ PAGE = Path(__file__).parents[2] / "docs" / "reference" / "quality.md"
 @pytest.fixture
 def c_vts(meshonet: Meshonet) -> Path:
     """A C grid around an airfoil, with a box ratio beyond the 1000 of checkMesh."""
-    words = ("--topology", "c", "--te", "wedge", "--res", "121x61", "--first-cell", "1e-5", "--growth", "1.3")
+    words = ("--topology", "c", "--te", "wedge", "--res", "121x71", "--first-cell", "1e-5", "--growth", "1.3")
+    words = (*words, "--far-field", "200")
     assert meshonet("infer", "naca:2412", *words, "-o", "c.vts", "-q").code == 0
     return Path("c.vts")
 

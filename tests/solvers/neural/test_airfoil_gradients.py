@@ -9,7 +9,7 @@ import pytest
 from inferred import infer
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import SolverError
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.sampling import Sampling
@@ -133,5 +133,5 @@ def test_gradients_of_a_symmetric_section(polish: int) -> None:
 def test_a_body_that_cannot_be_lifted_is_refused() -> None:
     angle = -2.0 * np.pi * np.arange(8) / 7
     ring = torch.tensor(np.stack([np.cos(angle), np.sin(angle)], 1)[None])
-    with pytest.raises(InputError, match="the wall has 7 nodes"):
+    with pytest.raises(SolverError, match="the wall has 7 nodes"):
         AirfoilGrids("base")(ring, 5.0 * ring, 10)
