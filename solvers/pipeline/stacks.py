@@ -24,6 +24,10 @@ from meshonet.solvers.stages import stage
 if TYPE_CHECKING:
     from meshonet.solvers.hyperbolic.volume.settings import VolumeMarch
 
+_NEAR = 0.1  # deviation from the cells asked for, as a fraction, that is neither corrected nor noted
+    0.1  # deviation from the number of cells asked for, as a fraction, that is neither corrected nor noted
+)
+_TRIES = 3  # most wings that are made to come near to it
 _REMEDY = "use more nodes {around}, a larger {first_cell} or a higher {base}"  # where cells fold
 
 
@@ -49,16 +53,45 @@ def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
     request = request or StackRequest()
     seconds: dict[str, float] = {}
     with limited_to(request.threads):
-        make = _wing if stack.kind == "wing" else _loft
         counted, notes = _counted(stack, request)
-        solution = make(stack, counted, seconds)
-        if request.cells is not None and stack.kind == "wing":
-            rows = solution.grid.blocks[0].counts[2] - 1
-            again, notes = with_counts(stack, request, request.cells, rows)
-            if again != counted:  # lines that diverge have more layers than was known beforehand
-                solution = make(stack, again, seconds)
+        if stack.kind != "wing":
+            solution = _loft(stack, counted, seconds)
+        elif request.cells is None:
+            solution = _wing(stack, counted, seconds)
+        else:
+            solution, notes = _wing_of(request.cells, stack, request, counted, seconds)
         solution = replace(solution, notes=(*solution.notes, *notes))
         return judged(solution, seconds, request, remedy=_REMEDY)
+
+
+def _wing_of(
+    cells: int, stack: Stack, request: StackRequest, counted: StackRequest, seconds: dict[str, float]
+) -> tuple[Solution, tuple[str, ...]]:
+    """Return the volume around a wing that is nearest to `cells` cells, and notes; `counted` is tried first.
+
+    Lines that diverge have more layers than is known beforehand, and how many depends on the node counts.
+    """
+    tried = [_wing(stack, counted, seconds)]
+    rows = _rows(tried[0])
+    while True:
+        again, notes = with_counts(stack, request, cells, rows)
+        made = min(tried, key=lambda each: abs(_cells(each) - cells))
+        far = abs(_cells(made) - cells) > _NEAR * cells
+        if again == counted or len(tried) == _TRIES or (len(tried) > 1 and not far):
+            break
+        tried.append(_wing(stack, again, seconds))
+        counted, rows = again, (rows + _rows(tried[-1])) // 2
+    if far and not notes:
+        notes = (f"{_cells(made)} cells, not {cells}: layers of cells change with the nodes on the wing",)
+    return made, notes
+
+
+def _rows(solution: Solution) -> int:
+    return solution.grid.blocks[0].counts[2] - 1
+
+
+def _cells(solution: Solution) -> int:
+    return sum(math.prod(n - 1 for n in block.counts) for block in solution.grid.blocks)
 
 
 def _counted(stack: Stack, request: StackRequest) -> tuple[StackRequest, tuple[str, ...]]:

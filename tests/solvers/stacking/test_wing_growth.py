@@ -1,5 +1,7 @@
 """Cells of wings: growth along lines from the wall and across the sides of blocks, and spacings."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -106,3 +108,15 @@ def test_cells_far_behind_a_swept_wing_are_not_sheared_at_the_plane_of_symmetry(
     tip = Section(naca("2412"), 0.8, 1.8, x=1.3, y=0.3)
     made = make_stack(Stack((Section(naca("2412"), 1.0, 0.0), tip)), StackRequest(around=97, span=33))
     assert made.quality["scaled_jacobian"].min > 0.35
+
+
+def test_a_wing_whose_layers_change_with_its_nodes_has_about_the_cells_asked_for() -> None:
+    places = ((1.0, 0.0, 0.0), (0.93675, 1.4, 0.01581), (0.75993, 2.6, 0.06002), (0.47497, 3.52, 0.13126),
+              (0.14107, 3.96, 0.21473))  # fmt: skip
+    sections = [
+        Section(naca(name), chord, z, x=x)
+        for name, (chord, z, x) in zip(("2415", "2414", "2412", "2410", "2408"), places, strict=True)
+    ]
+    grid = make_stack(Stack(tuple(sections), between="smooth"), StackRequest(cells=150_000)).grid
+    made = sum(math.prod(n - 1 for n in block.counts) for block in grid.blocks)
+    assert made == pytest.approx(150_000, rel=0.1)
