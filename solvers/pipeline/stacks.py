@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from meshonet.solvers.hyperbolic.volume.settings import VolumeMarch
 
 _NEAR = 0.1  # deviation from the cells asked for, as a fraction, that is neither corrected nor noted
-    0.1  # deviation from the number of cells asked for, as a fraction, that is neither corrected nor noted
-)
 _TRIES = 3  # most wings that are made to come near to it
 _REMEDY = "use more nodes {around}, a larger {first_cell} or a higher {base}"  # where cells fold
 
