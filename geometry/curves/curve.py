@@ -27,7 +27,8 @@ class Curve:
     There are at least 2 `points` (n, 2), for a closed curve 3, in any unit of length; neighbours must differ.
     A closed curve may repeat its first point at the end. At `corners`, indices of points, the tangent may
     jump; if None, corners are detected (`meshonet.geometry.polygon.corners`). Intervals with a true value in
-    `straight` (intervals,) are straight.
+    `straight` (intervals,) are straight; where one is long and its neighbours are rounded corners, these are
+    tangent to it (`meshonet.geometry.polygon.straights`).
 
     Raises InputError: too few points; a point that is not finite or equals its neighbour; a corner out of
     range.
@@ -74,7 +75,12 @@ class Curve:
         ends = np.concatenate([self.points, self.points[:1]]) if closed else self.points
         chord = np.diff(ends, axis=0)
         h = np.hypot(chord[:, 0], chord[:, 1])[:, None]
-        start, stop = spline_slopes(self.points, closed=closed, corners=self.corner_index)
+        tangent = None
+        if closed and straight is not None and straight.any() and not straight.all():
+            from meshonet.geometry.polygon.straights import straight_intervals
+
+            tangent = straight & straight_intervals(self.points, self.corner_index)
+        start, stop = spline_slopes(self.points, closed=closed, corners=self.corner_index, tangent=tangent)
         first, last = h * start, h * stop
         if straight is not None:
             along = straight[:, None]
@@ -93,6 +99,12 @@ class Curve:
         self.length = float(self._table[-1])
         self.knots = read_only(self._table[::_STEPS][: len(self.points)].copy())
         self.corners = read_only(self.knots[self.corner_index])
+
+    def reversed(self) -> Curve:
+        """Return the closed curve in the other direction, from its last point."""
+        corners = np.sort(len(self.points) - 1 - self.corner_index)
+        straight = None if self.straight is None else np.roll(self.straight[::-1], -1)
+        return Curve(self.points[::-1], closed=True, corners=corners, straight=straight)
 
     def moved(self, shift: Floats) -> Curve:
         """Return the curve moved by `shift` (2,)."""

@@ -11,7 +11,7 @@ one at its end; those of neighbouring intervals differ only at corners.
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, distinct, rolled
+from meshonet.geometry.arrays import Bools, Floats, Indices, distinct, rolled
 from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import angle_between, turning
@@ -24,13 +24,18 @@ LONGEST = 2.0
 """Largest size of a slope: a longer one makes a loop or a cusp."""
 
 
-def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Floats, Floats]:
+def spline_slopes(
+    points: Floats, *, closed: bool, corners: Indices, tangent: Bools | None = None
+) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, 2) at the start and at the end of each interval.
 
     Between `corners`, indices of points (n, 2), the curve is the cubic spline with continuous tangent and
     curvature, parabolic in the intervals next to a corner; overshoots are then removed (`limited`). A closed
-    curve does not repeat its first point.
+    curve does not repeat its first point. Intervals of a closed curve for which `tangent` (n,) is true are
+    straight lines, and the splines beside them begin and end in their directions.
     """
+    if tangent is not None and tangent.any():
+        return _beside_lines(points, corners, tangent)
     n, shift = len(points), int(corners[0]) if closed and corners.size else 0
     ring = rolled(points, -shift)
     chord = np.diff(ring, axis=0, append=ring[:1]) if closed else np.diff(ring, axis=0)
@@ -43,6 +48,28 @@ def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Fl
         start, stop = open_slopes(chord, h, stops)
         start, stop = rolled(start, shift), rolled(stop, shift)
     return limited(points, start, stop, closed=closed, corners=corners)
+
+
+def _beside_lines(points: Floats, corners: Indices, tangent: Bools) -> tuple[Floats, Floats]:
+    """Return the slopes of a closed curve with straight intervals, as `spline_slopes`."""
+    n = len(points)
+    ends = distinct(np.concatenate([corners, np.flatnonzero(tangent | rolled(tangent, 1))]))
+    shift = int(ends[0])
+    chord = rolled(points, -1) - points
+    h = np.hypot(chord[:, 0], chord[:, 1])
+    line = chord / h[:, None]
+    smooth = np.ones(n, dtype=bool)
+    smooth[corners] = False
+    begins, stops = smooth & rolled(tangent, 1) & ~tangent, rolled(smooth & tangent, -1) & ~tangent
+    held = np.full((2, n, 2), np.nan)  # slopes at the start and at the end of intervals beside a line
+    held[0, begins], held[1, stops] = rolled(line, 1)[begins], rolled(line, -1)[stops]
+    start, stop = open_slopes(
+        rolled(chord, -shift), rolled(h, -shift), np.append(ends - shift, n), np.roll(held, -shift, axis=1)
+    )
+    start, stop = limited(points, rolled(start, shift), rolled(stop, shift), closed=True, corners=corners)
+    start[begins], stop[stops] = held[0, begins], held[1, stops]
+    start[tangent], stop[tangent] = line[tangent], line[tangent]
+    return start, stop
 
 
 def cubics(start: Floats, chord: Floats, first: Floats, last: Floats) -> Floats:
@@ -85,13 +112,16 @@ def checked_points(points: Floats, what: str, point: str, dimension: int, *, clo
     return nodes
 
 
-def open_slopes(chord: Floats, h: Floats, stops: Indices) -> tuple[Floats, Floats]:
+def open_slopes(
+    chord: Floats, h: Floats, stops: Indices, held: Floats | None = None
+) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, d) at the start and at the end of each interval of an open curve.
 
     There is a separate spline between each two neighbouring `stops`, indices of points that include the first
     and the last. `chord` (intervals, d) are the vectors between points and `h` (intervals,) their lengths.
     All splines are solved as one tridiagonal system: a stop has two unknowns, one for each side, and their
-    rows are not coupled. The first and the last interval of each spline is a parabola, m_0 + m_1 = 2 delta_0.
+    rows are not coupled. The first and the last interval of each spline is a parabola, m_0 + m_1 = 2 delta_0,
+    or has the slope `held` (2, intervals, d) at its start or end, where that is a number.
     """
     delta = chord / h[:, None]
     doubled = np.zeros(len(h) + 1, dtype=np.intp)
@@ -104,6 +134,10 @@ def open_slopes(chord: Floats, h: Floats, stops: Indices) -> tuple[Floats, Float
     upper[begin], lower[end] = np.where(alone, 0.0, 1.0), np.where(alone, 0.0, 1.0)
     right[begin] = np.where(alone, 1.0, 2.0)[:, None] * delta[stops[:-1]]
     right[end] = np.where(alone, 1.0, 2.0)[:, None] * delta[stops[1:] - 1]
+    if held is not None:
+        for slope, row, off in ((held[0, stops[:-1]], begin, upper), (held[1, stops[1:] - 1], end, lower)):
+            given = np.isfinite(slope[:, 0])
+            off[row[given]], right[row[given]] = 0.0, slope[given]
     smooth = np.ones(len(h) + 1, dtype=bool)
     smooth[stops] = False
     k = np.flatnonzero(smooth)

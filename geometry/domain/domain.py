@@ -10,11 +10,14 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Indices, extent_of
 from meshonet.geometry.blocks.patches import may_be_wall
 from meshonet.geometry.cached import cached_property
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.domain.ring import ring_loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
+
+_PARTS = np.linspace(0.0, 1.0, 8, endpoint=False)  # of an interval of a curve, to measure its area
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +103,11 @@ class Domain:
         """Area between the polygons through the points of the loops."""
         return float(sum(polygon_area(loop.curve.points) for loop in self.loops))
 
+    @property
+    def curved_area(self) -> float:
+        """Area between the loops themselves, of which smooth ones leave the lines between their points."""
+        return float(sum(polygon_area(_drawn(loop.curve)) for loop in self.loops))
+
     @cached_property
     def lengths(self) -> Floats:
         """(loops,) arc lengths of the loops."""
@@ -139,3 +147,8 @@ def _named(polygons: Sequence[Floats], names: Sequence[str | Sequence[str]]) -> 
         ring_loop(points, hole=number > 0, names=own)
         for number, (points, own) in enumerate(zip(polygons, called, strict=True))
     )
+
+
+def _drawn(curve: Curve) -> Floats:
+    polygon = curve.straight is not None and bool(curve.straight.all())
+    return curve.points if polygon else curve.polyline(_PARTS)

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, Topology, extent_of
+from meshonet.geometry.arrays import Floats, Indices, Topology, distinct, extent_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import turns_sharply
@@ -22,6 +22,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import find_corners, turning
 from meshonet.geometry.polygon.self_intersection import check_outline
+from meshonet.geometry.polygon.straights import find_kinks, straight_intervals
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.spacing.along_curve import stretch_arcs
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
@@ -55,10 +56,8 @@ class Outline:
     ) -> None:
         self.name, self.corners = name, corners
         check_extent(extent_of(points) if len(points) else 0.0)
-        self.curve = Curve(points, closed=True)
+        self.curve = _with_sides(Curve(points, closed=True), corners or ())
         p = self.curve.points
-        if corners is not None:
-            self.curve = _with_sides(self.curve, corners)
         area, extent = polygon_area(p), extent_of(p)
         if not _on_a_line(p, extent):  # such points run back on themselves, a less helpful message
             check_outline(p, places)
@@ -138,7 +137,7 @@ class Outline:
             edges.append(edge)
         south, east, north, west = edges
         sides = south, north[::-1], west[::-1], east
-        return Boundary(*sides, topology="quad", name=self.name, sampled=True, notes=_departure_note(curve))
+        return Boundary(*sides, topology="quad", name=self.name, sampled=True, notes=departure_note(curve))
 
     def _ordered_corners(self, chosen: tuple[int, int, int, int]) -> tuple[int, ...]:
         """Return the given corners, counter-clockwise from the first."""
@@ -196,19 +195,24 @@ class Outline:
 
     def clockwise(self) -> Curve:
         """Return the curve clockwise from its rightmost point, or the middle of a straight right side."""
-        order = np.arange(len(self.curve.points))[:: -1 if self._left else 1]
-        p, corner = self.curve.points[order], np.isin(order, self.curve.corner_index)
+        curve = self.curve.reversed() if self._left else self.curve
+        p, n = curve.points, len(curve.points)
+        corner = np.isin(np.arange(n), curve.corner_index)
+        straight = np.zeros(n, dtype=bool) if curve.straight is None else curve.straight
         right = p[:, 0] >= p[:, 0].max() - 1e-9 * np.ptp(p[:, 0])
         start = int(np.flatnonzero(right & ~np.roll(right, 1))[0]) if not right.all() else 0
-        p, corner, right = np.roll(p, -start, axis=0), np.roll(corner, -start), np.roll(right, -start)
+        p, right = np.roll(p, -start, axis=0), np.roll(right, -start)
+        corner, straight = np.roll(corner, -start), np.roll(straight, -start)
         if right[1]:  # from the topmost point of the right side down to its last
             last = int(np.argmin(right)) - 1
             middle = 0.5 * (p[0] + p[last])
             inside = int(np.searchsorted(-p[: last + 1, 1], -middle[1]))
             if p[inside, 1] != middle[1]:
                 p, corner = np.insert(p, inside, middle, axis=0), np.insert(corner, inside, False)
-            p, corner = np.roll(p, -inside, axis=0), np.roll(corner, -inside)
-        return Curve(p, closed=True, corners=np.flatnonzero(corner))
+                straight = np.insert(straight, inside, straight[inside - 1])
+            p = np.roll(p, -inside, axis=0)
+            corner, straight = np.roll(corner, -inside), np.roll(straight, -inside)
+        return Curve(p, closed=True, corners=np.flatnonzero(corner), straight=straight)
 
     def _around(self, curve: Curve, ni: int, sampling: Sampling) -> tuple[Floats, tuple[str, ...]]:
         """Return the arc lengths (ni,) of the nodes around a body, and a note if the spacing was changed."""
@@ -233,16 +237,28 @@ def _on_a_line(points: Floats, extent: float) -> bool:
 
 
 def _with_sides(curve: Curve, ends: Sequence[int]) -> Curve:
-    """Return the closed curve with corners at the ends of its four sides, and where a side alone has one."""
-    n, order = len(curve.points), sorted(ends)
-    corners = [curve.corner_index, np.array(order)]
-    for first, last in zip(order, (*order[1:], order[0] + n), strict=True):
-        side = np.arange(first, last + 1) % n
-        corners.append(side[find_corners(curve.points[side])])
-    return Curve(curve.points, closed=True, corners=np.concatenate(corners))
+    """Return the closed curve as it was meant: with the corners, kinks and straight lines of its points.
+
+    It has corners at the ends of its four sides, if they are given, and where a side alone has one.
+    """
+    points, corners = curve.points, distinct(np.append(curve.corner_index, np.array(ends, dtype=np.intp)))
+    found = [corners]
+    found += [side[find_corners(points[side])] for side in _stretches(sorted(ends), len(points))]
+    corners = distinct(np.concatenate(found))
+    found = [corners]
+    found += [side[find_kinks(points[side])] for side in _stretches(corners.tolist(), len(points))]
+    corners = distinct(np.concatenate(found))
+    straight = straight_intervals(points, corners)
+    return Curve(points, closed=True, corners=corners, straight=straight if straight.any() else None)
 
 
-def _departure_note(curve: Curve) -> tuple[str, ...]:
+def _stretches(ends: Sequence[int], n: int) -> list[Indices]:
+    """Return the indices of the points of each stretch of a closed curve of `n` points between its `ends`."""
+    pairs = zip(ends, (*ends[1:], *(first + n for first in ends[:1])), strict=True)
+    return [np.arange(first, last + 1) % n for first, last in pairs]
+
+
+def departure_note(curve: Curve) -> tuple[str, ...]:
     """Return a note if the sides deviate visibly from the straight lines between their points."""
     off = curve.departure()
     if not off > _DEPARTURE * extent_of(curve.points):

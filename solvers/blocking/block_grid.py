@@ -125,9 +125,12 @@ def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, h
     return counts
 
 
-def cut_off(fine: Layout) -> float:
-    """Return the fraction of the area that cells along walls cut off; negative if they add area."""
-    (x, y), area = fine.mesh.nodes[fine.mesh.quads].transpose(2, 0, 1), fine.mesh.domain.area
+def cut_off(fine: Layout, area: float = 0.0) -> float:
+    """Return the fraction of an area that cells along walls cut off; negative if they add area.
+
+    The `area` is by default that between the polygons through the points of the domain.
+    """
+    (x, y), area = fine.mesh.nodes[fine.mesh.quads].transpose(2, 0, 1), area or fine.mesh.domain.area
     return 1.0 - 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum()) / area
 
 

@@ -83,7 +83,7 @@ def _at_walls(grid: Grid, domain: Domain, walls: tuple[str, ...], height: AtWall
 def _cut_off(fine: Layout) -> str:
     """Return a note if cells along walls cut off, or add, more than `CUT_OFF` of the area."""
     off = abs(cut_off(fine))
-    if off <= CUT_OFF:
+    if off <= CUT_OFF or abs(cut_off(fine, fine.mesh.domain.curved_area)) <= CUT_OFF:
         return ""
     return (
         f"cells along curved walls differ from the domain by {100 * off:.2g} % of its area: more cells help"

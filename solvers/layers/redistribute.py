@@ -19,6 +19,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.resample import patches_in_place
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.curves.wall_line import wall_line
 from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import on_corners
@@ -153,7 +154,7 @@ def _along_xi(nodes: Floats, boundary: Boundary, heights: Heights) -> Floats:
     index = np.arange(float(ni))
     maps = []
     for j, edge in ((0, boundary.south), (-1, boundary.north)):
-        curve = Curve(edge)
+        curve = wall_line(edge)
         ends = heights.west, heights.east
         arcs, _ = arcs_in_layers(curve, ni, *ends, heights)
         kinks = curve.corners[(curve.corners > arcs[1]) & (curve.corners < arcs[-2])]

@@ -18,6 +18,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.resample import patches_in_place
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.curves.wall_line import wall_line
 from meshonet.geometry.elementary import log, product, sin, tanh
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import on_corners
@@ -48,7 +49,7 @@ def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
     if boundary.around_body:
         problem = f"walls of topology {boundary.topology} cannot slide"
         raise InputError(problem, "slide those of channels", parameter="slide")
-    curves = Curve(boundary.south), Curve(boundary.north)
+    curves = wall_line(boundary.south), wall_line(boundary.north)
     knots = curves[0].knots, curves[1].knots
     m, n = (min(count, most) for count, most in zip((boundary.ni, boundary.nj), COUNTS, strict=True))
     if m < 5 or n < 5:

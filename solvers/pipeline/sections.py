@@ -19,7 +19,7 @@ from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.circle import Circle
 from meshonet.geometry.shapes.domain_shape import DomainShape, four_sided
-from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.outline import Outline, departure_note
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.first_cell import FirstCell
 from meshonet.solvers.layers.first_cells import Heights, cells_needed
@@ -110,9 +110,11 @@ def _inside(shape: Shape) -> Shape:
         return shape
     loop = _loop(shape.curve)
     domain = Domain((loop,), shape.name, shape.notes)
-    if isinstance(shape, Outline) and shape.topology == "quad" and four_sided(domain):
+    if isinstance(shape, Airfoil):
+        return DomainShape(domain)
+    if shape.topology == "quad" and four_sided(domain):
         return shape
-    return DomainShape(domain)
+    return DomainShape(domain).noted(*departure_note(loop.curve))
 
 
 def _four_walls(inside: Shape, request: GridRequest) -> GridRequest:
@@ -135,8 +137,7 @@ def _four_walls(inside: Shape, request: GridRequest) -> GridRequest:
 def _loop(curve: Curve) -> Loop:
     """Return the loop of a smooth curve, with the domain inside."""
     if polygon_area(curve.points) < 0:
-        points, last = curve.points[::-1], len(curve.points) - 1
-        curve = Curve(points, closed=True, corners=np.sort(last - curve.corner_index))
+        curve = curve.reversed()
     turn = turning(curve.points, closed=True)[curve.corner_index]
     return Loop(curve, tuple(int(k) for k in curve.corner_index[turns_sharply(turn)]), ("wall",))
 

@@ -198,3 +198,18 @@ def test_lines_leave_leaning_walls_of_a_channel_at_right_angles(
         np.testing.assert_allclose(np.hypot(*cell.T), 1e-4, rtol=1e-8)
         along = cell[1:-1] @ [np.cos(np.radians(angle)), np.sin(np.radians(angle))] / 1e-4
         assert np.degrees(np.abs(along)).max() < 1.0
+
+
+def test_a_venturi_has_the_same_walls_in_one_block_and_in_many(meshonet: Meshonet) -> None:
+    wall = np.array([[0, 0.25], [1, 0.25], [1.674, 0.125], [1.924, 0.125], [2.873, 0.25], [4.373, 0.25]])
+    Path("v.csv").write_text(
+        "# axis\n0 0\n4.373 0\n\n# wall\n" + "".join(f"{x} {y}\n" for x, y in wall.tolist())
+    )
+    for words, near in (("--res 201x21", 1e-12), ("--cells 3000", 0.05)):
+        assert meshonet("solve-pde", "v.csv", *words.split(), "--first-cell", "1e-3", "-o", "v.h5").code == 0
+        (grid,) = read_grids("v.h5")
+        blocks = getattr(grid, "blocks", None) or [grid]
+        nodes = np.concatenate([block.nodes.reshape(-1, block.nodes.shape[-1])[:, :2] for block in blocks])
+        above = nodes[:, 1] - np.interp(nodes[:, 0], *wall.T)
+        assert above.max() < 1e-9, words
+        assert max(np.abs(nodes - kink).max(axis=1).min() for kink in wall) < near

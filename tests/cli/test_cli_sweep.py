@@ -72,6 +72,29 @@ def test_a_closed_curve_is_filled_with_blocks_and_a_four_sided_one_with_one(mesh
     assert first == pytest.approx(np.full(first.shape, 0.004), rel=1e-6)
 
 
+def test_a_duct_with_rounded_corners_is_as_wide_as_its_outline(meshonet: Meshonet) -> None:
+    angle = np.linspace(0.0, 0.5 * np.pi, 25)
+    arc = 0.1 * np.exp(1j * angle)
+    rounded = np.concatenate(
+        [middle + arc * 1j**k for k, middle in enumerate((0.3 + 0.1j, -0.3 + 0.1j, -0.3 - 0.1j, 0.3 - 0.1j))]
+    )
+    np.savetxt("duct.csv", np.stack([rounded.real, rounded.imag], axis=1))
+    Path("straight.csv").write_text("0,0,0\n0,0,3\n")
+    words = ("straight.csv", "--up", "0,1,0", "--cells", "1000", "--planes", "3")
+    nodes = np.concatenate(
+        [block.nodes.reshape(-1, 3) for block in swept(meshonet, "duct.csv", *words).blocks]
+    )
+    np.testing.assert_allclose(np.ptp(nodes, axis=0), [0.8, 0.4, 3], rtol=1e-6)
+
+
+def test_a_section_says_how_far_its_smooth_curve_leaves_its_points(meshonet: Meshonet) -> None:
+    angle = np.linspace(0.0, 2.0 * np.pi, 14, endpoint=False)
+    np.savetxt("coarse.csv", np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    done = meshonet("sweep", "coarse.csv", "bend.toml", "--cells", "1000", "-o", "made.h5")
+    assert "the sides are smooth curves through the points, up to 0.025 away" in done.err
+    assert "more cells help" not in done.err
+
+
 @pytest.mark.parametrize(("words", "counts"), [("", (65, 53)), ("--res 81 --growth 1.15", (81, 65))])
 def test_growth_is_a_limit_in_four_sided_sections_too(
     meshonet: Meshonet, words: str, counts: tuple[int, int]

@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import shapely
@@ -38,6 +40,58 @@ def test_a_side_of_few_points_between_bends_is_straight():
     ramp = np.array([[0.0, 0], [4, 0], [8, -1], [12, -1], [12, 1], [0, 1]])
     b = Outline(ramp, corners=(0, 3, 4, 5)).boundary(Sampling(ni=121, nj=9))
     assert shapely.Polygon(b.outline()).area == pytest.approx(shapely.Polygon(ramp).area, rel=1e-12)
+
+
+ARC = np.linspace(0.0, np.pi / 2, 25)
+MIDDLES = ((30, 10), (-30, 10), (-30, -10), (30, -10))
+ROUNDED = np.concatenate([
+    np.array(middle) + 10 * np.stack([np.cos(ARC + k * np.pi / 2), np.sin(ARC + k * np.pi / 2)], axis=1)
+    for k, middle in enumerate(MIDDLES)
+])  # fmt: skip
+VENTURI = np.array([[0, 25], [100, 25], [167.4, 12.5], [192.4, 12.5], [287.3, 25], [437.3, 25]])
+
+
+def curve_of(outline: Outline) -> np.ndarray:
+    return outline.curve.polyline(np.linspace(0, 1, 16, endpoint=False))
+
+
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize("start", [0, 13, 24, 25])
+def test_lines_between_rounded_corners_are_straight_and_tangent_to_them(way, start):
+    outline = Outline(np.roll(ROUNDED, start, axis=0)[::way])
+    for curve in (outline.curve, outline.clockwise()):
+        drawn = curve.polyline(np.linspace(0, 1, 16, endpoint=False))
+        np.testing.assert_allclose(np.abs(drawn).max(axis=0), [40, 20], atol=3e-6)
+        away = np.hypot(*np.maximum(np.abs(drawn) - [30, 10], 0.0).T)
+        np.testing.assert_allclose(away, 10, atol=1e-5)  # the distance from a box inside
+        ways = [curve.tangent(curve.knots + side * 1e-9 * curve.length) for side in (-1, 1)]
+        np.testing.assert_allclose(ways[0], ways[1], atol=1e-6)
+
+
+def test_a_long_chord_of_a_curve_stays_curved():
+    turn = np.concatenate([np.linspace(0, 2, 40), [2.3], np.linspace(2.6, 6.2, 60)])
+    circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    np.testing.assert_allclose(np.hypot(*curve_of(Outline(circle)).T), 1.0, atol=2e-4)
+
+
+@pytest.mark.parametrize("spaced", [None, 2.5])
+def test_a_wall_of_straight_parts_keeps_their_kinks(spaced):
+    x = VENTURI[:, 0]
+    if spaced:
+        parts = [np.arange(a, b - spaced / 2, spaced) for a, b in pairwise(x)]
+        x = np.append(np.concatenate(parts), x[-1])
+    wall = np.stack([x, np.interp(x, *VENTURI.T)], axis=1)
+    ring = np.concatenate([[[0, 0], [437.3, 0]], wall[::-1]])
+    drawn = curve_of(Outline(ring, corners=(0, 1, 2, len(ring) - 1)))
+    upper = drawn[(drawn[:, 1] > 12) & (drawn[:, 0] > 0) & (drawn[:, 0] < 437.3)]
+    np.testing.assert_allclose(upper[:, 1], np.interp(upper[:, 0], *VENTURI.T), atol=1e-9)
+
+
+def test_a_wall_of_few_points_that_turns_slowly_is_smooth():
+    x = np.linspace(0, 2, 10)
+    ring = np.concatenate([[[2, 1], [0, 1]], np.stack([x, 0.1 * np.cos(np.pi * x)], axis=1)])
+    outline = Outline(ring, corners=(2, len(ring) - 1, 0, 1))
+    assert outline.curve.corner_index.tolist() == [0, 1, 2, len(ring) - 1]
 
 
 def test_asked_corners_start_at_the_south_west_one_and_go_on_counter_clockwise():
