@@ -7,9 +7,9 @@ from meshonet.solvers.neural.registry import described, shipped
 _USES = {
     "airfoil-o": "O grids around airfoils, conformal",
     "hole-o": "O grids around bodies with corners, variational",
-    "hole-winslow": "O grids around bodies with corners, by Winslow's equations",
+    "hole-winslow": "Winslow's O grids around bodies with corners",
     "quad-general": "four-sided domains, variational",
-    "quad-winslow": "four-sided domains, by Winslow's equations",
+    "quad-winslow": "Winslow's grids of four-sided domains",
 }
 _SPEEDS = {
     "airfoil-o": "10 ms at 800 x 800",
