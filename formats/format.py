@@ -172,8 +172,8 @@ def size_remedy(own: str, first: str) -> str:
     if "x3," in f"{own},{first},":
         return "use the same numbers of nodes"
     # a base makes two blocks of a C grid, with as many nodes on and behind it as it needs
-    given = "{base} T, {base_nodes}, {res} and {wake_nodes}"
-    bases = f"close bases of airfoils with {{te}} wedge, or give all of them one with {given}"
+    options = "{base} T, {base_nodes}, {res} and {wake_nodes}"
+    bases = f"close bases of airfoils with {{te}} wedge, or give all of them one with {options}"
     # variants of a domain that differ much may still have other counts inside
     domains = "; for domains try one {layout} with the {count} of every side"
     return bases if "c" in kinds else bases + domains

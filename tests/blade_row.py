@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.rows.row import Row
 
 BLADES = 23
@@ -66,3 +67,17 @@ def write_row(folder: Path, more: str = "", *, hub: np.ndarray = HUB) -> Path:
     for name, text in texts(more, hub=hub).items():
         (folder / name).write_text(text)
     return folder / "row.toml"
+
+
+def off_walls(grid: Grid, name: str) -> np.ndarray:
+    """Lengths of all edges that leave a wall for the inside."""
+    heights = []
+    for patch in grid.patches:
+        if patch.name == name:
+            axis, end = patch.place
+            rows = np.moveaxis(grid.blocks[patch.block].nodes, axis, 0)
+            rows = rows if end == 0 else rows[::-1]
+            away = np.linalg.norm(rows[1] - rows[0], axis=-1)
+            across = patch.across or (0, away.shape[1] - 1)
+            heights.append(away[patch.start : patch.stop + 1, across[0] : across[1] + 1].ravel())
+    return np.concatenate(heights)

@@ -13,6 +13,7 @@
        south (j = 0)
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import InitVar, dataclass
 from typing import Literal, TypeAlias
@@ -66,6 +67,11 @@ class Block:
     def counts(self) -> tuple[int, ...]:
         """Number of nodes along each direction."""
         return self.nodes.shape[:-1]
+
+    @property
+    def cells(self) -> int:
+        """Number of cells."""
+        return math.prod(count - 1 for count in self.counts)
 
     def face(self, side: Side) -> Floats:
         """Return a view of the nodes (n, d) or (n, m, d) of a side."""

@@ -136,8 +136,8 @@ def open_slopes(
     right[end] = np.where(alone, 1.0, 2.0)[:, None] * delta[stops[1:] - 1]
     if held is not None:
         for slope, row, off in ((held[0, stops[:-1]], begin, upper), (held[1, stops[1:] - 1], end, lower)):
-            given = np.isfinite(slope[:, 0])
-            off[row[given]], right[row[given]] = 0.0, slope[given]
+            known = np.isfinite(slope[:, 0])
+            off[row[known]], right[row[known]] = 0.0, slope[known]
     smooth = np.ones(len(h) + 1, dtype=bool)
     smooth[stops] = False
     k = np.flatnonzero(smooth)

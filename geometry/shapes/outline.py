@@ -9,7 +9,7 @@
       A ---- south ---> B         is a circle around the middle of its bounding box.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -242,14 +242,18 @@ def _with_sides(curve: Curve, ends: Sequence[int]) -> Curve:
     It has corners at the ends of its four sides, if they are given, and where a side alone has one.
     """
     points, corners = curve.points, distinct(np.append(curve.corner_index, np.array(ends, dtype=np.intp)))
-    found = [corners]
-    found += [side[find_corners(points[side])] for side in _stretches(sorted(ends), len(points))]
-    corners = distinct(np.concatenate(found))
-    found = [corners]
-    found += [side[find_kinks(points[side])] for side in _stretches(corners.tolist(), len(points))]
-    corners = distinct(np.concatenate(found))
+    corners = _with_those_within(find_corners, points, corners, sorted(ends))
+    corners = _with_those_within(find_kinks, points, corners, corners.tolist())
     straight = straight_intervals(points, corners)
     return Curve(points, closed=True, corners=corners, straight=straight if straight.any() else None)
+
+
+def _with_those_within(
+    search: Callable[[Floats], Indices], points: Floats, corners: Indices, ends: Sequence[int]
+) -> Indices:
+    """Return the corners, and the points that `search` returns for each stretch between `ends`."""
+    more = [side[search(points[side])] for side in _stretches(ends, len(points))]
+    return distinct(np.concatenate([corners, *more]))
 
 
 def _stretches(ends: Sequence[int], n: int) -> list[Indices]:

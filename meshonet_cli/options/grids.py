@@ -35,8 +35,8 @@ class GridOptions(RunOptions, GateOptions, FileOptions):
         for name in ("first_cell", "y_plus"):
             if more[name] is not None:
                 more[name] = at_walls(more[name], name)
-        given: dict[str, Any] = {}
+        chosen: dict[str, Any] = {}
         for name, value in settings.items():
             if value is not None:
-                given[name] = value
-        return GridRequest(sampling.placed(more), method, given, threads=self.threads, **more)
+                chosen[name] = value
+        return GridRequest(sampling.placed(more), method, chosen, threads=self.threads, **more)

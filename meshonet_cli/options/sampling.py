@@ -111,10 +111,10 @@ class SamplingOptions:
         from meshonet.geometry.spacing.sampling import Sampling
         from meshonet.solvers.pipeline.uses import counted
 
-        given = dict(vars(self))
-        res = given.pop("res")
-        given["corners"] = None if self.corners == "auto" else four_corners(self.corners)
-        return Sampling(**given, **counted(None if res is None else resolution(res), layers or {}))
+        fields = dict(vars(self))
+        res = fields.pop("res")
+        fields["corners"] = None if self.corners == "auto" else four_corners(self.corners)
+        return Sampling(**fields, **counted(None if res is None else resolution(res), layers or {}))
 # fmt: on
 
 

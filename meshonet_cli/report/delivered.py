@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -51,7 +50,7 @@ def _counts(what: Grid | Boundary) -> dict[str, int]:
     if what.topology != "blocks":
         return {"ni": what.ni, "nj": what.nj}
     blocks: tuple[Block, ...] = getattr(what, "blocks", ())
-    cells = sum(math.prod(count - 1 for count in block.counts) for block in blocks)
+    cells = sum(block.cells for block in blocks)
     return {"blocks": len(blocks), "cells": cells, "interfaces": len(what.connections)}
 
 

@@ -89,7 +89,7 @@ def _rows(solution: Solution) -> int:
 
 
 def _cells(solution: Solution) -> int:
-    return sum(math.prod(n - 1 for n in block.counts) for block in solution.grid.blocks)
+    return sum(block.cells for block in solution.grid.blocks)
 
 
 def _counted(stack: Stack, request: StackRequest) -> tuple[StackRequest, tuple[str, ...]]:

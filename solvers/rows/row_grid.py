@@ -172,7 +172,7 @@ def _with_inside(layout: Layout, inside: GapBlocks) -> Layout:
 
 def _other_cells(grid: Grid, wanted: int, fewest: int, growth: float) -> tuple[str, ...]:
     """Return a note if there are many more or fewer cells than the number that was given."""
-    cells = sum(math.prod(n - 1 for n in block.counts) for block in grid.blocks)
+    cells = sum(block.cells for block in grid.blocks)
     if abs(cells - wanted) <= _OTHER * wanted:
         return ()
     why = "numbers along the sides of blocks are whole"

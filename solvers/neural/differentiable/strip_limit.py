@@ -86,13 +86,13 @@ def _accelerated(near: Tensor, start: Tensor) -> tuple[Tensor, Tensor]:
 
 def _plain(levels: Tensor, start: Tensor, count: int) -> Tensor:
     """Return levels (batch, LEVELS, modes) after plain steps of the compiled code, as `_once`."""
-    back, found = 1.0 - across().smooth[:, None], []
+    back, stepped = 1.0 - across().smooth[:, None], []
     for c, first in zip(*(part.mT.cpu().numpy() for part in (levels, start)), strict=True):
         now = np.ascontiguousarray(c)
         for _ in range(count):
             now = strip.picard(now, 1)[0] + back * (first - now)
-        found.append(now.T)
-    return torch.from_numpy(np.stack(found)).to(start)
+        stepped.append(now.T)
+    return torch.from_numpy(np.stack(stepped)).to(start)
 
 
 def _pulled(start: Tensor, levels: Tensor, gradient: Tensor) -> tuple[Tensor]:

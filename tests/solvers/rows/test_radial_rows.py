@@ -4,6 +4,7 @@ import re
 from dataclasses import replace
 from functools import cache
 
+import blade_row
 import numpy as np
 import pytest
 import radial_rows
@@ -40,18 +41,6 @@ def nodes_of(grid: Grid, patch: str) -> np.ndarray:
     return np.concatenate([grid.at(each).reshape(-1, 3) for each in grid.patches if each.name == patch])
 
 
-def first_heights(grid: Grid, name: str) -> np.ndarray:
-    """Heights (n,) of first cells at a patch."""
-    heights = []
-    for patch in grid.patches:
-        if patch.name == name:
-            axis, end = patch.place
-            rows = np.moveaxis(grid.blocks[patch.block].nodes, axis, 0)
-            rows = rows if end == 0 else rows[::-1]
-            heights.append(np.linalg.norm(rows[1] - rows[0], axis=-1).ravel())
-    return np.concatenate(heights)
-
-
 def from_curve(points: np.ndarray, curve: np.ndarray) -> np.ndarray:
     """Distances (n,) of points x, y, z from the surface that a curve of x and r describes."""
     p = np.stack([points[:, 0], np.hypot(points[:, 1], points[:, 2])], axis=1)
@@ -84,7 +73,7 @@ def test_inlet_and_outlet_are_at_the_ends_of_the_curves(name: str) -> None:
 
 @pytest.mark.parametrize("name", ROWS)
 def test_first_cells_have_their_height_in_space_at_the_blade(name: str) -> None:
-    assert first_heights(made(name), "blade") == pytest.approx(FIRST * ROWS[name].chord, rel=1e-9)
+    assert blade_row.off_walls(made(name), "blade") == pytest.approx(FIRST * ROWS[name].chord, rel=1e-9)
 
 
 def test_first_cells_are_the_smallest_where_the_radius_is_small() -> None:
@@ -164,13 +153,13 @@ def test_checkmesh_takes_first_cells_next_to_a_narrow_gap_off_blades_that_lean_f
     assert skewness
     assert skewness.max < 4.0
     assert grid.quality().folded == 0
-    assert first_heights(grid, "blade") == pytest.approx(FIRST * row.chord, rel=1e-9)
+    assert blade_row.off_walls(grid, "blade") == pytest.approx(FIRST * row.chord, rel=1e-9)
 
 
 def test_first_cells_at_the_shroud_are_exact_where_the_channel_narrows() -> None:
     row = radial_rows.radial_row(108)
     grid = make_row(row, RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
-    assert first_heights(grid, "shroud") == pytest.approx(FIRST * row.chord, rel=1e-9)
+    assert blade_row.off_walls(grid, "shroud") == pytest.approx(FIRST * row.chord, rel=1e-9)
 
 
 def test_corners_of_a_flat_edge_are_nodes_at_all_heights() -> None:

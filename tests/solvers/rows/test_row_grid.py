@@ -26,20 +26,6 @@ def made(gap: str = "none", threads: int = 1) -> Grid:
     return make_row(blade_row.blade_row(*GAPS[gap]), request).grid
 
 
-def off_walls(grid: Grid, name: str) -> np.ndarray:
-    """Lengths of all edges that leave a wall for the inside."""
-    heights = []
-    for patch in grid.patches:
-        if patch.name == name:
-            axis, end = patch.place
-            rows = np.moveaxis(grid.blocks[patch.block].nodes, axis, 0)
-            rows = rows if end == 0 else rows[::-1]
-            away = np.linalg.norm(rows[1] - rows[0], axis=-1)
-            across = patch.across or (0, away.shape[1] - 1)
-            heights.append(away[patch.start : patch.stop + 1, across[0] : across[1] + 1].ravel())
-    return np.concatenate(heights)
-
-
 @pytest.mark.parametrize("gap", GAPS)
 def test_cells_are_valid_with_good_angles(gap: str) -> None:
     quality = made(gap).quality()
@@ -62,7 +48,7 @@ def test_first_cells_have_their_height_in_space_at_every_wall(gap: str) -> None:
     grid = made(gap)
     wanted = FIRST * blade_row.blade_row().chord
     for name in {patch.name for patch in grid.outer_patches()} - {"inlet", "outlet"}:
-        assert off_walls(grid, name) == pytest.approx(wanted, rel=1e-9), name
+        assert blade_row.off_walls(grid, name) == pytest.approx(wanted, rel=1e-9), name
 
 
 def test_the_second_periodic_side_is_the_first_turned_by_the_pitch() -> None:
@@ -107,7 +93,7 @@ def test_the_gap_has_rows_enough_and_narrow_ones_lower_first_cells_and_say_so() 
     result = make_row(
         blade_row.blade_row(0.005), RowRequest(first_cell=FIRST, cells=20_000, threads=1, allow_invalid=True)
     )
-    assert off_walls(result.grid, "tip") == pytest.approx(0.005 / 17, rel=1e-9)
+    assert blade_row.off_walls(result.grid, "tip") == pytest.approx(0.005 / 17, rel=1e-9)
     assert any("first cells at the walls of a gap are" in note for note in result.notes)
     tip = next(p for p in result.grid.patches if p.name == "tip")
     assert result.grid.blocks[tip.block].counts[2] >= 18
