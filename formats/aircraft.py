@@ -36,8 +36,6 @@
     [[wings.sections]]              # symmetric ones, upwards: airfoil, chord, y, x or sweep
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

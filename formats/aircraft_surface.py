@@ -1,7 +1,5 @@
 """Bodies and wings of aircraft that are patches of a surface file, such as Plot3D or CGNS."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The sections of a fin in a table of TOML: like those of a wing, but upwards along y."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 from pathlib import Path
 

@@ -16,8 +16,6 @@
 A path through points is a smooth curve; it is closed if its last point equals the first.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

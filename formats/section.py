@@ -1,7 +1,5 @@
 """Cross-sections for sweeping: closed curves, domains, layouts, and planar grids, which stay unchanged."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from meshonet.formats.registry import format_of, is_designation, read_grids, read_shapes

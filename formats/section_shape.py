@@ -1,7 +1,5 @@
 """The airfoil or closed curve of a section that a table of TOML describes."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from meshonet.formats.registry import is_designation, read_shapes

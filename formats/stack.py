@@ -27,8 +27,6 @@ With ``kind = "row"`` it is a row of blades (`meshonet.formats.rows.read`), with
 with wings (`meshonet.formats.aircraft`).
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from meshonet.formats.aircraft import read_aircraft

@@ -1,7 +1,5 @@
 """The sections of a wing, blade or duct in a table of TOML (see `meshonet.formats.stack`)."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

@@ -9,8 +9,6 @@ Functions take the arguments of NumPy's functions of the same name and return fl
 Complex numbers are left to the C library, which NumPy calls for each one.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Callable

@@ -4,8 +4,6 @@ The rounding of LAPACK and BLAS depends on the processor. These functions use su
 square roots in a fixed order, for matrices of a few rows, stacks of them, and systems of a few hundred rows.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import combinations
 from typing import Any

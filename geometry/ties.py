@@ -4,8 +4,6 @@ Symmetric shapes have many equally good candidates. Which of two is better by ro
 shape is turned or moved, or on a library; their order does not.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from typing import TypeVar
 

@@ -1,7 +1,5 @@
 """Requests from keyword parameters, and errors for parameters that do not apply to a kind of grid."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any, TypeVar

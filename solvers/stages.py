@@ -3,8 +3,6 @@
 Without watchers this costs no time.
 """
 
-from __future__ import annotations
-
 import contextlib
 import time
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Faces of STEP and B-rep files, read by Open Cascade (https://dev.opencascade.org)."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import tempfile

@@ -1,7 +1,5 @@
 """Vertices, edges and faces of a shape of Open Cascade as a `CadModel`."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import Any
 

@@ -5,8 +5,6 @@ the dataset ``" data"``, whose axes run the other way round than in Fortran's te
 https://cgns.org/standard/FMM/hdf5_impl.html
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cache
 from typing import Any, TypeAlias

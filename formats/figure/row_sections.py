@@ -12,8 +12,6 @@ r"""Sections of the passage of a blade row, between its patches `hub` and `shrou
                              +------------> x
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -6,8 +6,6 @@
           of quadrilaterals; k=-1 is the last surface               intersects cells, 3 to 6 corners each
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """The part of a grid that a picture shows, and the direction of view."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

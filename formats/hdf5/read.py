@@ -1,7 +1,5 @@
 """Reading HDF5 datasets: boundaries, grids, their parameters, and samples selected in an input's name."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from bisect import bisect_left

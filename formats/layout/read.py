@@ -1,7 +1,5 @@
 """Reads layouts from JSON. All values are checked before they are used."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from dataclasses import replace

@@ -3,8 +3,6 @@
 It is computed from the nodes, because file formats differ in the sign.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

@@ -9,8 +9,6 @@
 In space, rows are quadrilaterals a b c d whose normals point out of the domain, and a' d' c' b'.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 

@@ -4,8 +4,6 @@ Interfaces and boundaries that the file does not state are found by position. Th
 interface is always computed from the nodes, because file formats differ in its sign.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace

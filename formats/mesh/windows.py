@@ -4,8 +4,6 @@ A file has three indices for the nodes of a block. The block that was read may h
 index may be reversed (`meshonet.formats.mesh.slices`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 

@@ -6,8 +6,6 @@ an iblank array. Every layout is therefore tried, those with exactly the length 
 one with the most regular cells is used. https://www.grc.nasa.gov/WWW/wind/valid/plot3d.html
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

@@ -8,8 +8,6 @@ define periodic sides; they are rows of type PERIODIC, otherwise like those of i
 https://crumsey.github.io/turbmodels/nmf_documentation.html
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple

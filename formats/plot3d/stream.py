@@ -1,7 +1,5 @@
 """The numbers of a binary Plot3D file as one stream, with or without Fortran's record lengths."""
 
-from __future__ import annotations
-
 import struct
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence

@@ -5,8 +5,6 @@ blank lines, or lines of text such as ``# Profile 1 at 0.00%``, divide blocks. M
 edges (``le1``, ``te2``) are ignored, since the edges are computed.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 

@@ -25,8 +25,6 @@ In place of profiles, sections of airfoils on cylinders::
     theta = 0.0                  # degrees
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator, Sequence

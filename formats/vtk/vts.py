@@ -5,8 +5,6 @@ that all VTK versions read. Topology, name, patches and provenance are FieldData
 https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
 
-from __future__ import annotations
-
 import math
 import struct
 from collections.abc import Iterable, Mapping

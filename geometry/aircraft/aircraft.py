@@ -1,7 +1,5 @@
 """A body with wings: what the grid of an aircraft is made from."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from meshonet.geometry.aircraft.axes import FILE_AXES, AircraftAxes

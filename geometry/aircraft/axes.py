@@ -1,7 +1,5 @@
 """Axes of a file and those of an aircraft: x along the body, y up, z along the span."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

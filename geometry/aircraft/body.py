@@ -1,7 +1,5 @@
 """A body of revolution, such as a fuselage, from its meridian."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -1,7 +1,5 @@
 """Cross-sections of a body that is given as a surface."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Cross-sections of a body that is no body of revolution."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

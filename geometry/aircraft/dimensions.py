@@ -1,7 +1,5 @@
 """Dimensions of an aircraft and of its grid, so that a user notices a wrong unit or a wrong file."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

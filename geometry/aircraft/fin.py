@@ -1,7 +1,5 @@
 """A fin: a wing in the plane of symmetry of an aircraft."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A body through cross-sections, such as a fuselage with an oval cabin and a raised tail."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cached_property
 

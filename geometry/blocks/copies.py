@@ -10,8 +10,6 @@
 With several periods, shifts in different directions, copies are made along one after the other.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

@@ -12,8 +12,6 @@
 The search itself is in `meshonet.geometry.blocks.meeting_sides`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import TypeAlias
 

@@ -14,8 +14,6 @@ collapsed to a line, or an edge collapsed to a point, joins nothing. A side may 
 wake of a C grid.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import permutations, product

@@ -8,8 +8,6 @@ r"""Planar grids revolved about an axis in their plane: wedges, sectors and full
      axis -+----------------> x     the plane of the grid; a sector begins in that plane.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

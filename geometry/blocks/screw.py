@@ -1,7 +1,5 @@
 """A rigid motion in space as axis, centre, angle and shift, as flow solvers describe periodic sides."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The six faces of a volume: those of a block, or six patches in any order, matched by position."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from itertools import product

@@ -1,7 +1,5 @@
 """The walls of a volume grid as a surface grid."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -9,8 +9,6 @@
       vertex 0 ---- edge 0 ---> vertex 1
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias

@@ -4,8 +4,6 @@ Double reflection: W. Wang, B. Juettler, D. Zheng, Y. Liu, Computation of rotati
 Transactions on Graphics 27 (2008) 2; fourth order in the step.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

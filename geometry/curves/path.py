@@ -4,8 +4,6 @@ At each arc length a path has a point, a unit tangent and a curvature vector, wh
 curvature and has length 1/radius.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol

@@ -1,7 +1,5 @@
 """Whether the loops of a domain bound a region: none crosses or touches another, and holes are inside."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, extent_of

@@ -1,7 +1,5 @@
 """The free distance in front of the walls of a domain."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Nesting of closed curves: which are outer loops, and which are holes in each."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Loops from closed polygons as files contain them: of either orientation, some points repeated."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Curvature and turning angles of walls between two points, and the corners there."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

@@ -4,8 +4,6 @@ The loops of the domain are splines through the grid's own boundary nodes. They 
 boundary turns, where its name changes, and where the number of cells that meet is not two.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from itertools import pairwise
 

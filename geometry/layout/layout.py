@@ -10,8 +10,6 @@ A coarse layout defines the blocks and their approximate position; `meshonet.sol
 optimises it. A fine layout, with the final number of cells, is a grid whose blocks share nodes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

@@ -4,8 +4,6 @@ Corners of the domain stay where they are. All other nodes of periodic sides mov
 grid lines cross from one side to the other as they do inside; blocks need not end at the same nodes.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

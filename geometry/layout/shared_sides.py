@@ -1,7 +1,5 @@
 """Connections of sides of blocks that share node numbers: first whole sides, then parts of sides."""
 
-from __future__ import annotations
-
 from itertools import groupby
 from operator import itemgetter
 from typing import TypeAlias

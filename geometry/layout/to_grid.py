@@ -4,8 +4,6 @@ Shared edges become connections with bitwise equal nodes, periodic pairs of edge
 and the other edges become patches with the names of the domain's loops.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import replace
 from itertools import groupby

@@ -1,7 +1,5 @@
 """A folded cell, as errors and reports name it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

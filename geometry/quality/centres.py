@@ -1,7 +1,5 @@
 """The centre of a cell whose indices a report names."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats

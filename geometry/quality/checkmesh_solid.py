@@ -13,8 +13,6 @@ src/OpenFOAM/meshes/primitiveMesh/primitiveMeshFaceCentresAndAreas.C, primitiveM
 primitiveMeshCheck/primitiveMeshTools.C.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -3,8 +3,6 @@
 Rotations are compared in cylindrical coordinates, not by the matrix with which the nodes were computed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Cells at walls in a flow: y+ of their heights; and their skewness, which is greatest at edges of bodies."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -4,8 +4,6 @@ Whether a turn counts as a corner depends on the points around it, so that profi
 lines of equal places would then jump along the span.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The surface of a blade: curves through its profiles at equal parts of their lengths, along the span."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

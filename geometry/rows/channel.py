@@ -13,8 +13,6 @@ Points of equal s on hub and casing are joined by straight lines. Along these th
 of constant h; likewise `foot` above a gap at the hub.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

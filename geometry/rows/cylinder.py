@@ -1,7 +1,5 @@
 """Airfoils on cylinders: profiles of blades that are given in the plane."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Dimensions of a row of blades for reports, and notes on dimensions that are probably wrong."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import ClassVar

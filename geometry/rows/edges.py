@@ -1,7 +1,5 @@
 """Trailing edges of blades made from airfoils: thin ones are opened, and bases are rounded."""
 
-from __future__ import annotations
-
 from meshonet.geometry.notes import Change
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.trailing_edge import opened_base

@@ -3,8 +3,6 @@
 A `Row` has its axis along x.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

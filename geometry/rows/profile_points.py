@@ -1,7 +1,5 @@
 """Points of profiles and walls as they are given: repeated ones are left out, open profiles are refused."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

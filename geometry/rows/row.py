@@ -1,7 +1,5 @@
 """A row of blades: what a grid of its passage is made from."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

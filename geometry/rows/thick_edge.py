@@ -8,8 +8,6 @@
                                                                distance from the other edge
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms

@@ -1,7 +1,5 @@
 """Parts of hub and casing between an inlet and an outlet plane, extended straight if they are short."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import TypeAlias
 

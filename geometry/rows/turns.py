@@ -1,7 +1,5 @@
 """Profiles of one blade that are given a whole pitch or a whole turn apart around the axis."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats

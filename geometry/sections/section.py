@@ -9,8 +9,6 @@
        +---------------------> x            z         position of the section's plane, along the span
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import NamedTuple

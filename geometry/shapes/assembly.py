@@ -1,7 +1,5 @@
 """Several shapes as one domain: bodies in a far field, or within the shape that encloses the others."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial

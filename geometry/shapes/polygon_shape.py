@@ -1,7 +1,5 @@
 """Polygons with holes as shapes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """The first-cell height at walls as a request gives it: directly, or by its y+."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

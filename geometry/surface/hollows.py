@@ -1,7 +1,5 @@
 """Concave edges of a surface: where they are, how sharp, and how far nodes are from them along it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

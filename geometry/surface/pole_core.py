@@ -12,8 +12,6 @@ Seen from outside. A closed fan gets a core with the pole inside, one of 180 deg
 plane of symmetry, a core with the pole on a side, one of 90 degrees a core with the pole at a corner.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Poles of a surface, sides of patches that are a single point, replaced by core patches."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

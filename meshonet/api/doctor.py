@@ -1,7 +1,5 @@
 """`meshonet.doctor`."""
 
-from __future__ import annotations
-
 import platform
 import re
 import sys

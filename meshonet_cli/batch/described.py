@@ -1,7 +1,5 @@
 """Description of settings as text, which is equal for equal settings in all processes and on all machines."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import hashlib

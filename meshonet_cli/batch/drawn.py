@@ -1,7 +1,5 @@
 """Members of a family of shapes as inputs of a batch."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 

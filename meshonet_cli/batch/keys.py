@@ -1,7 +1,5 @@
 """Keys of the samples of a dataset: stems of files, each once."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Task of `sample-boundary`: boundaries from files, or drawn from a family."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import partial
 from typing import Any

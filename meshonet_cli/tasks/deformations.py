@@ -1,7 +1,5 @@
 """Task of `deform`."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import partial
 

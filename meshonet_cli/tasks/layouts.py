@@ -1,7 +1,5 @@
 """Task of `layout`."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial

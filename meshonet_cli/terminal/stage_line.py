@@ -4,8 +4,6 @@ A thread draws the line while the main thread runs kernels, which release the in
 only for single inputs in the main process, because it would disturb the processes of a batch.
 """
 
-from __future__ import annotations
-
 import contextlib
 import threading
 import time

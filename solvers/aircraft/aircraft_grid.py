@@ -5,8 +5,6 @@ Grid lines leave the body along the wing, so the junction of wing and body needs
 edge. The other half of a whole aircraft is the mirror image.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from itertools import islice, pairwise
 

@@ -8,8 +8,6 @@
     s = 0            s = L     zeta   0 on the body, 1 in the far field
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -15,8 +15,6 @@ All places are (s, theta). Collars are made in lengths in space, by the lengths 
 section.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise

@@ -11,8 +11,6 @@
       +--------------------> s
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import TypeAlias

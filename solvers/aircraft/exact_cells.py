@@ -1,7 +1,5 @@
 """First cells of a given height in space, of lines whose nodes are places in the map around a body."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms

@@ -1,7 +1,5 @@
 """Lines of a level between the sides of columns, or from there to nose and tail, with even cells in space."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import TypeAlias
 

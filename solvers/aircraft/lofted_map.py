@@ -5,8 +5,6 @@ the inverse distance from the axis, so that lines leave an ellipse at right angl
 between sections decrease towards the far field.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.aircraft.body import Body

@@ -1,7 +1,5 @@
 """Options of the grid of an aircraft: those of a stack that it has a use for."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, ClassVar
 

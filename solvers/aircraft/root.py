@@ -1,7 +1,5 @@
 """Points at which the lines of a wing along its span leave a body."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.aircraft.body import Body

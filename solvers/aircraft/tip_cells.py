@@ -4,8 +4,6 @@ Without this the layers of the tip would go around the aircraft as a shell of th
 far away keep their height until those of its layers have it too: from there on levels are parallel.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, norms

@@ -1,7 +1,5 @@
 """Blocks inside the section of a wing at its tip: a ring whose cells match the collar, and a core."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms

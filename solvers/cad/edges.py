@@ -1,7 +1,5 @@
 """Nodes along the edges of a CAD file; cell sizes can follow the curvature."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

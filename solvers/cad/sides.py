@@ -9,8 +9,6 @@ r"""Division of the faces of a CAD file into patches by their corners, and numbe
     +---------+           +------                   ` - - '
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal

@@ -1,7 +1,5 @@
 """Checks that a moved wall neither crosses the rest of the boundary nor lies beyond it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@ cells fold, the deformation is divided into steps, each of which deforms the gri
 still fold, they are repaired; at last all nodes outside the boundary layers are smoothed.
 """
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterator, Mapping
 from dataclasses import replace

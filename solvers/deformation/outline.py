@@ -5,8 +5,6 @@ another outline are its corners, if the old and the new outline have equally man
 counted from the first wall node and from the point of the new outline nearest to it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms

@@ -4,8 +4,6 @@ On boundaries far from all that moves, nodes are grouped and one of each group i
 compared with their distance from the moved nodes and with the cells at the boundary.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """New positions of wall nodes from what a user gives: outlines, grids, rigid motions or nodes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias

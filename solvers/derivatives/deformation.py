@@ -6,8 +6,6 @@ the new wall nodes. So the derivative is exact; it costs about one more deformat
 included.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -9,8 +9,6 @@
 Curtis, Powell, Reid, J. Inst. Maths. Applics. 13 (1974) 117-119.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -8,8 +8,6 @@ which it is not. In the second case the symmetric matrix ((1, F_x), (F_xᵀ, 0))
 of the functional depends on the boundary and is differentiated too.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ Only the part of each block around free nodes is stored, with its longest direct
 (``kernels/hexes/energy.h``).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias

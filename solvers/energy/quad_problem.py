@@ -3,8 +3,6 @@
 Coordinates are scaled so that cells have a size near 1, and centred; results are scaled back.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

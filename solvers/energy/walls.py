@@ -1,7 +1,5 @@
 """Wall nodes of a quad mesh as unknowns: their loops, their order, and the turning angle of the loops."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """The trained models, shipped or in files; `load` returns one."""
 
-from __future__ import annotations
-
 import dataclasses
 from functools import lru_cache
 from pathlib import Path

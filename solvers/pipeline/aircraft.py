@@ -1,7 +1,5 @@
 """Aircraft: the grid around a body with its wing, measured."""
 
-from __future__ import annotations
-
 import math
 
 from meshonet.geometry.aircraft.aircraft import Aircraft

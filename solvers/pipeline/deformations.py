@@ -1,7 +1,5 @@
 """Deforms a grid to new walls and measures the result."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from meshonet.geometry.blocks.grid import Grid

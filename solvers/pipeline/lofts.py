@@ -8,8 +8,6 @@
     duct    one block if all sections have four sides, else five; ``inlet`` and ``outlet`` at the ends.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Requests from the keyword parameters of the public functions."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 from typing import Any
 

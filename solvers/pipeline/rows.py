@@ -1,7 +1,5 @@
 """Rows of blades: the grid of a passage, measured."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 

@@ -1,7 +1,5 @@
 """The planar grid of a cross-section that is swept or stacked."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Selects the kind of grid for sections: around a wing, a blade or an aircraft, in a duct or a blade row."""
 
-from __future__ import annotations
-
 from typing import Any, TypeAlias
 
 from meshonet.geometry.aircraft.aircraft import Aircraft

@@ -1,7 +1,5 @@
 """Sweeps the planar grid of a section along a path and measures the volume."""
 
-from __future__ import annotations
-
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.revolve import FLOWS, Revolution, revolved
 from meshonet.geometry.curves.path import Path

@@ -4,8 +4,6 @@ An option is a field of `GridRequest` or `Sampling` (the node counts together ar
 method.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any, TypeAlias
 

@@ -1,7 +1,5 @@
 """Three-dimensional grids: selects the method for a shape, and checks which options apply."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from importlib import import_module

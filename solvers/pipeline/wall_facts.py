@@ -1,7 +1,5 @@
 """First cells at walls and growth ratios, measured on the grid for the report."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.blocks.across import rows_at

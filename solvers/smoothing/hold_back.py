@@ -1,7 +1,5 @@
 """Reduces the displacements of a smoothed grid where they would worsen a face."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -6,8 +6,6 @@
          |-o--o---o------o----      wall, to the sum of their given heights, and held there
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

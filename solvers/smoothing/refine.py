@@ -1,7 +1,5 @@
 """Refines a multi-block grid by splines along its lines and around its boundary."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from meshonet.geometry.blocks.block import Block, Range

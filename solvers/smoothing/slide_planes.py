@@ -1,7 +1,5 @@
 """Sliding nodes of flat outer patches: in their planes, and along the lines where two planes meet."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, Indices, extent_of, norms

@@ -8,8 +8,6 @@ skewness of a face nor the mean deviation from 90 degrees may exceed those of th
 displacements are reduced.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial

@@ -9,8 +9,6 @@ Only ratios of neighbours matter. Edges that leave thin first cells at the bound
 with fixed nodes, keep their lengths.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

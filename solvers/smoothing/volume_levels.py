@@ -6,8 +6,6 @@
     coarse   o-----o--------o-----o      it, so that blocks with opposite directions agree
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise

@@ -6,8 +6,6 @@ conjugate gradients.
 Tutte, Proc. London Math. Soc. 13 (1963) 743-767.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, Indices

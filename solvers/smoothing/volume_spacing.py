@@ -4,8 +4,6 @@ Logarithms of lengths are diffused along and across grid lines wherever there ar
 that geometric growth does not change. Edges between fixed nodes keep their lengths.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

@@ -7,8 +7,6 @@ them. Neither the smallest scaled Jacobian nor the mean deviation from 90 degree
 (`meshonet.solvers.smoothing.volume_judge`); if they would, displacements are reduced.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import partial
 

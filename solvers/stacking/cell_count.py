@@ -1,7 +1,5 @@
 """Numbers of nodes around the sections of a wing or blade, and along its span, for a number of cells."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from meshonet.geometry.errors import InputError

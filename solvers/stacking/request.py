@@ -1,7 +1,5 @@
 """Options for the surface or volume of a stack."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, ClassVar
 

@@ -11,8 +11,6 @@ A section whose base is lower than `gap` is opened to this height. Its thickness
 the distance from the nose.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

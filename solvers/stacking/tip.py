@@ -13,8 +13,6 @@ r"""The cap of a wing tip: a ring along the edge of the last section, and a core
       lower side
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The surface of a wing: one patch around its sections from root to tip, and two patches of its cap."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

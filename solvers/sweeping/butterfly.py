@@ -11,8 +11,6 @@ r"""Divides the inside of a closed curve into five blocks: a core, and a ring of
          '-----------'
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias

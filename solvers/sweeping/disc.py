@@ -1,7 +1,5 @@
 """Division of a circle into cells: numbers of cells around and of rows, and notes for the user."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -6,8 +6,6 @@
          first                              size               constant ratio up to the size of the core cells
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

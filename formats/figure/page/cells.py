@@ -1,7 +1,5 @@
 """Quality metrics in an interactive page: values as integers, their histogram, and the worst cells."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Writes the interactive page of a grid."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable
 from pathlib import Path

@@ -6,8 +6,6 @@
     sheet     a layer of cells of a lattice that is drawn: a planar block, or a patch of a volume
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Section of a quality report about one grid."""
 
-from __future__ import annotations
-
 import base64
 import html
 import io

@@ -1,7 +1,5 @@
 """Quality report of one or more grids: one HTML file for screen and print."""
 
-from __future__ import annotations
-
 import heapq
 import html
 import itertools

@@ -1,7 +1,5 @@
 """Workers behind an executor: results in order, few tasks in progress, repetition after a worker died."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future

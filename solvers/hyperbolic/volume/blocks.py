@@ -1,7 +1,5 @@
 """The grid of a volume marched from a surface: one block per patch, with sides named or connected."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import groupby
 

@@ -1,7 +1,5 @@
 """Nodes moved along the lines of a volume so that neighbouring cells differ by at most a ratio."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -10,8 +10,6 @@ The equations are in ``kernels/surfaces/step.c``, the settings tried while cells
 `meshonet.solvers.hyperbolic.volume.settings`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

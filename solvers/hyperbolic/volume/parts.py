@@ -1,7 +1,5 @@
 """Parts of a surface that do not touch: grids of parts near each other would overlap."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Settings of a march from a surface, and the smoothing parameters that are tried in turn."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple

@@ -8,8 +8,6 @@ A plane that walls face is none where the march would reach it before the far fi
     +---- b ----
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

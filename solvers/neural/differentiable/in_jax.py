@@ -1,7 +1,5 @@
 """Grids as functions of JAX arrays: the functions of torch, called by JAX on the host."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The architectures of the paper and of its references, by name; `MODELS` is all that can be trained."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping
 from pkgutil import resolve_name

@@ -11,8 +11,6 @@ steps reduce the residual. The last step is `meshonet.solvers.algebraic.resample
 `meshonet.solvers.pipeline.coarse`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, TypeAlias

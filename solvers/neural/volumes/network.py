@@ -8,8 +8,6 @@ A model file serves the geometries that it was trained on, at any resolution. Pe
 three-dimensional differential neural network for structured mesh generation, arXiv 2407.01560.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
