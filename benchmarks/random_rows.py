@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from meshonet.formats.registry import read_shapes
 from meshonet.geometry.errors import MeshonetError
-from meshonet.geometry.rows.edges import round_edged
 from meshonet.geometry.rows.row import Row
+from meshonet.geometry.rows.thick_edge import round_edged
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 Floats = NDArray[np.float64]

@@ -31,7 +31,7 @@ POWERS = (
     "solvers/energy/quad_problem.py",
     "solvers/hyperbolic/default_spacing.py",
     "solvers/hyperbolic/front.py",
-    "solvers/neural/quad/canonical.py",
+    "solvers/neural/quad/operator.py",
     "solvers/volumes/descent.py",
 )
 """Where powers are of single or complex numbers: the C library's, one by one."""

@@ -8,7 +8,7 @@ import numpy as np
 from meshonet.geometry.aircraft.body import Body
 from meshonet.geometry.aircraft.body_section import ANGLES, BodySection
 from meshonet.geometry.arrays import Floats, Indices
-from meshonet.geometry.curves.limited import LimitedSpline
+from meshonet.geometry.curves.cubic import LimitedSpline
 from meshonet.geometry.curves.monotone import hermite_piece
 from meshonet.geometry.elementary import arctan2, cos, sin
 from meshonet.geometry.errors import InputError

@@ -1,10 +1,12 @@
 """The quadrilaterals of structured arrays of nodes."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from meshonet.geometry.arrays import AnyArray, Floats, Indices, cross2
+from meshonet.geometry.layout.layout import Layout
 from meshonet.kernels._native import smallest_corners
 
 
@@ -26,3 +28,20 @@ def smallest_jacobians(nodes: Floats, quads: Indices) -> Floats:
 def lattice_quads(blocks: Sequence[Indices]) -> Indices:
     """Return the quads (m, 4), counter-clockwise, of blocks (ni, nj) of node numbers; j varies fastest."""
     return np.concatenate([ring_of(block).reshape(4, -1).T for block in blocks])
+
+
+def around_body(layout: Layout) -> Layout:
+    """Return the layout of one ring-shaped block with i around the hole and j away from it; others unchanged.
+
+    The block stays right-handed, so i runs clockwise.
+    """
+    if len(layout.blocks) != 1:
+        return layout
+    block = layout.blocks[0]
+    if np.array_equal(block[:, 0], block[:, -1]):  # the ring closes along j
+        block = np.swapaxes(block, 0, 1)[:, ::-1]
+    if not np.array_equal(block[0], block[-1]):
+        return layout
+    if layout.mesh.places.loop[block[0, 0]] == 0:
+        block = block[::-1, ::-1]
+    return replace(layout, blocks=(block,), layers={})

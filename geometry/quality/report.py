@@ -7,9 +7,8 @@ from typing import Any, TypeAlias
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import spelled
-from meshonet.geometry.quality.bad_cell import BadCell
+from meshonet.geometry.quality.bad_cell import BadCell, centre_of
 from meshonet.geometry.quality.blocks import extreme_dict
-from meshonet.geometry.quality.centres import centre_of
 from meshonet.geometry.quality.compare import Difference, compare
 from meshonet.geometry.quality.figure import Figure
 from meshonet.geometry.quality.figures import Figures

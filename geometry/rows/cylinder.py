@@ -6,7 +6,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import cos, sin
-from meshonet.geometry.rows.edges import round_edged
+from meshonet.geometry.rows.thick_edge import round_edged
 from meshonet.geometry.sections.section import Section
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
@@ -17,7 +17,7 @@ def on_cylinder(
     """Return the points (n, 3) of a section on a cylinder, and notes.
 
     The radius of the cylinder is the z of the section. Trailing edges are rounded
-    (`meshonet.geometry.rows.edges`).
+    (`meshonet.geometry.rows.thick_edge`).
 
     Parameters
     ----------

@@ -11,8 +11,10 @@
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
-from meshonet.geometry.rows.edges import LEAST_EDGE
+from meshonet.geometry.notes import Change
 from meshonet.geometry.rows.profile import BladeProfile
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.airfoil.trailing_edge import opened_base
 
 _CAP = np.linspace(0.0, 1.0, 33)[1:-1, None]
 """Fractions of the rounded end at which it has points."""
@@ -74,3 +76,23 @@ def _round_end(one: Floats, other: Floats, before: Floats, beside: Floats) -> Fl
     t, back = _CAP, 1.0 - _CAP
     ends, inner = back * back * back * one + t * t * t * other, back * first + t * last
     return np.asarray(ends + 3.0 * back * t * inner)
+
+
+LEAST_EDGE = 0.01
+"""Thickness in chords to which thinner trailing edges are opened, so that layers can go around them."""
+
+
+def round_edged(airfoil: Airfoil) -> tuple[Airfoil, tuple[str, ...]]:
+    """Return the airfoil with a round trailing edge at least `LEAST_EDGE` chords thick, and notes."""
+    notes: tuple[str, ...] = ()
+    body, height = airfoil, airfoil.gap / airfoil.chord
+    name = airfoil.name or "a section"
+    if height < LEAST_EDGE * (1.0 - 1e-9):
+        body = Airfoil(opened_base(airfoil, LEAST_EDGE * airfoil.chord), airfoil.name, notes=airfoil.notes)
+        change = (
+            f"{name} is changed: its trailing edge, {height:.2g} chords thick, is opened to {LEAST_EDGE:g}"
+        )
+        notes = (Change(f"{change} and rounded"),)
+    elif body.blunt:
+        notes = (Change(f"{name} is changed: its base, {height:.2g} chords thick, is rounded"),)
+    return body.rounded(), notes

@@ -7,9 +7,8 @@ whose fields become options (``layers: o.LayerOptions``, see `meshonet_cli.optio
 from meshonet_cli.options.boundary_layer import *  # noqa: F403
 from meshonet_cli.options.checks import *  # noqa: F403
 from meshonet_cli.options.domain import *  # noqa: F403
-from meshonet_cli.options.grids import *  # noqa: F403
+from meshonet_cli.options.grids import *  # noqa: F403  # noqa: F403
 from meshonet_cli.options.groups import *  # noqa: F403
 from meshonet_cli.options.io import *  # noqa: F403
-from meshonet_cli.options.method import *  # noqa: F403
 from meshonet_cli.options.sampling import *  # noqa: F403
 from meshonet_cli.options.volume import *  # noqa: F403

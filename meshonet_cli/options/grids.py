@@ -1,11 +1,13 @@
 """Options of the commands that make grids from boundaries."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from meshonet_cli.options.boundary_layer import LayerOptions, at_walls
 from meshonet_cli.options.checks import GateOptions, LeaveOutFailed
+from meshonet_cli.options.groups import METHOD, bad_value, option_of
 from meshonet_cli.options.io import FileOptions, RunOptions, Threads
 from meshonet_cli.options.sampling import SamplingOptions
 
@@ -40,3 +42,44 @@ class GridOptions(RunOptions, GateOptions, FileOptions):
             if value is not None:
                 chosen[name] = value
         return GridRequest(sampling.placed(more), method, chosen, threads=self.threads, **more)
+
+
+# fmt: off
+Refine = Annotated[int, option_of(METHOD)(
+    "--refine", metavar="K", min=0, max=8,
+    help="Number of refinements: solve at --res, then halve all cells and solve again, K times. The result "
+    "is the finest of K + 1 nested grids; convert --coarsen extracts the others. --res, --cells and "
+    "--cell-size refer to the coarsest grid, --first-cell and --growth to the finest. If the grid is "
+    "marched, only the finest grid is made.",
+)]
+# fmt: on
+
+
+def polish_steps(text: str) -> Literal["off"] | int:
+    """Return the value of ``--polish`` unless it is ``auto``. Raises InputError: other text.
+
+    >>> polish_steps("off"), polish_steps("3")
+    ('off', 3)
+    """
+    if text == "off":
+        return "off"
+    if not re.fullmatch(r"\d{1,3}", text, re.ASCII):
+        raise bad_value(text, "a number of steps", "use auto, off or e.g. 2", "polish")
+    return int(text)
+
+
+def coarse_nodes(text: str) -> Literal["auto"] | int | None:
+    """Return the value of ``--coarse``: ``auto``, None for ``off`` or 0, or a number of at least 9.
+
+    Raises InputError: other text.
+
+    >>> coarse_nodes("auto"), coarse_nodes("off"), coarse_nodes("65")
+    ('auto', None, 65)
+    """
+    if text == "auto":
+        return "auto"
+    if text in ("off", "0"):
+        return None
+    if not re.fullmatch(r"[0-9]{1,6}", text) or int(text) < 9:
+        raise bad_value(text, "a number of nodes from 9 on", "use auto, off or e.g. 65", "coarse")
+    return int(text)

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.bad_cell import BadCell
+from meshonet.geometry.quality.bad_cell import BadCell, centre_of
 from meshonet.geometry.quality.blocks import LINES, BlockFigures
-from meshonet.geometry.quality.centres import centre_of
 from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import Judgement
 from meshonet.geometry.quality.growth import Extreme

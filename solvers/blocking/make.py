@@ -13,7 +13,7 @@ from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.periodic import with_periodic_sides
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.layout.around_body import around_body
+from meshonet.geometry.layout.lattice import around_body
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.measure import count_folded

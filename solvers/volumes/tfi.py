@@ -7,8 +7,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.algebraic.tfi import Blending
 from meshonet.solvers.solution import Solution, timed
 from meshonet.solvers.volumes.edge_corners import check_hand
-from meshonet.solvers.volumes.interpolate import interpolate
-from meshonet.solvers.volumes.laws import arc_laws, uniform_laws
+from meshonet.solvers.volumes.interpolate import arc_laws, interpolate, uniform_laws
 
 
 @timed

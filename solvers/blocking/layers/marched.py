@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, distinct
-from meshonet.geometry.domain.grading import graded
+from meshonet.geometry.domain.wall_turning import graded
 from meshonet.geometry.elementary import power
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.lattice import corner_jacobians, ring_of

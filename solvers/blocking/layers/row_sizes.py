@@ -10,9 +10,8 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, distinct, turned_left
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import gaps_in_front, wall_points
-from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.domain.wall_turning import SAMPLES, sizes_by_bend
+from meshonet.geometry.domain.wall_turning import SAMPLES, graded, sizes_by_bend
 from meshonet.solvers.blocking.layers.layer_rows import last_layers
 from meshonet.solvers.blocking.layers.marched import GAP_PART, SLOPE, check_room
 from meshonet.solvers.blocking.layers.rings import COLUMNS, place

@@ -8,9 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, distinct
-from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.domain.wall_turning import wall_bend
+from meshonet.geometry.domain.wall_turning import graded, wall_bend
 
 TURN = np.radians(4.0)
 """Largest angle by which the wall turns along one cell."""
