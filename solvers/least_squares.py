@@ -50,7 +50,7 @@ class NormalEquations:
         rows, columns = (
             np.concatenate([diagonal, *(kind.entries[end] for kind in self._kinds)]) for end in (0, 1)
         )
-        self._pattern = SparsePattern(size, rows, columns)
+        self.pattern = SparsePattern(size, rows, columns)
 
     def step(self, residuals: Sequence[Residuals], diagonal: Floats, slope: Floats) -> Floats:
         """Return the changes (n,) of the unknowns.
@@ -64,7 +64,7 @@ class NormalEquations:
             values.append(own)
             for part in sums:
                 right -= part
-        return self._pattern.factor(np.concatenate(values)).solve(right)
+        return self.pattern.factor(np.concatenate(values)).solve(right)
 
 
 @dataclass(frozen=True, eq=False)

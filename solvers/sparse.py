@@ -24,6 +24,11 @@ class SparsePattern:
     rows, columns : (m,) position of each entry. (i, j) includes (j, i), so only one of the two may be given.
         Entries at the same position are added.
 
+    Attributes
+    ----------
+    arrays : the pattern in the form of the kernels.
+    slot : (m,) number of the distinct entry to which each entry is added.
+
     >>> pattern = SparsePattern(2, np.array([0, 0, 1]), np.array([0, 1, 1]))
     >>> pattern.factor(np.array([2.0, 1.0, 2.0])).solve(np.array([3.0, 3.0])).tolist()
     [1.0, 1.0]
@@ -32,18 +37,22 @@ class SparsePattern:
     def __init__(self, size: int, rows: Indices, columns: Indices) -> None:
         self.size = size
         rows, columns = (np.ascontiguousarray(i, dtype=np.intp) for i in (rows, columns))
-        self._arrays, self._slot = sparse_analyse(size, rows, columns)
-        self._entries = int(self._arrays[2][-1])
+        self.arrays, self.slot = sparse_analyse(size, rows, columns)
+        self._entries = int(self.arrays[2][-1])
 
     @property
     def fill(self) -> int:
         """Number of entries of the factor below its diagonal."""
-        return int(self._arrays[4][-1])
+        return int(self.arrays[4][-1])
 
     def matrix(self, values: Floats) -> SparseMatrix:
         """Return the matrix with these values (m,) of the entries."""
-        summed = np.bincount(self._slot, np.asarray(values, dtype=np.float64), self._entries)
+        summed = np.bincount(self.slot, np.asarray(values, dtype=np.float64), self._entries)
         return SparseMatrix(self, np.asarray(summed, dtype=np.float64))
+
+    def singular(self, row: int) -> SolverError:
+        """Return the error for a matrix whose pivot of a row is zero or not finite."""
+        return SolverError(f"a system of {self.size} equations is singular in row {row}")
 
     def factor(self, values: Floats) -> Factor:
         """Return the factors of the matrix with these values (m,) of the entries; see `SparseMatrix`."""
@@ -62,7 +71,7 @@ class SparseMatrix:
         """Return the product A x, where x is (n,) or (n, k)."""
         columns = np.ascontiguousarray(x, dtype=np.float64).reshape(self.pattern.size, -1)
         product = np.empty_like(columns)
-        sparse_multiply(self.pattern._arrays, self.values, columns, product)
+        sparse_multiply(self.pattern.arrays, self.values, columns, product)
         return product.reshape(np.shape(x))
 
     def factor(self) -> Factor:
@@ -73,9 +82,9 @@ class SparseMatrix:
 
         Raises SolverError: a pivot is zero or not finite.
         """
-        factor, failed = sparse_factor(self.pattern._arrays, self.values)
+        factor, failed = sparse_factor(self.pattern.arrays, self.values)
         if failed >= 0:
-            raise SolverError(f"a system of {self.pattern.size} equations is singular in row {failed}")
+            raise self.pattern.singular(failed)
         return Factor(self.pattern, factor)
 
 
@@ -90,7 +99,7 @@ class Factor:
     def solve(self, right: Floats) -> Floats:
         """Return the solution x of A x = right, both (n,) or (n, k)."""
         x = np.array(right, dtype=np.float64, order="C").reshape(self.pattern.size, -1)
-        sparse_solve(self.pattern._arrays, self.arrays, x)
+        sparse_solve(self.pattern.arrays, self.arrays, x)
         return x.reshape(np.shape(right))
 
     def refine(self, matrix: SparseMatrix, right: Floats, steps: int) -> Floats:

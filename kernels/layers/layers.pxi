@@ -22,6 +22,26 @@ cdef extern from "layers/law.h":
     void c_layer_law "layer_law"(const double *wanted, const double *slopes, ptrdiff_t n, ptrdiff_t rows, double most,
                                  double steeper, double *cells) nogil
 
+cdef extern from "layers/even_line.h":
+    ctypedef struct Measures:
+        ptrdiff_t points, measures
+        int closed
+        Read arc, value, slope
+    ctypedef struct EvenTerms:
+        Read limit, stiffness, factor, rest
+        const ptrdiff_t *pair
+        ptrdiff_t links
+        double change, linear, nearly
+    ctypedef struct EvenSteps:
+        Read reached
+        double weight, rise, most
+        int steps, halvings
+    ptrdiff_t even_line_entries(const Measures *measures, const EvenTerms *terms, const ptrdiff_t *unknown,
+                                ptrdiff_t places) nogil
+    ptrdiff_t c_even_line "even_line"(const Measures *measures, const EvenTerms *terms, const EvenSteps *steps,
+                                      const SparsePattern *pattern, const ptrdiff_t *slot, const ptrdiff_t *unknown,
+                                      ptrdiff_t places, double *place) nogil
+
 
 cdef Layers layers_of(ptrdiff_t cells, double first, double last, ptrdiff_t constant) except *:
     cdef Layers layers = Layers(first, last, constant)
@@ -99,3 +119,33 @@ def sampled_lines(lines, arcs, at, points):
     cdef Written room = fills(slopes, (m, c))
     with nogil:
         c_sampled_lines(&all, places, n, to, room)
+
+
+def even_line(tuple measures, bint closed, tuple terms, tuple steps, tuple pattern, slot, unknown, place):
+    """Move `place` (n,); return the row in which the equations are singular, or -1. The rest is as in ``even_line.h``.
+
+    `measures` are (arcs (m,), values (k, m), slopes (k, m - 1)); `terms` (limits (k,), stiffness (unknowns,), pairs (p, 2),
+    factors (p, 2), rest (p,), change, linear, nearly); `steps` (limits (k,), weight, rise, most, steps, halvings).
+    """
+    cdef ptrdiff_t k, m, n = len(place), links = len(terms[2]), bad
+    k, m = measures[1].shape
+    if m < 2 or n < 3:
+        raise ValueError(f"{m} points and {n} places")
+    cdef SparsePattern equations
+    pattern_of(pattern, &equations)
+    cdef const ptrdiff_t *number = reads_places(unknown, (n,), equations.n, -1)
+    cdef const ptrdiff_t *slots = reads_places(slot, slot.shape, equations.start[equations.n])
+    cdef Measures own = Measures(m, k, closed, reads(measures[0], (m,)), reads(measures[1], (k, m)),
+                                 reads(measures[2], (k, m - 1)))
+    cdef EvenTerms of = EvenTerms(
+        reads(terms[0], (k,)), reads(terms[1], (equations.n,)), reads(terms[3], (links, 2)), reads(terms[4], (links,)),
+        reads_places(terms[2], (links, 2), n), links, terms[5], terms[6], terms[7])
+    cdef EvenSteps by = EvenSteps(reads(steps[0], (k,)), steps[1], steps[2], steps[3], steps[4], steps[5])
+    cdef Written to = fills(place, (n,))
+    if len(slot) != even_line_entries(&own, &of, number, n):
+        raise ValueError("a matrix of other entries")
+    with nogil:
+        bad = c_even_line(&own, &of, &by, &equations, slots, number, n, to)
+    if bad < 0:
+        raise MemoryError
+    return equations.order[bad - 1] if bad else -1

@@ -21,16 +21,19 @@ from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
+from meshonet.kernels._native import even_line
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.layers.growth_limit import (
     CHANGE,
     EXCESS,
+    HALVINGS,
+    LINEAR,
     MOST_WEIGHT,
+    NEARLY,
     RISE,
-    GrowthLimit,
-    damped,
 )
-from meshonet.solvers.least_squares import NormalEquations, Residuals
+from meshonet.solvers.least_squares import NormalEquations
+from meshonet.solvers.sparse import SparsePattern
 
 MOVE = 1e-2
 """σ."""
@@ -67,17 +70,17 @@ class Measures:
     values: Floats
     slack: Floats | float = 1.0
 
-    def at(self, places: Floats, closed: bool) -> tuple[Floats, Floats]:
-        """Return the measures (k, n) at `places` (n,), periodic on closed curves, and their slopes."""
+    def at(self, places: Floats, closed: bool) -> Floats:
+        """Return the measures (k, n) at `places` (n,), periodic on closed curves."""
         turns = np.zeros(len(places))
         if closed:
             turns, places = np.divmod(places, self.arcs[-1])
         k = np.clip(np.searchsorted(self.arcs, places, side="right") - 1, 0, len(self.arcs) - 2)
-        slope = self._slopes.take(k, axis=1)
-        return self.values.take(k, axis=1) + slope * (places - self.arcs[k]) + turns * self.whole, slope
+        inside = self.slopes.take(k, axis=1) * (places - self.arcs[k])
+        return np.asarray(self.values.take(k, axis=1) + inside + turns * self.whole)
 
     @cached_property
-    def _slopes(self) -> Floats:
+    def slopes(self) -> Floats:
         """(k, m - 1) between the positions."""
         return np.diff(self.values, axis=1) / np.diff(self.arcs)
 
@@ -209,73 +212,48 @@ class _Line:
         return cls(measures, closed, free, triples, (MOVE / (step[1:] * step[:-1]))[free], links, change)
 
     @cached_property
-    def equations(self) -> NormalEquations:
-        """Those of the places that move; most lines are even, and need none."""
+    def unknown(self) -> Indices:
+        """(n,) number of each place among those that move, -1 for others."""
         unknown = np.full(self.triples.max() + 1, -1, dtype=np.intp)
         unknown[self.free] = np.arange(len(self.free))
-        ratios = np.tile(unknown[self.triples], (len(self.measures.values), 1, 1))
-        return NormalEquations(len(self.free), [ratios, unknown[self.links.pairs]])
+        return unknown
 
-    def _steps(self, places: Floats) -> tuple[Floats, Floats]:
-        """Return the steps (k, r + 1 or n) of each measure, and the derivatives (k, n) of the measures."""
-        value, slope = self.measures.at(places, self.closed)
-        if self.closed:
-            value = np.concatenate([value, value[:, :1] + self.measures.whole], axis=1)
-        return np.diff(value, axis=1), slope
+    @cached_property
+    def pattern(self) -> SparsePattern:
+        """That of the normal equations of one measure; most lines are even, and need none."""
+        kinds = [self.unknown[of] for of in (self.triples, self.links.pairs)]
+        return NormalEquations(len(self.free), kinds).pattern
 
-    def _growth(self, steps: Floats) -> Floats:
-        """Return the logarithms (k, r) of the ratios of neighbouring steps."""
-        logs = log(steps)
-        return np.diff(logs, axis=1, append=logs[:, :1]) if self.closed else np.diff(logs, axis=1)
+    def _growth(self, places: Floats) -> Floats:
+        """Return the logarithms (k, r) of the ratios of neighbouring steps of each measure."""
+        value = self.measures.at(places, self.closed)
+        if not self.closed:
+            return np.diff(log(np.diff(value, axis=1)), axis=1)
+        logs = log(np.diff(value, axis=1, append=value[:, :1] + self.measures.whole))
+        return np.diff(logs, axis=1, append=logs[:, :1])
 
     def _limits(self, limit: float) -> Floats:
-        """Return the limits (k, 1) of the measures."""
-        shape = len(self.measures.values), 1
-        return np.broadcast_to(limit * np.asarray(self.measures.slack).reshape(-1, 1), shape)
+        """Return the limits (k,) of the measures."""
+        return limit * np.asarray(self.measures.slack) * np.ones(len(self.measures.values))
 
     def exceeded(self, places: Floats, limit: float) -> bool:
         """Return whether a ratio exceeds the limit of its measure."""
-        return bool((np.abs(self._growth(self._steps(places)[0])) > self._limits(limit)).any())
+        return bool((np.abs(self._growth(places)) > self._limits(limit)[:, None]).any())
 
     def evened(self, places: Floats, limit: float) -> Floats:
-        """Return the places after some steps of Gauss-Newton."""
-        places, start, weight = places.copy(), places[self.free], EXCESS
-        limits = self._limits(limit)
-        steps, slope = self._steps(places)
-        growth = self._growth(steps)
-        term = GrowthLimit.at(growth, limits - MARGIN, self.change)
+        """Return the places after some steps of Gauss-Newton.
 
-        def values(at: Floats) -> Floats:
-            moved = places.copy()
-            moved[self.free] = at
-            steps = self._steps(moved)[0]
-            if steps.min() <= 0.0:
-                return np.array([np.inf])
-            value = sum(term.values(self._growth(steps), weight).sum(axis=1).tolist())
-            linked = (self.links.values(moved) ** 2).sum()
-            return np.array([value + (self.stiffness * (at - start) ** 2).sum() + linked])
-
-        part = np.zeros(len(self.free), dtype=np.intp)
-        for _ in range(STEPS):
-            weight = min(weight * RISE, MOST_WEIGHT)
-            tied = self.links.values(places)
-            residuals = [
-                term.residuals(growth, self._derivatives(steps, slope), weight),
-                Residuals(self.links.factors, np.ones(len(tied)), tied),
-            ]
-            pull = self.stiffness * (places[self.free] - start)
-            step = self.equations.step(residuals, self.stiffness, pull)
-            places[self.free] += damped(values, places[self.free], step, part)
-            steps, slope = self._steps(places)
-            growth = self._growth(steps)
-            if not (np.abs(growth) > limits).any():
-                break
+        Raises SolverError: the equations are singular.
+        """
+        places, limits, links = places.copy(), self._limits(limit), self.links
+        measures = self.measures.arcs, self.measures.values, self.measures.slopes
+        terms = links.pairs, links.factors, links.rest, self.change, LINEAR, NEARLY
+        steps = limits, EXCESS, RISE, MOST_WEIGHT, STEPS, HALVINGS
+        pattern = self.pattern
+        failed = even_line(
+            measures, self.closed, (limits - MARGIN, self.stiffness, *terms), steps, pattern.arrays,
+            pattern.slot, self.unknown, places,
+        )  # fmt: skip
+        if failed >= 0:
+            raise pattern.singular(failed)
         return places
-
-    def _derivatives(self, steps: Floats, slope: Floats) -> Floats:
-        """Return those (k, r, 3) of the logarithms of ratios by the places, of each measure."""
-        first, middle, last = self.triples.T
-        before, after = steps.take(first, axis=1), steps.take(middle, axis=1)
-        rise = slope.take(middle, axis=1)
-        one, other = slope.take(first, axis=1) / before, slope.take(last, axis=1) / after
-        return np.stack([one, -rise / before - rise / after, other], axis=-1)

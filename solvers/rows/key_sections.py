@@ -120,17 +120,17 @@ class KeySection:
 
 
 def planned(
-    planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], wake: tuple[float, float],
-    gaps: tuple[bool, bool],
+    planes: Sequence[SectionPlane], coarse: Layout | None, cells: int, longest: Mapping[int, float],
+    wake: tuple[float, float], gaps: tuple[bool, bool],
 ) -> tuple[SectionPlan, list[LayerColumns | None], KeySection]:  # fmt: skip
     """Return the plan of all sections, the columns of each, and the middle section, with about `cells` cells.
 
-    Columns are None if they are not known yet. `longest` are the largest lengths of the rows to inlet and
-    outlet, by the number of their loop; `wake` is that of the plan; `gaps` tells whether the blade ends in a
-    gap at the hub and at the casing.
+    Columns are None if they are not known yet. `coarse` is the `coarse_section` in the middle, if it is
+    known; `longest` are the largest lengths of the rows to inlet and outlet, by the number of their loop;
+    `wake` is that of the plan; `gaps` tells whether the blade ends in a gap at the hub and at the casing.
     """
     plane = planes[len(planes) // 2]
-    whole = middle_section(planes, cells, longest)
+    whole = middle_section(planes, cells, longest, coarse)
     columns, growth = layer_columns(whole), plane.cascade.layers.growth
     at = plane.places_of(whole.mesh.places.arc[columns[:, 0]])
     pairs = _pairs(whole, columns)

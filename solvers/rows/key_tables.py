@@ -6,17 +6,20 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from meshonet.geometry.errors import InputError, NoValidGridError
+from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.rows.frame import UNITS
 from meshonet.geometry.rows.row import Row
-from meshonet.geometry.threads import in_threads
+from meshonet.geometry.threads import in_threads, run_in_threads
 from meshonet.solvers.blocking.cascade.cascade import SHORTEST
 from meshonet.solvers.blocking.cascade.passage import INLET, NEAR, OUTLET
 from meshonet.solvers.rows.behind import even_behind
 from meshonet.solvers.rows.key_sections import KeySection, LayerColumns, NextSections, SectionPlan, planned
+from meshonet.solvers.rows.middle_section import coarse_section
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.span_lines import key_heights
 
@@ -45,9 +48,9 @@ def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
     `first` and `growth` are the first-cell height and the growth ratio of the layers around the blade. Raises
     InputError: no room for layers, inlet or outlet. Raises NoValidGridError: cells are folded.
     """
-    planes = _planes(row, first, growth)
+    planes, coarse = _planes(row, first, growth)
     gaps = row.hub_gap > 0.0, row.tip_gap > 0.0
-    plan, columns, middle = planned(planes, cells, _longest(planes), _wake(row, planes), gaps)
+    plan, columns, middle = planned(planes, coarse, cells, _longest(planes), _wake(row, planes), gaps)
     half = KEYS // 2
 
     def chain(others: Sequence[int]) -> list[KeySection]:
@@ -64,8 +67,12 @@ def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
     return KeyTables(plan, even_behind((*below[::-1], middle, *above), plan.columns))
 
 
-def _planes(row: Row, first: float, growth: float) -> list[SectionPlane]:
-    """Return the key sections; in the middle one straight rows lead to inlet and outlet."""
+def _planes(row: Row, first: float, growth: float) -> tuple[list[SectionPlane], Layout | None]:
+    """Return the key sections, and the coarse blocks of the middle one, if they are known yet.
+
+    In the middle section straight rows lead to inlet and outlet. They are longest, unless a section has less
+    room: it is begun with these while the other sections are not known.
+    """
 
     def plane_at(height: float) -> SectionPlane:
         plane = SectionPlane.of(row, height, first, growth)
@@ -73,12 +80,23 @@ def _planes(row: Row, first: float, growth: float) -> list[SectionPlane]:
             _ = plane.cascade.reach, plane.across  # marches the layers
         return plane
 
-    planes = in_threads(plane_at, key_heights(KEYS).tolist())
+    def begun(height: float) -> tuple[SectionPlane, Layout | None]:
+        middle = plane_at(height)
+        plane = middle.ending((NEAR, NEAR), middle.thickest)
+        try:
+            return plane, coarse_section(plane)
+        except (InputError, NoValidGridError):  # once the others are known it is clear why
+            return plane, None
+
+    half, heights = KEYS // 2, key_heights(KEYS).tolist()
+    others = [partial(plane_at, height) for k, height in enumerate(heights) if k != half]
+    (plane, coarse), *made = run_in_threads([partial(begun, heights[half]), *others])
+    planes = [*made[:half], plane, *made[half:]]
     _check_room(row, planes)
-    before, behind = (min(NEAR, _PART * min(plane.room[k] for plane in planes)) for k in (0, 1))
-    half = KEYS // 2
-    planes[half] = planes[half].ending((before, behind), planes[half].thickest)
-    return planes
+    near = tuple(min(NEAR, _PART * min(plane.room[k] for plane in planes)) for k in (0, 1))
+    if near != plane.cascade.near:
+        planes[half], coarse = plane.ending(near, plane.thickest), None
+    return planes, coarse
 
 
 def _check_room(row: Row, planes: Sequence[SectionPlane]) -> None:

@@ -35,23 +35,33 @@ at which this ends.
 """
 
 
-def middle_section(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float]) -> Layout:
+def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
+    """Return the coarse blocks of a section, `early` with nodes at corners of the blade from the start.
+
+    Raises InputError: no room for inlet or outlet. Raises NoValidGridError: cells are folded.
+    """
+    return _sized(template(plane.cascade.passage, at_corners=early), FIRST, None)
+
+
+def middle_section(
+    planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], coarse: Layout | None = None
+) -> Layout:
     """Return the middle section of `planes`, with about `cells` cells, its layers and its rows.
 
     `longest` are the largest lengths of the rows to inlet and outlet in any section, by the number of their
-    loop. Raises NoValidGridError: cells are folded.
+    loop; `coarse` is the `coarse_section`, if it is known. Raises NoValidGridError: cells are folded.
     """
+    plane = planes[len(planes) // 2]
     try:
-        return _made(planes, cells, longest, early=True)
+        return _made(planes, cells, longest, coarse or coarse_section(plane))
     except NoValidGridError:
-        return _made(planes, cells, longest, early=False)
+        return _made(planes, cells, longest, coarse_section(plane, early=False))
 
 
-def _made(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], *, early: bool) -> Layout:
-    """Return the middle section, `early` with nodes at corners of the blade from the start."""
+def _made(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], coarse: Layout) -> Layout:
+    """Return the middle section from its coarse blocks."""
     plane = planes[len(planes) // 2]
     cascade = plane.cascade
-    coarse = _sized(template(cascade.passage, at_corners=early), FIRST, None)
     chords = Chords.of(coarse)
     rows = max(each.cascade.rows_of_layers for each in planes)
     ends = [chords.chord[chords.sides[block, 0]] for block in (TRAILING, LEADING)]
