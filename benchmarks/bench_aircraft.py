@@ -61,7 +61,8 @@ Grids have {around} nodes around the wing and {span} along the span, and a far f
 - *normals*: 95th percentile of the angle between a grid line that leaves a wall and the normal of the wall.
 - *CPU s*: one thread of {machine}, while other programs used the machine.
 
-{made} of {count} are made, {folded} of them folded; seams: {seams:g}.
+A grid was made for {made} of the {count} aircraft; {folded} of these grids have folded cells. *seams* is
+{seams:g}.
 
 | figure | best | median | worst |
 | --- | --- | --- | --- |

@@ -155,20 +155,21 @@ def wakes() -> str:
 WAKES = """
 ## C grids: no model
 
-A C grid is a four-sided domain whose south side consists of wake, airfoil and wake. The table is over three
-airfoils with far fields at 5 and 15 chords, 201 x 65 nodes. The network for four-sided domains was not
-trained on such domains, and its 33 nodes are too few for the long south side. Without iteration it is worse
-than TFI. No model for C grids is shipped; `infer` marches them from the wall.
+A C grid is a four-sided domain whose south side consists of wake, airfoil and wake. The table gives averages
+over six grids of 201 x 65 nodes: around three airfoils, each with a far field at 5 and at 15 chords. The
+network for four-sided domains was not trained on such domains, and its 33 nodes are too few for the long
+south side. Without iteration its grids are worse than those of TFI. No model for C grids is shipped; `infer`
+marches C grids from the wall.
 
 | method | valid % | max / mean angle, average | CPU ms, median |
 | --- | --- | --- | --- |"""
 HOLES = """
 ## The moving hole of the MeshONet paper, 101 x 101
 
-`hole-winslow` and the paper's models: median relative L2 distance to Winslow's solution; in brackets, how
-many grids have folded cells. `hole-o` and Winslow: largest / mean angle, averaged. The network was not
-trained on holes of this family; the paper's models were trained on 30 of them
-([the reproduction](paper/index.md)).
+For `hole-winslow` and the paper's models, the table gives the median relative L2 distance to Winslow's
+solution and, in brackets, how many grids have folded cells. For `hole-o` and Winslow's grid, it gives the
+largest and the mean angle of a grid, averaged over the grids. The network was not trained on holes of this
+family; the paper's models were trained on 30 of them ([the reproduction](paper/index.md)).
 
 | split | hole-winslow | 2 cycles | MeshONet | MeshONet-hard | hole-o | hole-o, 5 steps | Winslow |
 | --- | --- | --- | --- | --- | --- | --- | --- |"""
@@ -188,9 +189,9 @@ bodies. For the method see [neural operators](../theory/operators.md).
   those of Winslow's grid.
 - *angle*: largest included angle of each cell, in degrees. The tables give the maximum and the mean over
   the cells, averaged over the bodies.
-- *gain*: reduction of the angle relative to Winslow's grid, divided by the reduction that the full
-  variational grid achieves. For the mean angle, the value summed over all bodies and the median are
-  given.
+- *gain*: how much smaller the angle is than in Winslow's grid, divided by how much smaller it is in the full
+  variational grid. *all*: both differences are summed over the bodies before the division. *median*: the
+  ratio is computed for each body, and the median of the ratios is given.
 - Bodies for which Winslow's iteration does not converge, a few in a hundred, are left out.
 - *CPU ms*: CPU time of one thread, while other programs used the machine.
 """
@@ -200,14 +201,16 @@ TAIL = """
 - `infer` without `--model` uses `hole-o` for compact bodies for which the conformal map fails. If the
   network's grid on 65 x 33 nodes has folded cells, the elliptic solver generates the grid instead.
 - With five iterations after the network the grids of all bodies are valid, whereas a quarter of Winslow's
-  grids have folded cells before repair. The network with five iterations takes up to four times the time
-  of Winslow's grid, and its angles are closer to 90 degrees.
-- `solve-pde --method variational` has the best angles and takes about four times as long again.
-- Both variational grids cluster grid lines where a body is close to its far field.
+  grids have folded cells before repair. The network with five iterations takes about three times as long as
+  Winslow's method, and its angles are closer to 90 degrees.
+- `solve-pde --method variational` has the best angles; it takes about three times as long as the network with
+  five iterations.
+- In the grids of the network and of the variational method, grid lines cluster where a body is close to its
+  far field.
 - Smooth bodies in a round far field and thin bodies are meshed by the conformal map without a network.
-- The network was not trained on bodies whose centroid lies outside them, such as clips, crescents and
-  angle sections. Its grids for these often have folded cells, which the five iterations or the repair
-  remove. Of 25 plates, crescents and angle sections, all were valid after the iterations.
+- The network was not trained on bodies whose centroid lies outside them, such as clips, crescents and angle
+  sections. Its grids around such bodies often have folded cells, which five iterations or the repair remove.
+  For 25 plates, crescents and angle sections, all grids were valid after the iterations.
 """
 
 if __name__ == "__main__":

@@ -179,18 +179,20 @@ network imitates. The expected error is the distance by which these steps move t
 of the grid. The steps are 16 iterations of the variational method for `quad-general` and `hole-o`, one more
 Picard step for `airfoil-o`, and two multigrid cycles of Winslow's equations for `quad-winslow` and for the
 networks of [the paper](../theory/paper-models.md). The true error is the relative L2 distance from the
-converged solution. An answer is accepted if its expected error is
-at most {threshold:g} and none of its cells is folded. With `--fallback`, `infer` solves for all other grids.
+converged solution. An answer is accepted if its expected error is at most {threshold:g} and none of its cells
+is folded. With `--fallback`, `infer` replaces every answer that is not accepted by a grid of the solver.
 
-Shapes are {count} of each kind in `benchmarks/yardstick`, which no network was trained on: six kinds of
-four-sided domains with 65 x 65 nodes, three kinds of bodies with 65 x 33. `meshonet` was trained on 30 arches
-of 33 x 33 nodes; it is evaluated on arches, on the paper's hexagons and semicircles, and on two of the six
-kinds. Its boundary nodes are replaced by the given nodes, which folds cells.
+The shapes are of the nine kinds in `benchmarks/yardstick`, on which no network was trained; there are {count}
+shapes of each kind. Six kinds are four-sided domains with 65 x 65 nodes, three kinds are bodies with 65 x 33
+nodes. `meshonet` was trained on 30 arches of 33 x 33 nodes; it is evaluated on arches, on the paper's
+hexagons and semicircles, and on two of the six kinds of four-sided domains. The boundary nodes that
+`meshonet` predicts are replaced by the given nodes; this folds cells.
 
 - *error*: true error. *correlation*: rank correlation of expected and true errors. *ratio*: expected error
   divided by true error, 5th, 50th and 95th percentile.
 - *low*: number of answers whose expected error is at most the threshold, with or without folded cells.
-- *folded*: number of these answers that have folded cells. *others*: number of the other answers that have.
+- *folded*: number of answers counted in *low* that have folded cells. *others*: number of answers with folded
+  cells among the answers whose expected error is above the threshold.
 - *ms*: CPU time of one thread.
 
 | network | grids | error, median / worst | correlation | ratio, 5 / 50 / 95 % | low | folded | others | ms |

@@ -76,9 +76,9 @@ takes a few milliseconds for a thousand parts and grows with their number. Parts
 to 1,000 inputs or 256 MiB. A part holds at most 500 grids of 200 x 100 nodes, so a million of them are
 2,000 parts.
 
-The two formats are about equally fast once Zarr is imported. meshonet uses HDF5 virtual datasets because
-the same ten lines of h5py, MATLAB or Julia read an index file, a part and a dataset in one file, and
-because they add no dependency.
+The two formats are about equally fast once Zarr is imported. meshonet uses HDF5 virtual datasets for two
+reasons: the same ten lines of h5py, MATLAB or Julia read an index file, a part and a dataset in one file; and
+meshonet needs no further package.
 """
 READER = """
 import json, sys, time, h5py
@@ -252,12 +252,15 @@ def page(members: int, size: int, repeats: int, parts: Iterable[int]) -> str:
         numbers = (0, members // 2, members - 1)
         lines = [
             "", "| | |", "| --- | --- |",
-            f"| grids, parts ({size:,} grids each) | {members:,}, {figures['parts']:,} |",
-            f"| time in total in s, per grid | {figures['seconds']:.0f}, "
+            f"| number of grids; number of parts with {size:,} grids each | {members:,}; "
+            f"{figures['parts']:,} |",
+            f"| time in total; time per grid | {figures['seconds']:.0f} s; "
             f"{1e6 * figures['seconds'] / members:.0f} µs |",
-            f"| memory after a tenth of the grids, at the end | {watched[0]:.0f} MB, {watched[-1]:.0f} MB |",
-            f"| size of largest part, all parts | {figures['largest']:.2f} MB, {figures['all']:.0f} MB |",
-            f"| index file: time to write it in s, size | {figures['index_seconds']:.1f}, "
+            f"| memory of the process after a tenth of the grids; at the end | {watched[0]:.0f} MB; "
+            f"{watched[-1]:.0f} MB |",
+            f"| size of the largest part; of all parts together | {figures['largest']:.2f} MB; "
+            f"{figures['all']:.0f} MB |",
+            f"| index file: time to write it; its size | {figures['index_seconds']:.1f} s; "
             f"{figures['index']:.2f} MB |",
             READING.format(repeats=repeats),
             "| sample | open file, ms | read nodes, ms | read name, ms |", "| --- | --- | --- | --- |",

@@ -47,10 +47,11 @@ either direction about a point near its leading edge, in a multi-block grid of a
 first-cell heights of 1e-5.
 
 - *deformations*: kind, with the number of deformations in brackets. Deformations whose new outline is not
-  valid are left out; there were {refused}.
+  valid are left out; their number is {refused}.
 - *folded*: number of grids with folded cells, and the largest number of folded cells in one grid.
 - *first cell*: largest relative change of a first-cell height, over all wall nodes and deformations.
-- *angle*: by how many degrees the largest cell corner angle grows, in the grid where it grows most.
+- *angle*: increase of the largest cell corner angle of a grid by the deformation, in degrees; the table gives
+  the largest increase over all deformations.
 - *CPU ms*: CPU time from the grid and the new outline in memory to the new grid in memory, median / 90th
   percentile, one thread of {machine}, while other programs used the machine.
 - *IDW*: interpolation of displacements with weights 1/r^3 (Witteveen, Bijl, AIAA 2009-3996). *IDW,
@@ -60,10 +61,10 @@ first-cell heights of 1e-5.
 
 """
 TAIL = """
-`meshonet deform` uses the method of Luke, Collins and Blades with the exponents 2 and 4, because these grids
-are two-dimensional (3 and 5 in their paper). It sums near wall nodes one by one and distant nodes in groups.
-If the result has folded cells, `deform` repeats the deformation in several steps. Number of deformations
-that needed this: {steps}.
+`meshonet deform` uses the method of Luke, Collins and Blades. Their paper has the exponents 3 and 5; for
+two-dimensional grids, as here, `deform` uses 2 and 4. It sums near wall nodes one by one and distant nodes in
+groups. If the result has folded cells, `deform` repeats the deformation in several steps. The number of
+deformations that needed several steps is {steps}.
 """
 SEED = 20261122
 COLUMNS = "deformations", "method", "folded", "first cell", "angle", "CPU ms"

@@ -52,9 +52,9 @@ Times are CPU times of one thread on {processor}, in float64, while other progra
 OTHERS = """
 ## Compared with other programs
 
-Times in seconds for an elliptic grid or its nearest equivalent. The times of the paper (arXiv 2501.11937,
-table of mesh refinement; its network ran on an RTX 4090) and of Construct2D (user time) were measured on
-other machines.
+The table gives times in seconds for an elliptic grid, or for the most similar grid that the program makes.
+The times of the paper (arXiv 2501.11937, table of mesh refinement; its network ran on an RTX 4090) and of
+Construct2D (user time) were measured on other machines.
 
 | program | 100x100 | 200x200 | 250x100 | 400x400 | 800x800 | 1600x1600 | 3200x3200 |
 | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -139,7 +139,7 @@ def conformal(n: int) -> Floats:
 def order() -> Iterator[str]:
     """Yield errors against the conformal map, and the fitted slope."""
     yield "\n## Order of convergence\n"
-    yield "Largest error of a node against the conformal map z = exp ζ, an exact solution.\n"
+    yield "The error is the largest distance of a node from the exact solution, the map z = exp ζ.\n"
     yield "| nodes | error |\n| --- | --- |"
     counts, errors = np.array([17, 33, 65, 129, 257]), []
     for n in counts.tolist():
@@ -148,7 +148,7 @@ def order() -> Iterator[str]:
         errors.append(float(np.abs(solve(edges, tol=1e-10, max_cycles=60).grid.nodes - exact).max()))
         yield f"| {2 * n - 1} x {n} | {errors[-1]:.1e} |"
     slope = -np.polyfit(np.log(counts - 1), np.log(errors), 1)[0]
-    yield f"\nFitted slope {slope:.2f}."
+    yield f"\nThe order of convergence, fitted to these errors, is {slope:.2f}."
 
 
 def ramp(x: Floats, steepness: float) -> Floats:

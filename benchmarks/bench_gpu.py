@@ -40,9 +40,9 @@ TITLE = """# GPU
 """
 HEAD = """
 Use this page to find the speed of training and of batched grids on a GPU. For its use see [threads and
-GPUs](../guide/threads-and-gpu.md). The page is made by
-`python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md`. The benchmark starts no measurement after
-seven minutes and ends within eight; rows say which were not made. Four things are measured.
+GPUs](../guide/threads-and-gpu.md). The page is made by `python benchmarks/bench_gpu.py --page
+docs/benchmarks/gpu.md`. The benchmark starts no measurement after seven minutes and ends within eight
+minutes; the tables say which measurements were not made. Four things are measured.
 
 - **Layers**: the functions of `meshonet.layer`: exact solvers, and for comparison the network `quad-general`.
   Sides are in the memory of the device. The table has the grids per second without and with gradients, the

@@ -62,7 +62,11 @@ grids by `--te wedge`.
   all corners.
 - *growth*: largest relative change of size between neighbouring cells, along the wall (xi) and away from
   it (eta).
-- Rows for groups of shapes give the median / the 90th percentile over the shapes.
+- Rows for groups of shapes give the median / the 90th percentile over the shapes. *files* are airfoil files,
+  with a sharp or a blunt trailing edge; a blunt edge is *rounded* (`--te round`) or kept (*exact*).
+  *procedural* airfoils are random; their wall nodes follow all node distributions in turn, and in some of
+  them adjacent cells differ in length by a factor of three, and cells at the trailing edge are hardly longer
+  than they are high.
 - *CPU ms*: CPU time from the file (for procedural airfoils: from the boundary) to nodes in memory, best
   of {repeat} runs (procedural: one run), one thread of {machine}, while other programs used the machine.
 
@@ -74,9 +78,9 @@ sharp trailing edge therefore get a C grid unless `--topology` is given.
 CONSTRUCT2D = """
 ## Compared with Construct2D
 
-The same metrics for the hyperbolic grids of Construct2D: 250x100 nodes, first-cell height 1e-5, all
-corners of all cells. Construct2D rounds blunt trailing edges; its O grids are therefore compared with
-meshonet's grids with rounded edges.
+The table compares with hyperbolic grids of Construct2D: 250x100 nodes, first-cell height 1e-5. The metrics
+are computed as above, from all corners of all cells. Construct2D rounds blunt trailing edges; its O grids are
+therefore compared with meshonet's grids with rounded edges.
 
 | grid | deviation of Construct2D, max / mean | deviation of meshonet, max / mean |
 | --- | --- | --- |
@@ -84,12 +88,8 @@ meshonet's grids with rounded edges.
 | O, LS(1)-0417, blunt | 24.8 / 3.3 | see the blunt, rounded files |
 | C, NACA 0012, sharp | 14.2 / 1.8 | {1} |
 
-For Construct2D the growth is 0.10 to 0.18 along the wall and 0.13 away from it. The first-cell height is
-exact. Construct2D takes 150 to 270 ms at 250x100 nodes and 1.24 s at 500x200.
-
-The walls of the procedural airfoils use every type of node distribution. In some of them adjacent cells
-differ in length by a factor of three, and cells at the trailing edge are hardly longer than they are
-high.
+In the grids of Construct2D the growth is 0.10 to 0.18 along the wall and 0.13 away from it, and the
+first-cell height is exact. Construct2D takes 150 to 270 ms at 250x100 nodes and 1.24 s at 500x200.
 """
 DEFAULT_FIRST_CELL = """
 ## C grids without a first cell

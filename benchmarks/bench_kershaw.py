@@ -35,14 +35,15 @@ optimiser of [MFEM](https://mfem.org). The test case is Kershaw's map of the uni
 compresses the cells in six layers; its parameter ε, the same for y and z, is 1 for the uniform grid, and
 smaller values compress the cells more.
 
-The objective is metric 303 of TMOP with ideal targets, the mean over all cells of the integral of
-f = |**T**|² / (3 det(**T**)^⅔) − 1 over the unit cube, where **T** is the Jacobian matrix of the map from
-the unit cube to the cell and |**T**| its Frobenius norm. The objective is 0 if all cells are cubes. It is
+The objective is metric 303 of TMOP with ideal targets. For one cell, it is the integral of f = |**T**|² / (3
+det(**T**)^⅔) − 1, where **T** is the Jacobian matrix of the map from a reference cube to the cell and |**T**|
+its Frobenius norm. The objective of a grid is the mean over its cells; it is 0 if all cells are cubes. It is
 evaluated for all grids with the quadrature that TMOP uses by default, Gauss-Lobatto with six points per
 direction.
 
-Angle statistics are over all cell corners; each corner counts the largest deviation from 90 degrees of
-its three angles. SJ is the scaled Jacobian at the corners. Times are CPU times of one thread.
+*Deviation*: for each cell corner, the largest deviation of its three angles from 90 degrees; the table gives
+the mean and the 99th percentile over all corners. *SJ*: scaled Jacobian at the corners. Times are CPU times
+of one thread.
 """
 TAIL = """
 TMOP is set up as in MFEM's mini-app `mesh-optimizer` with `-mid 303 -tid 1`: Newton's method with at most

@@ -44,10 +44,10 @@ the distance between their grids, folded cells, and the time of a gradient. Each
 of domains in double precision, and once more in single precision, with sides rounded to single precision.
 
 - *Distance*: largest distance between a node and the corresponding node of the compiled solver, relative to
-  the domain size, over all domains. For single precision, the compiled solver gets the rounded sides; the
-  nodes of the layer are then rounded to 6e-8.
-- *Folded*: number of domains whose grid has folded cells. *More*: how many of these domains have none in the
-  grid of the compiled solver.
+  the domain size, over all domains. For single precision, the compiled solver gets the rounded sides, and the
+  nodes of `meshonet.layer` are rounded to 6e-8.
+- *Folded*: number of domains for which the grid of `meshonet.layer` has folded cells. *More*: number of
+  domains for which only the grid of `meshonet.layer` has folded cells, not the grid of the compiled solver.
 - *Backward*: time of the gradient with respect to all boundary nodes, divided by the time of the grids.
 - Times are CPU times of one thread.
 
@@ -55,11 +55,11 @@ Airfoils without a conformal map are left out: 2 of the first 1,000.
 """
 
 TAIL = """
-The compiled variational solver stops before the optimum. Newton's method with the compiled gradient therefore
-continues the minimisation, and the distance is measured from the nodes that it finds. For `conformal`, the
-compiled Picard steps are repeated until nodes do not move any more. The discrete solution of Winslow's
-equations has folded cells at sharp corners; `solve-pde` repairs these cells. `variational` converges for
-all 924 domains, without folded cells.
+The compiled variational solver stops before the optimum. For this comparison, Newton's method with the
+compiled gradient therefore continues the minimisation to the optimum, and the distance is measured from the
+optimum. For `conformal`, the compiled Picard steps are repeated until nodes do not move any more. The
+discrete solution of Winslow's equations has folded cells at sharp corners; `solve-pde` repairs these cells.
+`variational` converges for all 924 domains, without folded cells.
 """
 
 FUNCTIONS = "transfinite,winslow,variational,conformal"

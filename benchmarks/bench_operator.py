@@ -244,23 +244,25 @@ HEAD = """# All methods compared: airfoils and four-sided domains
 Use this page to find, for each method, the CPU time and the distance of its grid to a converged solution. For
 short advice see [choosing a method](../start/choosing-a-method.md).
 
-**Timing.** All methods of a table ran on the same boundaries, in one run, on {machine}, while other
-programs used the machine. *ms* is the CPU time to generate the grid, including set-up, without reading,
-writing and repair. Each value is the median over the shapes, with one run each. The last digits are not
-significant. Bold rows are what `infer` does, and networks.
+**Timing.** All methods of a table ran on the same boundaries, in one run, on {machine}, while other programs
+used the machine. *ms* is the CPU time to generate the grid, including set-up, without reading, writing and
+repair. Each value is the median over the shapes, with one run each. The last digits are not significant. Bold
+rows are the default of `infer` and the networks.
 
 **Methods.** `infer, default`: the command without options.
 
 | row | how the grid is made |
 | --- | --- |
-| Winslow, coarse 65 | solved on 65 nodes a direction, interpolated, and smoothed |
-| harmonic base | conformal map of the outside; distribution of wall nodes extended harmonically |
-| + 1 Picard step | a step of fixed-point iteration for Winslow's equations in the plane of the map |
-| network alone, + 1 Picard step | the network `airfoil-o` corrects the harmonic base; then such a step |
-| network, polish auto | as many steps as are needed |
+| Winslow, coarse 65 | Winslow's equations on 65 x 65 nodes; the solution is interpolated and smoothed |
+| harmonic base | harmonic extension of the boundary nodes; around airfoils in the conformal strip |
+| base + 1 Picard step | harmonic base; then one fixed-point step for Winslow's equations in the strip |
+| network alone | the network `airfoil-o` corrects the harmonic base |
+| network + 1 Picard step | one Picard step after the network |
+| network, polish auto | Picard steps after the network, until they hardly change the grid |
 | quad-general, 5 steps | the network for variational grids, then 5 steps of minimisation |
 | quad-winslow, 2 cycles | the network for Winslow's grids, then 2 cycles of multigrid |
-| MeshONet, MeshONet-hard | networks of the paper: with a penalty for the boundary, or exact on it |
+| MeshONet | the network of the paper; its boundary nodes approximate the given nodes |
+| MeshONet-hard | a similar network, whose boundary nodes are exactly the given nodes |
 
 **Distance** is a relative L2 norm: the root mean square distance of the nodes to the reference nodes,
 divided by the root mean square distance of the reference nodes to the centre of the shape. *Near the
@@ -279,28 +281,29 @@ Remarks:
 
 - TFI distributes nodes differently in the interior, so its distance says little about its quality.
 - Multigrid Winslow stops by default when the error of the iteration is below the discretisation error.
-- The conformal map cannot resolve the wall cells of some bodies. `infer` uses multigrid or the model
-  `hole-o` for such bodies, from which the largest distances in its row come.
+- The conformal map cannot resolve the wall cells of some bodies. For such bodies `infer` uses multigrid or
+  the model `hole-o`; the largest distances in the row of `infer` are those of these bodies.
 - In the tables of distances each boundary consists of every fourth node of a finer boundary (at 800x800
   every second), which can omit corners of a blunt trailing edge and change the largest angles there by a
   few percent. The table of folded cells uses boundaries that are sampled directly.
 - For walls with uniform spacing the reference is accurate only to about 1e-4, because Winslow's
   solution converges only with order 1.4 at trailing edges. The operator also differs from the reference by
   design: the grid lines that leave the trailing edge bisect its angle.
-- Titles have the number of shapes in brackets; a few have no converged reference and are not in the table.
+- The titles of tables give the number of shapes in brackets. A few of these shapes have no converged
+  reference and are left out of the table.
 """
 DOMAINS_NOTE = """The reference of Winslow's methods and `quad-winslow` is Winslow's solution; that of
 variational methods and `quad-general` is the converged variational grid."""
 FAMILIES_NOTE = """
 ## The six families of the MeshONet paper, 101x101, test members
 
-Median relative L2 distance of all nodes to Winslow's converged solution; in brackets, how many of the six
-test members of a row have folded cells. Winslow's own grids of the wrench have folded cells. The operator is
-`quad-winslow` for the first four families, the airfoil operator for the airfoil and `hole-winslow` for
-the plate with a hole. None of them was trained on these shapes. The paper's models were trained on 30
-members of each family; *interpolation* is inside and *extrapolation* outside the range of training. Their
-values are from [the reproduction of the paper](paper/index.md), whose reference is the grid of the PDE
-solver.
+The table gives the median relative L2 distance of all nodes to Winslow's converged solution and, in brackets,
+for how many of the six test members of a row the grid has folded cells. Winslow's own grids of the wrench
+have folded cells. The operator is `quad-winslow` for the first four families, the airfoil operator for the
+airfoil and `hole-winslow` for the plate with a hole. None of them was trained on these shapes. The paper's
+models were trained on 30 members of each family; *interpolation* is inside and *extrapolation* outside the
+range of training. The values of the paper's models are from [the reproduction of the paper](paper/index.md);
+their reference is the grid of the PDE solver.
 """
 TIMES_HEAD = """
 ## CPU time to generate the grid in milliseconds, float64, best of 3
@@ -308,14 +311,14 @@ TIMES_HEAD = """
 WHICH = """
 ## Consequences for the defaults of `infer`
 
-- **O grids around airfoils**: conformal map and Picard iteration without the network: as close to the
-  solution as with it, with equally good angles, in less time. `--model airfoil-o` chooses the network, and
-  so does `--polish off`.
-- **Four-sided domains**: the variational grid, solved on fewer nodes and interpolated if all sides are
-  resolved there. For a single grid the solver is better than any network. For batches,
+- **O grids around airfoils**: the default is the conformal map with Picard iteration, without the network.
+  Its grids are as close to the solution and have as good angles as with the network, in less time. `--model
+  airfoil-o` or `--polish off` selects the network.
+- **Four-sided domains**: the default is the variational method. If fewer nodes resolve all sides, it solves
+  on fewer nodes and interpolates. For a single grid the solver is better than any network. For batches,
   `--model quad-general` is many times faster than any solver ([measurements](quad-operator.md)).
-- **C grids**: hyperbolic marching from the wall and the wake, or the variational method if marching
-  fails. The network for four-sided domains generates worse C grids than TFI
+- **C grids**: the default is hyperbolic marching from the wall and the wake, or the variational method if
+  marching fails. The network for four-sided domains generates worse C grids than TFI
   ([measurements](body-operator.md#c-grids-no-model)).
 - **Batches of airfoils** gain little from the network. It runs for 64 airfoils at once, but the map,
   the iteration and the computation of nodes run for one body after the other.

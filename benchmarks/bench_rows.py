@@ -53,10 +53,11 @@ casing. Random properties of these rows:
 | channel | cylindrical, conical or curved |
 | gap | 0 to 3 % of the span, in two of three rows; the others have no gap |
 
-Random rows have {cells} cells, or more if their layers need more, and first cells of {first:g} chords.
-Radial rows are in turn centrifugal impellers, radial turbines, mixed-flow pumps and vaned diffusers of
-`tests/radial_rows.py`. About half of the first three kinds have a tip gap. Their numbers of cells are chosen
-as for random rows.
+Random rows have {cells} cells, or more if their layers need more, and first cells of {first:g} chords. Radial
+rows are in turn centrifugal impellers, radial turbines, mixed-flow pumps and vaned diffusers of
+`tests/radial_rows.py`. About half of the first three kinds have a tip gap. The numbers of cells of radial
+rows are chosen as for random rows. In the rows of the table for several grids, *nodes* and *CPU s* are
+medians.
 
 - *folded*: number of cells with a corner Jacobian / a Bezier coefficient of the Jacobian of zero or less.
 - *SJ*: scaled Jacobian of cells: minimum / 0.1th percentile / mean. For groups of rows: minimum of each row,

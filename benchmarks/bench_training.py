@@ -219,8 +219,10 @@ settings are explained in [paper models](../theory/paper-models.md).
 
 The model `meshonet` is trained on 30 arches of 101 x 101 nodes. Times are CPU times of one thread. The
 published scheme processes one geometry per step. It is not known whether it uses all grid points or a random
-sample of them, so the table has both. The loss is that of all points of all grids, after the stated number
-of geometries. With several random seeds it is the median (minimum to maximum)."""
+sample of them; the first two rows of the table are for these two cases. The two columns of speed-up compare
+the speed with the first and with the second row. The loss is computed from all points of all grids, after the
+stated number of geometries. If a loop was run with several random seeds, the median of the losses is given,
+with minimum and maximum in brackets."""
 
 
 if __name__ == "__main__":

@@ -228,22 +228,24 @@ to see what `--coarse N` saves and costs. The methods are described in [elliptic
   lines that leave them.
 - *distance to full solve*: relative L2 distance to the solution of the same method without `--coarse`.
 - *folded*: number of folded cells in the solution, before repair.
+- *worse than Winslow's*: number of grids whose maximum or mean angle is larger than that of Winslow's grid of
+  the same domain.
 - *CPU ms*: CPU time of one thread, best of several runs, while other programs used the machine.
 
-Around a notch the full variational solve takes many iterations on fine grids; there `--coarse auto`
-solves on fewer nodes. The distance between a solution on 33 nodes and the full solution is the
-discretisation error of the coarse solution, which is of second order. The distance does not change if
-both solutions are converged to 1e-6.
+Around a notch the full variational solve takes many iterations on fine grids; `--coarse auto` solves on fewer
+nodes if the grid is fine. The distance between a solution on 33 nodes and the full solution is the
+discretisation error of the coarse solution, which is of second order. The distance does not change if both
+solutions are converged to 1e-6.
 
 ![Grids by five methods, coloured by the largest included angle](../img/quad-grids.png)
 """
 PAPER = """
 ## What the MeshONet paper reports
 
-Xiao et al., arXiv 2501.11937, compare methods by colour maps of the largest included angle, without
-numbers. They report that MeshONet is better than their PDE solver and TFI on arches and hexagons, equal
-to TFI on wrenches, and not always better on moved semicircles. Their times in seconds, with Python on
-another machine and MeshONet on a GPU:
+Xiao et al., arXiv 2501.11937, compare methods by colour maps of the largest included angle, without numbers.
+They report that MeshONet is better than their PDE solver and TFI on arches and hexagons, equal to TFI on
+wrenches, and not always better on moved semicircles. The table gives their times in seconds. The programs are
+in Python and ran on another machine, MeshONet on a GPU.
 
 | nodes | PDE | TFI | MeshONet |
 | --- | --- | --- | --- |

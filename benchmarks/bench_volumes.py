@@ -40,18 +40,19 @@ HEAD = """# Volumes inside six faces
 
 Use this page to find the CPU time and the quality of volume grids inside six faces. For their use see
 [volumes](../guide/volumes.md). Times are CPU times of one thread, the minimum of several runs. The table
-gives each time relative to that of copying the nodes into memory that is already allocated. Each cell corner
-counts the largest deviation from 90 degrees of its three angles. SJ is the scaled Jacobian at the
-corners.
+gives each time relative to that of copying the nodes into memory that is already allocated. *Deviation*: for
+each cell corner, the largest deviation of its three angles from 90 degrees; the tables give the mean and the
+99th percentile over all corners. *SJ*: scaled Jacobian at the corners.
 """
 
 NETWORKS = """## A network: 3DMeshNet
 
 `train --model meshnet` trains a 3DMeshNet for each of the first {count} of these domains, with {epochs} steps
-(15,000 by default), default settings and seed 0. The training is part of the CPU time. The faces of the
-network miss the given ones by {off} % of the size of the domain (largest distance, median).
-The faces of the network are therefore replaced by the given faces (`infer --answer pasted`). *Repaired* is
-the output of `infer` by default.
+(15,000 by default), default settings and seed 0. The training is part of the CPU time. The boundary nodes
+that the network predicts do not lie on the given faces. The largest distance of a boundary node from its
+given position is {off} % of the size of the domain (median over the domains). The predicted boundary nodes
+are therefore replaced by the given nodes (`infer --answer pasted`). *Repaired* is the output of `infer` by
+default.
 """
 
 METHODS: dict[str, Callable[[SixFaces], Solution]] = {
@@ -122,8 +123,10 @@ def times(sizes: list[int]) -> str:
             "copy of the nodes": partial(np.copyto, out, other),
             "interpolation, linear": partial(interpolate, faces, uniform_laws(faces.counts), out=out),
             "interpolation, arc length": partial(interpolate, faces, arc_laws(faces), out=out),
-            "spline evaluation of a 33³ grid": partial(interpolate, faces, laws, spline, out),
-            "the same with coefficients, new memory": partial(refine_volume, planes, few, faces, laws),
+            "spline of a 33³ grid: evaluation only": partial(interpolate, faces, laws, spline, out),
+            "spline of a 33³ grid: coefficients, memory and evaluation": partial(
+                refine_volume, planes, few, faces, laws
+            ),
             "test of all corner Jacobians": partial(count_folded, np.moveaxis(out, 0, -1)),
             "variational method, in total": partial(variational, faces),
         }
@@ -173,12 +176,16 @@ def domains(number: int, n: int) -> tuple[str, list[SixFaces]]:
             judged[name].append(values)
         if len(chosen) == number:
             break
-    lines = [f"{number} random domains of {n}³ nodes ({refused} more are refused: their faces fold cells).\n"]
+    lines = [
+        f"The table is for {number} random domains with {n}³ nodes. {refused} further random domains were\n"
+        "rejected, because no valid grid exists for their faces.\n"
+    ]
     lines += table(judged)
     own, other = (np.array(judged[name]) for name in ("variational", "Winslow"))
     worse = int(((own[:, 2] < other[:, 2] - 1e-9) | (own[:, 3] > other[:, 3])).sum())
     lines.append(
-        f"\nMean deviation or minimum SJ are worse than those of Winslow's grid in {worse} of {number}."
+        f"\nIn {worse} of the {number} domains the variational grid has a larger mean deviation or a\n"
+        "smaller minimum SJ than Winslow's grid."
     )
     return "\n".join(lines), chosen
 

@@ -52,8 +52,9 @@ Use this page to find the number of random wings for which a valid volume grid i
 these grids and the CPU time. For their use see [wings](../guide/wings.md) and [pipes](../guide/pipes.md).
 
 Each of the {count} wings has a random pair of {files} airfoil files as sections, sharp and blunt, with a
-taper of 0.25 to 1, a twist of -8 to 4 degrees, a sweep of -0.2 to 0.8 and a dihedral of -0.1 to 0.25 of
-the span. The far field is at 15 chords, or at 12 in the first row.
+taper of 0.25 to 1, a twist of -8 to 4 degrees, a sweep of -0.2 to 0.8 spans and a dihedral of -0.1 to 0.25
+spans (the displacement of the tip downstream and upwards). The far field is at 15 chords; in the first row of
+the table it is at 12 chords.
 
 - *valid*: grids without a folded cell, tested by the Jacobians at the eight corners of every cell and by
   the Bezier coefficients of the Jacobian. The other grids end in an error that names the place.
@@ -133,7 +134,7 @@ def pipes() -> str:
     knot[-1] = knot[0]
     paths = {
         "helix": (np.stack([2 * np.cos(6 * t), 2 * np.sin(6 * t), 3 * t], axis=1), 0.6),
-        "bend, radius 1.2 of the pipe's": (
+        "bend, with a radius of 1.2 times the radius of the pipe": (
             np.stack([1.2 * np.cos(turn), 1.2 * np.sin(turn), 0 * t], axis=1),
             1.0,
         ),

@@ -28,7 +28,8 @@ RIM = 0.1
 """Part of the rows along a side of a four-sided domain that counts as near it."""
 
 _RIVALS = """
-Methods without a network that are as good (valid grids, distances near the wall), in no more time:
+In these cases a method without a network makes at least as many valid grids as a network, is as close to the
+reference near the wall, and takes no more time:
 """
 
 
@@ -155,5 +156,6 @@ def as_good(found: Mapping[str, Floats]) -> str:
         ]
         if rivals:
             told.setdefault("; ".join(rivals), []).append(ours)
-    lines = [f"- for {'; '.join(ours)}: {rivals}".replace("**", "") for rivals, ours in told.items()]
+    pairs = (("; ".join(ours), rivals) for rivals, ours in told.items())
+    lines = [f"- As good as {own}: {rivals}.".replace("**", "") for own, rivals in pairs]
     return "\n".join([_RIVALS, *lines]) + "\n" if lines else ""

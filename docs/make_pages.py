@@ -230,10 +230,11 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     """Return the held-out errors of a network for four-sided domains or bodies."""
     counts = "33 x 33" if topology == "quad" else "65 x 33"
     lines = [
-        f"The held-out samples are {figures['domains']} random domains. One network predicts the variational",
-        f"and Winslow's grid. Errors are relative L2 distances from the solver's grid on {counts} nodes,",
-        "without polish (solver iterations after the network). *initial* is the median error of the initial",
-        "grid, which the network corrects; *valid* is the share of grids without folded cells.\n",
+        f"The held-out samples are {figures['domains']} random domains. One network predicts both the",
+        "variational grid and Winslow's grid. Errors are relative L2 distances from the solver's grid",
+        f"on {counts} nodes, without polish (solver iterations after the network). *initial* is the",
+        "median error of the initial grid, which the network corrects; *valid* is the share of grids",
+        "without folded cells.\n",
         "| predicted grid | median error | 90th percentile | initial | valid |",
         "| --- | --- | --- | --- | --- |",
     ]
@@ -247,9 +248,10 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "The largest angles of cells are smaller in variational grids than in Winslow's grids. The network\n"
-        f"reaches {100 * gain['mean_gain']:.0f} % of this reduction for the mean over all cells, and\n"
-        f"{100 * gain['max_gain']:.0f} % for the maximum over all cells.",
+        "Take the largest angle of each cell. Its mean and its maximum over all cells are smaller in\n"
+        "variational grids than in Winslow's grids. The network reaches "
+        f"{100 * gain['mean_gain']:.0f} % of the reduction\n"
+        f"of the mean and {100 * gain['max_gain']:.0f} % of the reduction of the maximum.",
     ]
     return lines
 
@@ -261,7 +263,8 @@ def families_page() -> str:
         member = family(name)
         lines += [
             f"## {name}\n",
-            f"{member.parameter}, {member.low:g} to {member.high:g}; topology {member.topology}.\n",
+            f"The parameter is the {member.parameter}, from {member.low:g} to {member.high:g}. "
+            f"The topology is {member.topology}.\n",
             f"![{name}](../img/{name}.png)\n",
         ]
     return "\n".join(lines)

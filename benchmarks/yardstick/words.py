@@ -13,8 +13,10 @@ There are nine kinds of random shapes, here {count} of each, drawn with seed {se
 and `section`. The boundary nodes are given.
 
 - *Grids*: the number of shapes for which there is a grid.
-- *Folded*: grids, and in brackets cells, with a corner whose Jacobian is not positive.
-- *Largest angle*, *least angle*: included angles of cells, in degrees.
+- *Folded*: number of grids with folded cells and, in brackets, number of folded cells. A cell is folded if
+  the Jacobian at one of its corners is not positive.
+- *Largest angle*: largest angle between two edges of a cell, in degrees: mean over the grids / maximum over
+  the grids. *Least angle*: smallest angle between two edges of a cell, over all grids.
 - *Skew*: the largest deviation of a cell's angles from 90 degrees, mean over the cells.
 - *Boundary error*: the largest distance of a boundary node from the given one, relative to the size of the shape.
 - *ms*: milliseconds of processor time of the whole command, start included, divided by the number of grids.
@@ -36,15 +38,16 @@ pasted`); folded cells are not repaired. Almost all grids of these operators hav
 are few, and the shapes on this page have other sizes and positions than the shapes for training. Their errors on one
 family of shapes, after longer training, are on [the page of the paper](paper/index.md).
 
-Each network `mgnet` or `meshnet` is trained for one geometry. There is one for the first shape of each kind, with 500
-steps; the training is part of the time.
+Each network `mgnet` or `meshnet` is trained for one geometry. Such a network was trained only for the first
+shape of each kind, with 500 steps; the column *ms* includes this training.
 
 ## How to enter
 
-1. Draw the shapes. Each kind is a file `build/yardstick/KIND.h5` with the arrays `south`, `north` (n, ni, 2), `west`, `east`
-   (n, nj, 2) and `names`. With `--plot3d` each kind is also a folder `KIND`. It has a 2D ASCII Plot3D file for each shape, whose
-   four blocks are the sides. For a body, south is the body, clockwise, and north the far field. West and east are the same
-   cut between them, whose nodes may move.
+1. Draw the shapes. Each kind is a file `build/yardstick/KIND.h5` with the arrays `south`, `north` (n, ni, 2),
+   `west`, `east` (n, nj, 2) and `names`. With `--plot3d` each kind is also a folder `KIND`. It has a 2D ASCII
+   Plot3D file for each shape, whose four blocks are the sides. For a body, south is the body, clockwise, and
+   north is the far field. West and east are the two sides of one cut from the body to the far field; the
+   nodes of this cut may move.
 
        python benchmarks/yardstick shapes build/yardstick --seed 1
 

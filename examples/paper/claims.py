@@ -114,7 +114,8 @@ def quality_claims(results: Path) -> str:
     text = (
         f"**Quality: {verdict}.** The mean of the largest angles is below TFI's in {below[0]} of {len(rows)} "
         f"cases, and below the PDE solver's in {below[1]}. If the network's own boundary nodes are kept, "
-        f"it is below both in {raw} of {len(rows)}, but such grids do not end on the given boundary."
+        f"the mean is below TFI's and the PDE solver's in {raw} of {len(rows)} cases, but such grids do not "
+        "end on the given boundary."
     )
     return f"{words.CLAIMS}\n{text}\n\n{table(head, rows)}"
 

@@ -38,9 +38,9 @@ WAYS = (
 DELIVERED = ("meshonet.valid", "meshonet-hard.valid")
 PHYSICS = (
     ("mgnet", "Winslow's equations and the boundary (`mgnet`)"),
-    ("mgnet-finite", "the same, derivatives by central differences (`finite=0.01`)"),
-    ("mgnet-lines", "and the nodes of 3 auxiliary lines of either direction (`lines=3`)"),
-    ("meshnet", "and the nodes of a solved 11 x 11 grid (`meshnet`)"),
+    ("mgnet-finite", "Winslow's equations (central differences, `finite=0.01`) and the boundary"),
+    ("mgnet-lines", "Winslow's equations, the boundary, and nodes of 3 grid lines per direction (`lines=3`)"),
+    ("meshnet", "Winslow's equations, the boundary, and the nodes of a solved 11 x 11 grid (`meshnet`)"),
 )
 TIMED = (("tfi", "TFI"), ("pde", "PDE"), ("meshonet", "MeshONet"), ("coarse", None), ("meshonet-hard", None))
 
@@ -170,7 +170,8 @@ def _compared(model: str, cases: Sequence[dict[str, list[float]]]) -> str:
     ratios = [mean(own[model]) / mean(own["meshonet"]) for own in cases]
     below = sum(ratio > 1.0 for ratio in ratios)
     times = f"{min(ratios):.2g} to {max(ratios):.2g} times"
-    return f"`{model}`: in {below} of {len(cases)}; its error is {times} MeshONet's."
+    fewer = f"`meshonet` has a smaller error than `{model}` in {below} of {len(cases)} cases"
+    return f"{fewer}; the error of `{model}` is {times} as large."
 
 
 def physics(results: Path) -> str:

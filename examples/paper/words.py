@@ -25,13 +25,16 @@ the random seeds.
 """
 
 CLAIMS = """
-The paper's claims about quality compare MeshONet with transfinite interpolation (TFI) and with the PDE solver. They are
-compared here with the largest included angle of a grid, mean over the test grids; lower is better. *Claimed* are the
-paper's words of each case: "better" as below, "slightly worse" as above; without a claim there is a dash.
+The paper's claims about quality compare MeshONet with transfinite interpolation (TFI) and with the PDE
+solver. Here we compare the largest included angle of a grid, averaged over the test grids; lower is better.
+The column *max angle against TFI / PDE* says whether MeshONet's angle is below, equal to or above the angle
+of TFI, and of the PDE solver. The column *claimed* translates the words of the paper: "better" means below,
+"slightly worse" means above. A dash means that the paper makes no claim.
 
-As in the paper, the boundary nodes of the network's output are replaced by the true ones (*boundary pasted*). If the error of
-the network at the boundary exceeds the height of the first row, this folds cells. `meshonet-hard` matches the boundary
-exactly. *Repaired* grids are the output of `infer` with its default options, which repair folded cells.
+As in the paper, the boundary nodes of the network's output are replaced by the true ones (*boundary pasted*).
+This folds cells if the error of the network at the boundary exceeds the height of the first row of cells.
+`meshonet-hard` matches the boundary exactly. *Repaired* grids are the output of `infer` with its default
+options, which repair folded cells.
 """
 
 SPEED = """
@@ -48,10 +51,10 @@ middle of the parameter range and trains on both ends. *Extrapolation* tests one
 parameters. All values are those of test grids. *Relative L2* is the distance from the converged Winslow solution.
 *Boundary error* is the largest distance of a boundary node of the network from the true one. Angles are in degrees.
 
-The rows *PDE* are the grids from which the models learn. For the wrench, Winslow's equations fold 4 to 18 cells of each
-grid at the two corners of 270 degrees; these cells are repaired. `meshonet-hard` has a trained trunk network. For wrench and
-airfoil it has instead modes that are computed from the training grids
-([reasons](../../theory/paper-models.md#meshonet-hard)).
+The rows *PDE* are the grids from which the models learn. For the wrench, Winslow's equations fold 4 to 18
+cells of each grid at the two corners of 270 degrees; these cells are repaired. `meshonet-hard` has a trained
+trunk network. For wrench and airfoil, modes that are computed from the training grids replace the trunk
+network ([reasons](../../theory/paper-models.md#meshonet-hard)).
 """
 
 PAPER = {
@@ -70,9 +73,10 @@ All models are trained on the same shapes, equally often, with the same learning
 in each step. Values are mean ± spread over the random seeds. A figure of the paper, over 100,000 iterations, shows
 MeshONet's loss orders of magnitude below the others.
 
-The loss of `meshonet-hard` is that of the correction which it learns, so compare its error instead. `fno2d` learns from
-every second node in each direction, because all nodes would take four times as long; splines interpolate its output to
-101 x 101 nodes.
+`meshonet-hard` learns a correction of an initial grid, and its loss is the error of this correction. It
+cannot be compared with the losses of the other models; compare the relative L2 errors instead. `fno2d` learns
+from every second node in each direction, because all nodes would take four times as long; splines interpolate
+its output to 101 x 101 nodes.
 """
 
 SHELF = """
@@ -86,9 +90,10 @@ Values are relative L2 distances of the network's output from the test grids: th
 over the random seeds 0 and 1. The least value of each row is bold.
 """
 
-AGAINST = """The paper compares MeshONet's loss with four baselines on one case. It only cites WNO, KNO and LNO and makes no
-claim about them. If MeshONet's error were below that of its baselines by orders of magnitude, it would be the smaller one in
-all cases. It is smaller than that of"""
+AGAINST = """The paper compares MeshONet's loss with four baselines on one case. It only cites WNO, KNO and
+LNO and makes no claim about them. If MeshONet's error were orders of magnitude below the errors of its
+baselines, it would be the smaller one in all cases. The list gives, for each other model, the number of cases
+in which MeshONet's error is smaller, and the error of the other model in units of MeshONet's error."""
 
 PHYSICS = """
 ## Physics-informed networks

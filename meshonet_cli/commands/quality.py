@@ -37,8 +37,8 @@ def quality(
     compare: Annotated[str | None, _check(
         "--compare", metavar="OTHER",
         help="File with reference grids of the same size. The report then has the relative L2 distance from "
-        "the reference, the same near walls, the largest distance, the distance between the boundaries, the "
-        "numbers of folded cells and ratios of angles.",
+        "the reference, over all nodes and near walls, the largest distance of a node, the largest distance "
+        "of a boundary node, the numbers of folded cells and ratios of angles.",
     )] = None,
     pair: Annotated[Literal["auto", "name", "order"] | None, _check(
         "--pair", metavar="auto|name|order",

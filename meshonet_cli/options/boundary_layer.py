@@ -24,20 +24,20 @@ FirstCell = Annotated[str | None, _option(
     "--first-cell", "--wall-spacing", metavar="H|WALL=H,...",
     help="Height of the first cell at every wall node. Around a body the unit is the chord, otherwise that "
     "of the input. The walls of a four-sided domain are south and north. The walls of a multi-block grid are "
-    "its holes; without holes, if a side is called inlet, outlet, axis or symmetry, the other sides. "
-    "--walls selects other walls. WALL=H,WALL=H selects walls and gives each its own height. Around a body, "
-    "solve-pde and infer then march the grid from the wall.",
+    "its holes. If a domain has no holes but a side called inlet, outlet, axis or symmetry, its other sides "
+    "are the walls. --walls selects other walls. WALL=H,WALL=H selects walls and gives each its own height. "
+    "Around a body, solve-pde and infer then march the grid from the wall.",
 )]
 YPlus = Annotated[float | None, _option(
     "--y-plus", metavar="Y",
-    help="Height of the first cell as y+, instead of --first-cell; at the centre of the cell y+ is half. The "
-    "conversion assumes a turbulent flat plate and needs --reynolds.",
+    help="Height of the first cell as y+, instead of --first-cell; y+ at the centre of the cell is half of "
+    "this. The conversion assumes a turbulent flat plate and needs --reynolds.",
 )]
 YPlusAtWalls = Annotated[str | None, _option(
     "--y-plus", metavar="Y|WALL=Y,...",
-    help="Height of the first cell as y+, instead of --first-cell; at the centre of the cell y+ is half. "
-    "WALL=Y,WALL=Y for named walls of a multi-block grid. The conversion assumes a turbulent flat plate and "
-    "needs --reynolds.",
+    help="Height of the first cell as y+, instead of --first-cell; y+ at the centre of the cell is half of "
+    "this. WALL=Y,WALL=Y gives each named wall of a multi-block grid its own y+. The conversion assumes a "
+    "turbulent flat plate and needs --reynolds.",
 )]
 Length = Annotated[float | None, _option(
     "--length", metavar="L",

@@ -24,8 +24,8 @@ AllowInvalid = Annotated[bool, _option(
 
 LeaveOutFailed = Annotated[bool, _option(
     "--leave-out-failed",
-    help="Do not write grids that fail a --fail-on or a --profile; each is named. The exit code is 1 all the "
-    "same.",
+    help="Do not write grids that fail a --fail-on or a --profile; a line names each. The exit code is 1 all "
+    "the same.",
 )]
 
 

@@ -243,7 +243,7 @@ class Session:
             self._write(", ".join(filter(None, parts)) + left_out + f" in {spent:.2f} s")
             if self.changed:
                 changed = "1 shape was" if self.changed == 1 else f"{self.changed} shapes were"
-                self._write(f"{changed} changed, as is said below the line of the grid")
+                self._write(f"{changed} changed: see below the line of the grid")
             for advice in self._advice:
                 self._write(with_options(advice))
         return self.worst

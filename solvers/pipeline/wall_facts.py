@@ -26,7 +26,7 @@ def wall_facts(grid: Grid) -> tuple[str, ...]:
 
 
 def growth_note(grid: Grid, limit: float, run: Lines | None = None) -> tuple[str, ...]:
-    """Return a note with the largest ratio of neighbouring cells and its node, if the ratio exceeds `limit`.
+    """Return a note with the largest growth ratio and its node, if the ratio exceeds `limit`.
 
     The ratio is the largest one along all grid lines, as in `quality`. The limit is meant for lines from
     walls: if the ratio occurs on another line, the note also has the largest ratio along lines from walls.
@@ -36,11 +36,11 @@ def growth_note(grid: Grid, limit: float, run: Lines | None = None) -> tuple[str
     largest = most_of(ratios.families().values())
     if largest is None or largest.max <= limit * (1.0 + _SAME):
         return ()
-    where = f"at node {named(largest.at)} along {largest.along}, more than the growth of {limit:g}"
+    where = f"along {largest.along} at {named(largest.at)}, above the limit of {limit:g}"
     beside = ""
     if leaving and leaving.max < largest.max:
-        beside = f"; along lines from walls by up to {leaving.max:.3f}"
-    return (f"neighbouring cells differ by up to {largest.max:.3f} {where}{beside}",)
+        beside = f"; along grid lines from walls it is {leaving.max:.3f}"
+    return (f"the largest growth ratio is {largest.max:.3f}, {where}{beside}",)
 
 
 def jump_note(grid: Grid, most: float) -> tuple[str, ...]:

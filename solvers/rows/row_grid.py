@@ -185,5 +185,5 @@ def _notes(zones: Sequence[Zone], first: float) -> tuple[str, ...]:
     narrow = [zone for zone in zones if zone.gap and zone.ends[0] < first]
     return tuple(
         f"first cells at the walls of a gap are {zone.ends[0]:.4g} high instead of {first:.4g}: "
-        f"{zone.cells} of these fill it" for zone in narrow
+        f"{zone.cells} cells of this height fill the gap" for zone in narrow
     )  # fmt: skip

@@ -60,8 +60,8 @@ def test_growth_beyond_its_limit_is_told_with_its_place(meshonet: Meshonet) -> N
     words = "sweep circle:0.5 bend.toml --around 200 --first-cell .05 --growth 1.1 -o p.h5"
     done = meshonet(*words.split())
     assert done.code == 0, done.err
-    assert "neighbouring cells differ by up to 1.164 at node block=" in done.err
-    assert "more than the growth of 1.1" in done.err
+    assert "the largest growth ratio is 1.164, along " in done.err
+    assert "above the limit of 1.1" in done.err
 
 
 def test_a_closed_curve_is_filled_with_blocks_and_a_four_sided_one_with_one(meshonet: Meshonet) -> None:

@@ -36,7 +36,7 @@ def test_changes_stand_below_the_line_of_a_grid_and_are_counted(meshonet: Meshon
     assert (lines[2].startswith("torn.dat -> "), lines[3]) == (True, f"  {LEFT_OUT}")
     assert "up to 0.012 chords away from straight lines between them" in lines[4]
     assert lines[5].startswith("naca:0012-sharp -> ")
-    assert lines[7:] == ["2 shapes were changed, as is said below the line of the grid", FAR]
+    assert lines[7:] == ["2 shapes were changed: see below the line of the grid", FAR]
     assert meshonet("infer", *shapes, *C_GRIDS, "-o", "{index}.vts", "-q").err == ""
 
 

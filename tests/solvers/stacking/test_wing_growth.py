@@ -44,10 +44,10 @@ def test_the_report_says_first_cells_and_growth_at_wing_and_tip(made):
     notes = [note for note in made.notes if "first cells" in note]
     assert notes[0].startswith("wing: first cells 0.001, growth up to 1.")
     assert notes[1].startswith("tip: first cells 0.001, growth up to 1.")
-    (beyond,) = (note for note in made.notes if note.startswith("neighbouring cells differ by up to"))
+    (beyond,) = (note for note in made.notes if note.startswith("the largest growth ratio is"))
     ring = ratios(made.grid.blocks[1].nodes[:, :, 0])
-    assert beyond.startswith(f"neighbouring cells differ by up to {ring.max():.3f} at node block=1, i=")
-    assert beyond.endswith("along xi, more than the growth of 1.2; along lines from walls by up to 1.200")
+    assert beyond.startswith(f"the largest growth ratio is {ring.max():.3f}, along xi at block=1, i=")
+    assert beyond.endswith("above the limit of 1.2; along grid lines from walls it is 1.200")
 
 
 def test_the_far_field_is_measured_in_chords(made):
