@@ -170,8 +170,8 @@ def _compared(model: str, cases: Sequence[dict[str, list[float]]]) -> str:
     ratios = [mean(own[model]) / mean(own["meshonet"]) for own in cases]
     below = sum(ratio > 1.0 for ratio in ratios)
     times = f"{min(ratios):.2g} to {max(ratios):.2g} times"
-    fewer = f"`meshonet` has a smaller error than `{model}` in {below} of {len(cases)} cases"
-    return f"{fewer}; the error of `{model}` is {times} as large."
+    smaller = f"`{model}`: MeshONet's error is smaller in {below} of {len(cases)} cases"
+    return f"{smaller}; the error of `{model}` is {times} MeshONet's."
 
 
 def physics(results: Path) -> str:

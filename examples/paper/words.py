@@ -92,8 +92,8 @@ over the random seeds 0 and 1. The least value of each row is bold.
 
 AGAINST = """The paper compares MeshONet's loss with four baselines on one case. It only cites WNO, KNO and
 LNO and makes no claim about them. If MeshONet's error were orders of magnitude below the errors of its
-baselines, it would be the smaller one in all cases. The list gives, for each other model, the number of cases
-in which MeshONet's error is smaller, and the error of the other model in units of MeshONet's error."""
+baselines, it would be the smaller one in all cases. The list
+compares the errors for each other model."""
 
 PHYSICS = """
 ## Physics-informed networks
