@@ -185,8 +185,8 @@ bodies. For the method see [neural operators](../theory/operators.md).
 - The network was trained on 5,710 random bodies for six epochs, about nine minutes on one core. This is
   little training.
 - *valid*: share of grids without a folded cell, before repair.
-- *no worse than Winslow*: share of grids that are valid and whose maximum and mean angle do not exceed
-  those of Winslow's grid.
+- *no worse than Winslow*: share of grids that are valid, and in which neither the maximum nor the mean angle
+  is larger than in Winslow's grid.
 - *angle*: largest included angle of each cell, in degrees. The tables give the maximum and the mean over
   the cells, averaged over the bodies.
 - *gain*: how much smaller the angle is than in Winslow's grid, divided by how much smaller it is in the full

@@ -36,9 +36,9 @@ HEAD = """# Deformed grids: folded cells, first-cell heights, time
 
 <!-- made by python benchmarks/bench_deform.py --page docs/benchmarks/deform.md -->
 
-Use this page to compare `meshonet deform` with two published methods, which like `deform` use weights of the
-inverse distance (inverse-distance weighting, IDW): folded cells, first-cell heights, angles and CPU time.
-[Deforming grids](../guide/deform.md) explains how to use `deform`.
+Use this page to compare `meshonet deform` with two published methods: folded cells, first-cell heights,
+angles and CPU time. Like `deform`, both methods use inverse-distance weighting (IDW). [Deforming
+grids](../guide/deform.md) explains how to use `deform`.
 
 The deformations are random (seed {seed}). *airfoils*: the thickness is multiplied by 0.9 to 1.1 and the
 camber changed by -2 to 2 % of the chord, in viscous C grids of 250 x 100 nodes with y+ 1 at Reynolds

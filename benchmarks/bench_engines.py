@@ -50,8 +50,8 @@ SPEED = """
 The command is `meshonet infer sections --res 200x100 --part-size {size} -q -o grids.h5`. `sections` is a
 folder of {count} airfoil files. Elapsed time is the wall-clock time of the whole command. CPU time is summed
 over all its processes. The column of peak memory gives the peak memory of the main process and, in brackets,
-of each worker. The last column says whether the coordinates of all grid nodes are bitwise identical to those
-of the run with one process.
+of each worker. The last column says whether the nodes of all grids are bitwise identical to the nodes that
+one process computes.
 
 | engine | elapsed time, s | grids per second | speed-up | CPU time, s | peak memory, MB | identical nodes |
 | --- | ---: | ---: | ---: | ---: | ---: | --- |

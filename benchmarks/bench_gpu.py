@@ -48,18 +48,19 @@ minutes; the tables say which measurements were not made. Four things are measur
   Sides are in the memory of the device. The table has the grids per second without and with gradients, the
   peak memory, whether two runs give bitwise equal nodes, and the largest distance from the nodes of the
   compiled solver or operator on the CPU. Grids of 65 x 65 nodes are made in batches; larger batches follow
-  while time is left, then single grids of 800 x 800 and 3200 x 3200 nodes. Rows with `coarse=65` solve on
-  65 x 65 nodes, interpolate, and are compared with the same function on the CPU. The aims are 100,000 grids
-  of 65 x 65 nodes per second, 800 x 800 nodes in 3 ms, and 3200 x 3200 nodes in 40 ms. For 3200 x 3200 nodes
-  [the paper](paper/index.md) reports 278 ms on an RTX 4090.
+  while time is left, then single grids of 800 x 800 and 3200 x 3200 nodes. In rows with `coarse=65`, the
+  equations are solved on 65 x 65 nodes and the grid is interpolated; the distance is measured from the nodes
+  of the same function on the CPU. The aims are 100,000 grids of 65 x 65 nodes per second, 800 x 800 nodes in
+  3 ms, and 3200 x 3200 nodes in 40 ms. For 3200 x 3200 nodes [the paper](paper/index.md) reports 278 ms on an
+  RTX 4090.
 - **Operators**: grids per second and peak memory of `infer --device cuda` with `airfoil-o`, `quad-general`
   and `hole-o`, for 256 grids of 65 x 65 and of 200 x 200 nodes.
 - **Training**: shapes per second and peak memory of `meshonet` (here the network of the paper), `fno2d` and
   `quad`, for two batch sizes, with `--amp`, and with `--compile` for the smaller one. Speed and last loss are
-  also given relative to training without these options. Compiling is not counted: speeds are those of the
-  second half of the epochs.
-- **Equality**: nodes may differ from those of the CPU by 1e-10 of the size of the domain. A larger distance
-  is marked TOO FAR.
+  also given relative to training without these options. Speeds are measured in the second half of the epochs,
+  so they do not include the time of compiling.
+- **Equality**: nodes may differ from the nodes computed on the CPU by 1e-10 of the size of the domain. A
+  larger distance is marked TOO FAR.
 """
 
 NONE = "This page has no figures yet: no GPU was available when it was made."

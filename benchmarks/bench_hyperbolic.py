@@ -64,9 +64,9 @@ grids by `--te wedge`.
   it (eta).
 - Rows for groups of shapes give the median / the 90th percentile over the shapes. *files* are airfoil files,
   with a sharp or a blunt trailing edge; a blunt edge is *rounded* (`--te round`) or kept (*exact*).
-  *procedural* airfoils are random; their wall nodes follow all node distributions in turn, and in some of
-  them adjacent cells differ in length by a factor of three, and cells at the trailing edge are hardly longer
-  than they are high.
+  *procedural* airfoils are random airfoils, on which all node distributions are used. In some of their grids,
+  adjacent cells along the wall differ in length by a factor of three, and cells at the trailing edge are
+  hardly longer than they are high.
 - *CPU ms*: CPU time from the file (for procedural airfoils: from the boundary) to nodes in memory, best
   of {repeat} runs (procedural: one run), one thread of {machine}, while other programs used the machine.
 

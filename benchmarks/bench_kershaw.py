@@ -30,10 +30,10 @@ HEAD = """# Kershaw's cube
 
 <!-- made by python benchmarks/bench_kershaw.py --page docs/benchmarks/kershaw.md -->
 
-Use this page to compare grids made with `--energy shape`, and their CPU time, with those of TMOP, the mesh
-optimiser of [MFEM](https://mfem.org). The test case is Kershaw's map of the unit cube. It shears and
-compresses the cells in six layers; its parameter ε, the same for y and z, is 1 for the uniform grid, and
-smaller values compress the cells more.
+Use this page to compare `--energy shape` with TMOP, the mesh optimiser of [MFEM](https://mfem.org): quality
+of the grids, and CPU time. The test case is Kershaw's map of the unit cube, which shears and compresses the
+cells in six layers. A parameter ε, here the same for y and z, prescribes the compression: ε = 1 gives the
+uniform grid, and smaller values compress the cells more.
 
 The objective is metric 303 of TMOP with ideal targets. For one cell, it is the integral of f = |**T**|² / (3
 det(**T**)^⅔) − 1, where **T** is the Jacobian matrix of the map from a reference cube to the cell and |**T**|

@@ -269,23 +269,24 @@ divided by the root mean square distance of the reference nodes to the centre of
 wall* means within 1.5 chords of the centre of an airfoil, or in the 10 % of the rows that are nearest to
 each side of a four-sided domain.
 
-**Reference.** Winslow's equations are solved to a residual of 1e-8 with two and with four times the cells
-in each direction (at 800x800: with the same number and with twice the cells); the two solutions are
-extrapolated. The reference of variational grids is the converged variational grid of the same size.
+**Reference.** Winslow's equations are solved twice, to a residual of 1e-8: on a grid with twice and on a grid
+with four times as many cells in each direction as the grids of the table. (For 800x800 nodes these are a grid
+with as many cells and a grid with twice as many.) The reference is extrapolated from the two solutions. The
+reference of variational grids is the converged variational grid of the same size.
 
-**Angles** are given relative to those of Winslow's grid, solved by multigrid to a residual of 1e-8 on the
-same nodes. A value below 1 is better than Winslow's grid. *Valid* is the share of grids without a folded
-cell before any repair.
+**Angles** are divided by the angles of Winslow's grid, which multigrid solves to a residual of 1e-8 on the
+same nodes. A value below 1 is better than Winslow's grid. *Valid* is the share of grids without a folded cell
+before any repair.
 
 Remarks:
 
 - TFI distributes nodes differently in the interior, so its distance says little about its quality.
 - Multigrid Winslow stops by default when the error of the iteration is below the discretisation error.
 - The conformal map cannot resolve the wall cells of some bodies. For such bodies `infer` uses multigrid or
-  the model `hole-o`; the largest distances in the row of `infer` are those of these bodies.
-- In the tables of distances each boundary consists of every fourth node of a finer boundary (at 800x800
-  every second), which can omit corners of a blunt trailing edge and change the largest angles there by a
-  few percent. The table of folded cells uses boundaries that are sampled directly.
+  the model `hole-o`. The largest distances in the row of `infer` occur for these bodies.
+- In the tables of distances, the nodes of a boundary are every fourth node of a finer boundary (every second
+  node for 800x800 nodes). A corner of a blunt trailing edge may not be among these nodes; the largest angle
+  there then changes by a few percent. The table of folded cells uses boundaries that are sampled directly.
 - For walls with uniform spacing the reference is accurate only to about 1e-4, because Winslow's
   solution converges only with order 1.4 at trailing edges. The operator also differs from the reference by
   design: the grid lines that leave the trailing edge bisect its angle.
@@ -320,8 +321,8 @@ WHICH = """
 - **C grids**: the default is hyperbolic marching from the wall and the wake, or the variational method if
   marching fails. The network for four-sided domains generates worse C grids than TFI
   ([measurements](body-operator.md#c-grids-no-model)).
-- **Batches of airfoils** gain little from the network. It runs for 64 airfoils at once, but the map,
-  the iteration and the computation of nodes run for one body after the other.
+- **Batches of airfoils** gain little from the network. The network is evaluated for 64 airfoils at once, but
+  the map, the iteration and the computation of nodes treat one body after the other.
 """
 
 if __name__ == "__main__":

@@ -44,9 +44,9 @@ The page contains all quality metrics of the cells.
 OTHERS = """
 ## Comparison with other libraries
 
-Each library writes the same O grid of 100,000 cells, coloured by one metric, with grid lines, by its
-usual calls. None of the other libraries provides lists of cells to visit, or switches for blocks, without
-further programming.
+Each library writes a page of the same O grid of 100,000 cells, with grid lines and coloured by one metric.
+The scripts use the usual calls of the library. None of the other libraries provides lists of cells to visit,
+or switches for blocks, without further programming.
 
 | library | size, MB | time to write, s | time to first drawing, s | metrics in the page |
 | --- | --- | --- | --- | --- |

@@ -250,8 +250,8 @@ four-sided domains. For the method see [neural operators](../theory/operators.md
   `--polish n`: iterations of the variational method, or multigrid cycles for Winslow's grid.
 - *4 Picard steps, 33* is the initial grid that the network corrects, on 33 x 33 nodes.
 - *valid*: share of grids without a folded cell, before repair.
-- *no worse than Winslow*: share of grids that are valid and whose maximum and mean angle do not exceed
-  those of Winslow's grid.
+- *no worse than Winslow*: share of grids that are valid, and in which neither the maximum nor the mean angle
+  is larger than in Winslow's grid.
 - *angle*: largest included angle of each cell, in degrees. The tables give the maximum and the mean over
   the cells, averaged over the domains.
 - *gain*: how much smaller the angle is than in Winslow's grid, divided by how much smaller it is in the full

@@ -51,10 +51,10 @@ HEAD = """# Volumes from sections: wings, blades, pipes
 Use this page to find the number of random wings for which a valid volume grid is generated, the quality of
 these grids and the CPU time. For their use see [wings](../guide/wings.md) and [pipes](../guide/pipes.md).
 
-Each of the {count} wings has a random pair of {files} airfoil files as sections, sharp and blunt, with a
-taper of 0.25 to 1, a twist of -8 to 4 degrees, a sweep of -0.2 to 0.8 spans and a dihedral of -0.1 to 0.25
-spans (the displacement of the tip downstream and upwards). The far field is at 15 chords; in the first row of
-the table it is at 12 chords.
+Each of the {count} wings has two sections, drawn at random from {files} airfoil files with sharp and blunt
+trailing edges. The taper is 0.25 to 1 and the twist -8 to 4 degrees. The tip is displaced by -0.2 to 0.8
+spans downstream (sweep) and by -0.1 to 0.25 spans upwards (dihedral). The far field is at 15 chords; in the
+first row of the table it is at 12 chords.
 
 - *valid*: grids without a folded cell, tested by the Jacobians at the eight corners of every cell and by
   the Bezier coefficients of the Jacobian. The other grids end in an error that names the place.

@@ -17,8 +17,10 @@ and `section`. The boundary nodes are given.
   the Jacobian at one of its corners is not positive.
 - *Largest angle*: largest angle between two edges of a cell, in degrees: mean over the grids / maximum over
   the grids. *Least angle*: smallest angle between two edges of a cell, over all grids.
-- *Skew*: the largest deviation of a cell's angles from 90 degrees, mean over the cells.
-- *Boundary error*: the largest distance of a boundary node from the given one, relative to the size of the shape.
+- *Skew*: for each cell the largest deviation of its angles from 90 degrees; the table gives the mean over all
+  cells.
+- *Boundary error*: the largest distance of a boundary node from the given node, relative to the size of the
+  shape.
 - *ms*: milliseconds of processor time of the whole command, start included, divided by the number of grids.
 
 | shapes | program | grids | folded | largest angle, mean / worst | least angle | skew | boundary error | ms |
@@ -51,9 +53,9 @@ shape of each kind, with 500 steps; the column *ms* includes this training.
 
        python benchmarks/yardstick shapes build/yardstick --seed 1
 
-2. Run your program. It gets two paths: that of the boundaries, and that of the grids to write. Grids are a `.h5` file with
-   `nodes` (n, ni, nj, 2) and `names`, or with `--plot3d` a folder of Plot3D files with the names of the shapes. Leave out
-   shapes that your program cannot do.
+2. Run your program. The program gets two paths: the file of boundaries to read, and the file of grids to
+   write. Grids are a `.h5` file with `nodes` (n, ni, nj, 2) and `names`, or with `--plot3d` a folder of
+   Plot3D files with the names of the shapes. Leave out shapes that your program cannot do.
 
        python benchmarks/yardstick run build/yardstick 'My program 1.0' 'myprogram --in {boundaries} --out {grids}'
 

@@ -63,7 +63,7 @@ class RowDimensions:
             f", {name} gap {gap:.4g}{unit} ({100.0 * gap / self.span:.3g} %)"
             for name, gap in (("tip", self.tip_gap), ("hub", self.hub_gap)) if gap
         )  # fmt: skip
-        chord = f"chord {self.chord:.4g}{unit} at mid-span, {self.longest_chord:.4g} at most"
+        chord = f"chord {self.chord:.4g}{unit} at mid-span, {self.longest_chord:.4g} in the longest profile"
         size = (
             f"{self.blades} blades, {self.pitch:.4g} degrees apart; {chord}; solidity {self.solidity:.3g}; "
             f"span {self.span:.4g}{unit}{gaps or ', no gap'}"
