@@ -1,4 +1,4 @@
-"""The sections of a wing, blade or duct in a table of TOML (see `meshonet.formats.stack`)."""
+"""The sections of a wing, fin, blade or duct in a table of TOML (see `meshonet.formats.stack`)."""
 
 import math
 from dataclasses import fields

@@ -32,7 +32,7 @@ POWERS = (
     "solvers/hyperbolic/default_spacing.py",
     "solvers/hyperbolic/front.py",
     "solvers/neural/quad/operator.py",
-    "solvers/volumes/descent.py",
+    "solvers/volumes/repair.py",
 )
 """Where powers are of single or complex numbers: the C library's, one by one."""
 EXACT = (2, 0.5, -1)

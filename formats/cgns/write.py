@@ -23,9 +23,8 @@ from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.block import PLACES, Range, face_counts
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.motion import Motion
+from meshonet.geometry.blocks.motion import Motion, screw_of
 from meshonet.geometry.blocks.patches import Kind
-from meshonet.geometry.blocks.screw import screw_of
 
 _CONDITIONS: dict[Kind, str] = {
     "wall": "BCWall", "farfield": "BCFarfield", "inlet": "BCInflow", "outlet": "BCOutflow",

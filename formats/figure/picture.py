@@ -11,7 +11,7 @@ from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, meant
 from meshonet.geometry.polygon.area import check_extent
-from meshonet.geometry.quality.figure import COUNTS, FIGURES
+from meshonet.geometry.quality.figures import COUNTS, FIGURES
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import ALL_NAMES, FACE_NAMES, metric_of
 

@@ -22,9 +22,8 @@ from meshonet.formats.output import whole_file, whole_folder
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.motion import Motion
+from meshonet.geometry.blocks.motion import Motion, screw_of
 from meshonet.geometry.blocks.patches import Kind
-from meshonet.geometry.blocks.screw import screw_of
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent
 

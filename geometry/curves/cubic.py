@@ -1,4 +1,4 @@
-"""Cubic splines through tables of values at any knots."""
+"""Cubic splines through tables of values at any knots, also such that do not overshoot."""
 
 import numpy as np
 

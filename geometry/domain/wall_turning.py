@@ -1,4 +1,4 @@
-"""Curvature and turning angles of walls between two points, and the corners there."""
+"""Curvature and turning angles of walls between two points, the corners there, and gradual cell sizes."""
 
 from functools import lru_cache
 

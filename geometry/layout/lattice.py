@@ -1,4 +1,4 @@
-"""The quadrilaterals of structured arrays of nodes."""
+"""Quadrilaterals and index directions of structured arrays of nodes."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 from meshonet.geometry.errors import InputError, meant
-from meshonet.geometry.quality.figure import COUNTS, FIGURES, Figure
+from meshonet.geometry.quality.figures import COUNTS, FIGURES, Figure
 from meshonet.geometry.quality.metrics import ALL_NAMES
 
 if TYPE_CHECKING:
@@ -161,3 +161,16 @@ def parse_gates(texts: Iterable[str] | None, more: Sequence[str] = ()) -> tuple[
 def need_percentiles(gates: Iterable[Gate]) -> bool:
     """Return whether a gate needs a percentile, which takes a sort of all cells."""
     return any(gate.statistic in ("p01", "p99") for gate in gates)
+
+
+VERDICTS = ("pass", "warn", "fail", "error")
+"""Verdicts from best to worst; ``error``: there is no grid to judge."""
+
+
+def verdict_word(verdict: str) -> str:
+    """Return a verdict for users: the word of JSON, a failure in capitals.
+
+    >>> verdict_word("warn"), verdict_word("fail")
+    ('warn', 'FAIL')
+    """
+    return verdict.upper() if verdict == "fail" else verdict

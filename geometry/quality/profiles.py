@@ -21,8 +21,7 @@ from typing import Literal
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.bad_cell import centre_of
-from meshonet.geometry.quality.figure import Figure
-from meshonet.geometry.quality.figures import Figures
+from meshonet.geometry.quality.figures import Figure, Figures
 from meshonet.geometry.quality.gates import Gate, beyond, end_of, in_short
 
 Level = Literal["warn", "fail"]

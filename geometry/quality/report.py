@@ -10,8 +10,7 @@ from meshonet.geometry.errors import spelled
 from meshonet.geometry.quality.bad_cell import BadCell, centre_of
 from meshonet.geometry.quality.blocks import extreme_dict
 from meshonet.geometry.quality.compare import Difference, compare
-from meshonet.geometry.quality.figure import Figure
-from meshonet.geometry.quality.figures import Figures
+from meshonet.geometry.quality.figures import Figure, Figures
 from meshonet.geometry.quality.gates import Gate, Judgement, beyond, parse_gate
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.measure import measure, worst_cells_of

@@ -8,13 +8,12 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.bad_cell import BadCell, centre_of
 from meshonet.geometry.quality.blocks import LINES, BlockFigures
 from meshonet.geometry.quality.figures import Figures
-from meshonet.geometry.quality.gates import Judgement
+from meshonet.geometry.quality.gates import Judgement, verdict_word
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.metrics import metrics_of
 from meshonet.geometry.quality.periodic import Period, periods
 from meshonet.geometry.quality.profiles import CheckResult, Limit, ProfileReport
 from meshonet.geometry.quality.report import Comparison, QualityReport
-from meshonet.geometry.quality.verdicts import verdict_word
 from meshonet.geometry.quality.wall_cells import Flow, YPlus
 from meshonet.geometry.quality.walls import Spread, WallRow
 from meshonet.geometry.summary import Quality, named

@@ -6,8 +6,7 @@ from typing import Any
 
 from meshonet.api.grid import domain_parameters
 from meshonet.formats.format import Space
-from meshonet.formats.path import path_of
-from meshonet.formats.section import read_sections
+from meshonet.formats.path import path_of, read_sections
 from meshonet.formats.stack import stack_of
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.blocks.grid import Grid

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from meshonet.geometry.quality.verdicts import VERDICTS, verdict_word
+from meshonet.geometry.quality.gates import VERDICTS, verdict_word
 from meshonet_cli.terminal.errors import with_options
 from meshonet_cli.terminal.text import aligned, figure
 

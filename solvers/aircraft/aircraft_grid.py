@@ -27,7 +27,7 @@ from meshonet.solvers.aircraft.plan import AircraftPlan, plan_of
 from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.aircraft.tip_cells import arcs_beyond, last_cells
 from meshonet.solvers.aircraft.wall_normals import across_tip, off_body, off_tip, off_wing
-from meshonet.solvers.algebraic.resample.lines import sampled
+from meshonet.solvers.algebraic.resample.spline import sampled
 from meshonet.solvers.rows.columns import resampled, with_first
 from meshonet.solvers.rows.span_lines import SpanLines
 from meshonet.solvers.rows.span_spacing import (

@@ -12,7 +12,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, arc_lengths, arc_parts
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import cells_for_growth
-from meshonet.solvers.algebraic.resample.lines import sampled
+from meshonet.solvers.algebraic.resample.spline import sampled
 from meshonet.solvers.layers.layer_law import STEEPER, layer_arcs
 from meshonet.solvers.refinement.size_metric import GRADING
 

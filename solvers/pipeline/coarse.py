@@ -4,18 +4,39 @@ Few nodes suffice for a smooth grid. The boundary is coarsened, a method solves 
 evaluated between the full edges (`meshonet.solvers.algebraic.resample.grids`).
 """
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.transform import coarser_boundary
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample.grids import check_coarse, refine_grid, thinned
-from meshonet.solvers.pipeline.methods import METHODS
-from meshonet.solvers.pipeline.wrapper import Wrapper
+from meshonet.solvers.pipeline.methods import METHODS, OneByOne, solved
 from meshonet.solvers.solution import Solution
+
+if TYPE_CHECKING:
+    from meshonet.solvers.pipeline.methods import Method
+
+
+@dataclass(frozen=True)
+class Wrapper(OneByOne):
+    """Base class of methods that solve by another method and have the name of this method."""
+
+    method: Method
+
+    @property
+    def name(self) -> str:
+        """Name of the other method."""
+        return self.method.name
+
+    def inner(self, boundary: Boundary, initial: Grid | None = None) -> Solution:
+        """Return the other method's solution of one boundary."""
+        return solved(self.method, boundary, initial)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Indices, arc_parts, norms, smooth_step
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.layout import Layout
-from meshonet.solvers.algebraic.resample.lines import sampled
+from meshonet.solvers.algebraic.resample.spline import sampled
 
 _NEWTON = 12
 _STRAIGHT, _MARCHED = 0.5, 1.5

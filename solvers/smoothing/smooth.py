@@ -1,7 +1,7 @@
 """Smooths planar multi-block grids: the joint optimum of all nodes, with the spacing of the given grid.
 
 The optimum is computed by `meshonet.solvers.energy.quads`. Its targets are the aspect ratios of cells and the
-ratios of neighbouring edges in the given grid (`meshonet.solvers.smoothing.spacing`). Layers at the boundary
+ratios of neighbouring edges in the given grid (`meshonet.solvers.smoothing.layers`). Layers at the boundary
 keep their heights (`meshonet.solvers.smoothing.layers`). Two optima are computed, with and without evening
 out jumps of the spacing between blocks, and the better one is used. Neither the largest non-orthogonality and
 skewness of a face nor the mean deviation from 90 degrees may exceed those of the given grid; if they would,
@@ -23,8 +23,7 @@ from meshonet.geometry.quality.checkmesh import cells_beyond
 from meshonet.geometry.ties import first_least
 from meshonet.solvers.energy.quads import FREE, optimise
 from meshonet.solvers.smoothing.judge import PlaneMeasures, measures
-from meshonet.solvers.smoothing.layers import with_layers
-from meshonet.solvers.smoothing.spacing import wanted_lengths
+from meshonet.solvers.smoothing.layers import wanted_lengths, with_layers
 from meshonet.solvers.solution import Outcome, Solution, timed
 
 METHOD = "variational"

@@ -1,4 +1,4 @@
-"""Checks corners of cells that lie in two faces, which no interior node can improve."""
+"""Checks corners of cells in two faces, and next to faces, which no interior node can make valid."""
 
 from collections.abc import Iterator
 from itertools import combinations

@@ -17,11 +17,10 @@ from meshonet.solvers.energy.hexes import NEARLY
 from meshonet.solvers.iteration import check_tolerances
 from meshonet.solvers.solution import Outcome, Solution
 from meshonet.solvers.stages import reached
-from meshonet.solvers.volumes.descent import PlanesDescent
 from meshonet.solvers.volumes.edge_corners import check_corners
-from meshonet.solvers.volumes.interpolate import Laws, arc_laws, interpolate, mean_laws, uniform_laws
 from meshonet.solvers.volumes.refine import refine_volume
-from meshonet.solvers.volumes.repair import open_flat_cells, repair
+from meshonet.solvers.volumes.repair import PlanesDescent, open_flat_cells, repair
+from meshonet.solvers.volumes.tfi import Laws, arc_laws, interpolate, mean_laws, uniform_laws
 
 COARSE = 33
 """Default node count along a direction for the optimisation."""

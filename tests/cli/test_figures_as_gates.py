@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from command_line import Meshonet
 
-from meshonet.geometry.quality.figure import COUNTS, FIGURES
+from meshonet.geometry.quality.figures import COUNTS, FIGURES
 from meshonet.geometry.quality.metrics import ALL_NAMES
 from meshonet.geometry.quality.profiles import PROFILES
 from meshonet.geometry.quality.report import COMPARED, Y_PLUS

@@ -40,7 +40,7 @@ class Page:
         self.facts: dict[str, Any] = json.loads(match[1].replace("<\\/", "</"))
 
     def numbers(self, name: str) -> np.ndarray:
-        """Unpack numbers: see formats/figure/page/packing.py."""
+        """Unpack numbers: see formats/figure/page/document.py."""
         match = re.search(rf'id="{name}" data-count="(\d+)" data-width="(\d)">([^<]*)<', self.text)
         assert match
         count, width = int(match[1]), int(match[2])

@@ -5,8 +5,7 @@ import pytest
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.figure import FIGURES, Figure
-from meshonet.geometry.quality.figures import Figures
+from meshonet.geometry.quality.figures import FIGURES, Figure, Figures
 from meshonet.geometry.quality.gates import need_percentiles, parse_gate, parse_gates
 from meshonet.geometry.quality.measure import measure
 

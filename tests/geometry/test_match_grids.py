@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.match_grids import GridMatcher
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.compare import GridMatcher
 
 SQUARE = np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1)
 

@@ -12,11 +12,10 @@ from meshonet.formats.figure.page.cells import BARS, Scale, corners_of, histogra
 from meshonet.formats.figure.picture import Picture
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.gates import Gate
+from meshonet.geometry.quality.gates import Gate, verdict_word
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import Metric, metrics_of
 from meshonet.geometry.quality.report import QualityReport
-from meshonet.geometry.quality.verdicts import verdict_word
 
 _WORST = 3
 """Number of worst cells listed per metric."""

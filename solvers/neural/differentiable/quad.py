@@ -1,4 +1,4 @@
-"""Differentiable four-sided grids: `neural.quad.coarse_grids` in torch, without polish or repair."""
+"""Differentiable quad and O grids: `coarse_grids` of `neural.quad` in torch, without polish or repair."""
 
 from functools import partial
 from typing import ClassVar

@@ -1,4 +1,4 @@
-"""Interpolation of coarse grids with gradients: `algebraic.resample.quad` in torch."""
+"""Interpolation with gradients: `algebraic.resample.quad` and `algebraic.tfi` in torch."""
 
 from typing import Any
 
