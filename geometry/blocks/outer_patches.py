@@ -70,7 +70,11 @@ def outer_patches(
 
 
 def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
-    """Yield owner and node range of rectangles that cover the cells (n,) or (n, m), except joined ones."""
+    """Yield rectangles of cells with one owner, which cover all cells of a side that are not `JOINED`.
+
+    `owners` (n,) or (n, m) is the owner of each cell, from `owners_of`. Each rectangle is yielded as its
+    owner and the range of its nodes.
+    """
     cells = owners.reshape(len(owners), -1)
     left = cells != JOINED
     while left.any():

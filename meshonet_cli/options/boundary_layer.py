@@ -24,9 +24,9 @@ FirstCell = Annotated[str | None, _option(
     "--first-cell", "--wall-spacing", metavar="H|WALL=H,...",
     help="Height of the first cell at every wall node. Around a body the unit is the chord, otherwise that "
     "of the input. The walls of a four-sided domain are south and north. The walls of a multi-block grid are "
-    "its holes. If a domain has no holes but a side called inlet, outlet, axis or symmetry, its other sides "
-    "are the walls. --walls selects other walls. WALL=H,WALL=H selects walls and gives each its own height. "
-    "Around a body, solve-pde and infer then march the grid from the wall.",
+    "its holes. If a domain has no holes, and a side is called inlet, outlet, axis or symmetry, the other "
+    "sides are the walls. --walls selects other walls. WALL=H,WALL=H selects walls and gives each its own "
+    "height. Around a body, solve-pde and infer then march the grid from the wall.",
 )]
 YPlus = Annotated[float | None, _option(
     "--y-plus", metavar="Y",

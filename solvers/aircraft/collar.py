@@ -112,7 +112,10 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return the cell lengths on the sides of a rectangle behind the trailing edge and before the nose."""
+    """Return the cell lengths on two sides of a rectangle: behind the trailing edge, and before the nose.
+
+    `corners` is the result of `corner_nodes`.
+    """
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 

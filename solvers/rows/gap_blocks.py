@@ -37,12 +37,12 @@ class GapEnds:
 
 @dataclass(frozen=True, eq=False)
 class GapBlocks:
-    """The blocks inside the outline of the blade in one gap.
+    """The blocks in one tip or hub gap, which fill the outline of the blade.
 
     Parameters
     ----------
     fill : numbering of the nodes; nodes of the outline come first.
-    outline : (k,) numbers of the nodes of the outline in the sections of the row.
+    outline : (k,) for each node of the outline, its number among the nodes of a section of the row.
     space : (levels, n, 3) x, y, z of the nodes.
     """
 

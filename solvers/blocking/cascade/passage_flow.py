@@ -91,8 +91,9 @@ class PassageFlow:
     def inside(self, places: Complexes) -> Complexes:
         """Return ζ - G, a function without singularities, at points σ (m,), from its values on the blade.
 
-        It is Cauchy's integral in the disc of tanh σ/2 by the trapezoidal rule, divided by that of 1
-        (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
+        Cauchy's integral is evaluated by the trapezoidal rule in the variable tanh σ/2, whose values fill a
+        disc. The result is divided by the same integral of the constant function 1 (Helsing, Ojala, J.
+        Comput. Phys. 227 (2008) 2899-2921).
         """
         finite = np.isfinite(self.strip)
         strip, away = self.strip[finite], self.away[finite]

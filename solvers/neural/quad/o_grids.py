@@ -111,9 +111,10 @@ def inside(wall: Complexes) -> complex:
 
 
 def slope(p: Any, wall: Any, xp: Any) -> tuple[Any, Any, Any]:
-    """Return the potential's gradient g and its second derivatives m and c at `p`, of a closed curve (n,).
+    """Return the gradient g and the second derivatives m and c of the potential of `inside` at the point `p`.
 
-    A step v changes g by ``m v + c v̄``; m is real. `xp` is the module, numpy or torch, of `wall`.
+    `wall` (n,) is the closed curve of the potential. A step v of the point changes g by ``m v + c v̄``; m is
+    real. `xp` is the module, numpy or torch, of `wall`.
     """
     x, lengths = _pieces(wall, xp)
     o = p - x
