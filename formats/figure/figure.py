@@ -171,15 +171,18 @@ def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | N
 
 
 def step_words(steps: list[int]) -> str:
-    """Return the ascending `steps` of drawn lines as text; empty if all lines are drawn.
+    """Return the ascending `steps` of the drawn lines of blocks as text; empty if all lines are drawn.
 
     >>> step_words([1, 5]), step_words([2]), step_words([1])
-    ('every 1st to 5th line', 'every 2nd line', '')
+    ('from all lines to every 5th line, depending on the block', 'every 2nd line', '')
     """
     if steps[-1] == 1:
         return ""
-    first = f"{_ordinal(steps[0]) or '1st '}to " if len(steps) > 1 else ""
-    return f"every {first}{_ordinal(steps[-1])}line"
+    last = f"every {_ordinal(steps[-1])}line"
+    if len(steps) == 1:
+        return last
+    first = "all lines" if steps[0] == 1 else f"every {_ordinal(steps[0])}line"
+    return f"from {first} to {last}, depending on the block"
 
 
 def note(ax: Axes, text: str) -> None:

@@ -46,7 +46,7 @@ def coarser_grid(grid: Grid, k: int) -> Grid:
     """
     for number, block in enumerate(grid.blocks):
         with in_place(f"block {number}" if grid.topology == "blocks" else ""):
-            _check(block.counts, k)
+            _check(block.counts, k, blocks=grid.topology == "blocks")
     kept = math.gcd(*(n - 1 for block in grid.blocks for n in block.counts))
     _check_corners(_corners_of_patches(grid), k, kept)
     patches = _coarser_patches(grid.patches, k)
@@ -133,13 +133,15 @@ def _check_corners(corners: _Corners, k: int, kept: int) -> None:
     raise InputError(corner + others, f"{keeps}; {remedy}")
 
 
-def _check(counts: tuple[int, ...], k: int) -> None:
+def _check(counts: tuple[int, ...], k: int, *, blocks: bool = False) -> None:
     common = math.gcd(*(n - 1 for n in counts))
     if k >= 1 and common % k == 0:
         return
     whole = max(k, 1)
     near = [whole * max(1, (n - 1) // whole) + 1 for n in counts]
     remedy = f"make the grid with {'x'.join(map(str, near))} nodes, say"
+    if blocks:
+        remedy = "make the grid with {refine} K, which lets every block be halved K times"
     if common > 1:
         remedy = f"use a number that divides {common}, or {remedy}"
     nodes, across = ("x".join(map(str, sizes)) for sizes in (counts, [n - 1 for n in counts]))

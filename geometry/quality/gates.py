@@ -86,12 +86,16 @@ def end_of(compare: str) -> str:
 def in_short(name: str, figure: Figure, compare: str, limit: float) -> str:
     """Return a figure and its limit as text.
 
-    Growth and bend with direction and place, which tables do not have.
+    Growth and bend with direction and place, which tables do not have. The figure has as many digits as
+    distinguish it from the limit, at least four.
 
     >>> in_short("growth", Figure(1.417, (12, 0), "xi"), ">", 1.3)
     'growth 1.417 > 1.3 along xi at i=12, j=0'
+    >>> in_short("max_angle.max", Figure(178.0021), ">", 178)
+    'max_angle.max 178.002 > 178'
     """
-    return f"{name} {figure.value:.4g} {compare} {limit:g}{figure.where if figure.along else ''}"
+    digits = next((n for n in range(4, 17) if float(f"{figure.value:.{n}g}") != limit), 17)
+    return f"{name} {figure.value:.{digits}g} {compare} {limit:g}{figure.where if figure.along else ''}"
 
 
 @dataclass(frozen=True)

@@ -122,9 +122,11 @@ class Layered(Wrapper):
         from meshonet.solvers.layers.slide_nodes import slide_walls
 
         slid, controls = slide_walls(boundary)
-        method = self.method
-        if controls is not None and isinstance(self.full, Each) and self.full.takes("controls"):
-            method = self.full.having(controls=controls)
+        method, full = self.method, self.full
+        if self.name == "best":  # lines of an elliptic grid leave slid walls at right angles, others do not
+            method = full = method_named("winslow")
+        if controls is not None and isinstance(full, Each) and full.takes("controls"):
+            method = full.having(controls=controls)
         solution = solved(method, slid, start)
         note = "wall nodes slid along south and north"
         return replace(solution, boundary=slid, notes=(*solution.notes, note))

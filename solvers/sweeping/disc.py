@@ -16,7 +16,6 @@ AROUND = 88
 """Cells around a circle with which its area is accurate to 0.1 %: 1 - sin(x)/x with x = 2 pi / 88 is 0.08
 %.
 """
-_FEWER = 40  # cells around that leave it within 0.4 %
 # quarter turns: east, north, west, south
 _TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1, 0)))
 
@@ -87,15 +86,18 @@ class Disc:
     @property
     def note(self) -> str:
         """Note that there are more cells than requested, with the reason."""
-        if self.cells is None or self.side > AROUND // 4 or self.count(self.side) <= 1.1 * self.cells:
+        wanted = self.cells
+        if wanted is None or self.side > AROUND // 4 or self.count(self.side) <= 1.1 * wanted:
             return ""
-        fewer = replace(self, around=_FEWER, cells=None)
-        angle = 2.0 * math.pi / _FEWER
-        equal = self.radius * math.sqrt(angle / math.sin(angle))
+        disc = replace(self, cells=None)
+        side = min(range(2, AROUND // 4), key=lambda side: abs(disc.count(side) - wanted))
+        angle = 0.5 * math.pi / side
+        part = math.sin(angle) / angle
         return (
-            f"a circle has {self.count(self.side)} cells or more instead of {self.cells}: {AROUND} around "
-            f"keep its area within 0.1 %; {{around}} {_FEWER} makes {fewer.count(fewer.side)}, 0.4 % off, "
-            f"or not in a circle of radius {equal:.10g}"
+            f"a circle has {self.count(self.side)} cells or more instead of {wanted}: {AROUND} around "
+            f"keep its area within 0.1 %. {{around}} {4 * side} makes {disc.count(side)} cells, and an area "
+            f"{100 * (1 - part):.2g} % too small; the area is kept with a radius of "
+            f"{self.radius / math.sqrt(part):.10g}"
         )
 
 

@@ -276,3 +276,12 @@ def test_swap_has_xi_run_where_eta_ran(meshonet: Meshonet, duct_h5: Path, grid_v
     (after,) = read_grids("turned.vts")
     assert (after.ni, after.nj) == (before.nj, before.ni)
     assert meshonet("convert", grid_vts, "no.vts", "--swap").code == 2
+
+
+def test_coarsening_blocks_that_do_not_divide_names_the_option_that_lets_them(meshonet: Meshonet) -> None:
+    words = ("--topology", "c", "--base", "0.05", "--base-nodes", "40", "--first-cell", "1e-3")
+    assert meshonet("infer", "naca:0012", *words, "--res", "301x65", "-o", "c.vtm").code == 0
+    done = meshonet("convert", "c.vtm", "half.vtm", "--coarsen", "2")
+    assert done.code == 2
+    assert "block 1: " in done.err
+    assert "make the grid with --refine K" in done.err

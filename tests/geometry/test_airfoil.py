@@ -70,6 +70,16 @@ def test_wall_nodes_lie_on_an_oblique_base(ratio, shape):
     assert farthest(behind, np.concatenate([points, points[:1]])) < 1e-5
 
 
+@pytest.mark.parametrize("ratio", [0.03, 0.06])
+def test_wall_cells_hardly_jump_at_an_oblique_base_that_counts_as_sharp(ratio: float) -> None:
+    points = oblique(ratio)
+    section = Airfoil(np.concatenate([points, points[:1]]))
+    assert not section.blunt
+    wall = section.boundary(Sampling(257, 97, "o", "curvature")).south
+    cells = np.log(np.linalg.norm(np.diff(wall, axis=0), axis=1))
+    assert np.exp(np.abs(cells - np.roll(cells, 1)).max()) < 1.4
+
+
 def test_leading_edge_is_the_farthest_place_of_the_curve():
     airfoil = Airfoil(selig(0.15, 0.06))
     dense = airfoil.curve.at(np.linspace(0, airfoil.curve.length, 200_001))

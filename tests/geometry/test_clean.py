@@ -165,3 +165,14 @@ def test_points_of_a_curve_that_begins_in_the_middle_of_its_base_give_the_same_s
     assert again.blunt
     assert again.gap == pytest.approx(base)
     np.testing.assert_array_equal(again.points, section.points)
+
+
+def test_a_base_with_rounded_corners_is_kept_if_the_points_begin_in_its_middle() -> None:
+    """No corner turns by more than 35 degrees, but half the base is much longer than the pieces beside it."""
+    upper, lower = surfaces(0.4, base=0.2)
+    rounding = [[1.0, 0.1], [0.9997, 0.1005], [0.998, 0.104]]
+    upper = np.concatenate([upper[upper[:, 0] < 0.99], rounding[::-1]])
+    lower = upper * [1, -1]
+    section = clean_section(np.concatenate([[[1.0, 0.0]], lower[::-1], upper[1:]]))
+    assert section.blunt
+    assert section.gap == pytest.approx(0.2)

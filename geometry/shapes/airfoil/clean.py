@@ -27,6 +27,7 @@ MOST_CORNERS = 12
 """If there are more corners than this, those of the trailing edge included, they are noise: none is kept."""
 _CORNER = np.radians(35.0)  # least turn of a corner of the trailing edge
 _STRAIGHT = np.radians(5.0)  # largest turn of the middle of a base
+_SHORT = 5.0  # least length of half a base over the pieces that round its corners
 _EDGE = np.radians(120.0)  # least turn of a single corner that is a sharp edge
 _REACH = 8  # number of first and of last points among which the corners of a base are sought
 
@@ -77,18 +78,8 @@ def clean_section(points: Floats) -> CleanSection:
     open_gap = np.hypot(*(ring[0] - ring[-1])) > SAME_POINT * extent
     if not open_gap:
         ring, index = ring[:-1], index[:-1]
-    if open_gap and len(ring) > 5:
-        turn, last = np.abs(turning(ring, closed=True)), len(ring) - 1
-        for k, before, after in ((0, last, 1), (last, last - 1, 0)):
-            off = float(norms(ring[k] - 0.5 * (ring[before] + ring[after])))
-            if (
-                off <= SAME_POINT * extent
-                and turn[k] < _STRAIGHT
-                and max(turn[before], turn[after]) > _CORNER
-            ):
-                # the middle of a base, where the points of a curve begin: they end at one of its corners
-                ring, index = np.roll(ring, -k, axis=0)[1:], np.roll(index, -k)[1:]
-                break
+    if open_gap and (middle := _middle_of_base(ring, SAME_POINT * extent)) >= 0:
+        ring, index = np.roll(ring, -middle, axis=0)[1:], np.roll(index, -middle)[1:]
     if len(ring) < 4:
         remedy = "an airfoil needs at least 4, and many more to be smooth"
         raise InputError(f"{len(ring)} distinct points", remedy)
@@ -99,6 +90,25 @@ def clean_section(points: Floats) -> CleanSection:
         order = np.arange(len(ring))[::-1] if open_gap else np.roll(np.arange(len(ring))[::-1], 1)
         ring, index = ring[order], index[order]
     return replace(_opened_at_edge(ring, index, bool(open_gap)), swapped=swapped)
+
+
+def _middle_of_base(ring: Floats, tolerance: float) -> int:
+    """Return the index of the first or last point if it lies within a straight base, or -1.
+
+    The points of `Curve` begin there and end at a corner of the base. Its corners may be rounded by short
+    pieces, each of which turns a little.
+    """
+    if len(ring) <= 5:
+        return -1
+    turn = np.abs(turning(ring, closed=True))
+    for k in (0, len(ring) - 1):
+        near = np.arange(k - 2, k + 3) % len(ring)
+        pieces = norms(np.diff(ring[near], axis=0))
+        off = float(norms(ring[k] - 0.5 * (ring[near[1]] + ring[near[3]])))
+        corner = turn[near[[1, 3]]].max() > _CORNER or pieces[1] > _SHORT * pieces[[0, 3]].max()
+        if off <= tolerance and turn[k] < _STRAIGHT and corner:
+            return k
+    return -1
 
 
 def _distinct(points: Floats, tolerance: float) -> Indices:

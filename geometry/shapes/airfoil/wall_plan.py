@@ -167,6 +167,10 @@ def _plan(body: Airfoil, cells: int, sampling: Sampling) -> WallCells:
             te = 0.5 * sum(float(part[-1] - part[-2]) for part in base)
             left = cells - sum(len(part) - 1 for part in base)
             plan = replace(plan, cells=0.5 * left, te=te, base=base)
+    elif body.inner_corners.size:  # the cells up to a corner next to a sharp edge are those of a base
+        corners = body.inner_corners
+        nearest = min(float(corners.min()), body.curve.length - float(corners.max()))
+        plan = replace(plan, te=min(plan.te, nearest / sampling.corner_steps(cells)[0]))
     plan = replace(plan, te=wanted_te or plan.te, le=wanted_le or plan.le)
     side = min(body.nose_arc - body.half_base, body.upper_end - body.nose_arc)
     if plan.te + plan.le >= side:
