@@ -24,7 +24,7 @@ from meshonet.solvers.blocking.block_grid import cut_off, fine_layout
 from meshonet.solvers.blocking.decomposition.decompose import decompose
 from meshonet.solvers.blocking.decomposition.reuse import carried_over
 from meshonet.solvers.blocking.request import BlockRequest
-from meshonet.solvers.blocking.wall_note import sharp_edge_notes, wall_note
+from meshonet.solvers.blocking.wall_note import sharp_edge_notes, wall_note, without_layers
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import Timings
 
@@ -77,7 +77,9 @@ def _at_walls(grid: Grid, domain: Domain, walls: tuple[str, ...], height: AtWall
     """Return notes on the first cells at walls, one for each height that is prescribed."""
     if isinstance(height, Mapping):
         return [wall_note(grid, domain, (name,), each) for name, each in height.items()]
-    return [] if height is None else [wall_note(grid, domain, walls, height)]
+    if height is None:
+        return []
+    return [wall_note(grid, domain, walls, height), *([] if walls else without_layers(domain))]
 
 
 def _cut_off(fine: Layout) -> str:

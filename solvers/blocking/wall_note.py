@@ -44,6 +44,16 @@ def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) 
     return first_cell_note(low, high, first, growth, where)
 
 
+def without_layers(domain: Domain) -> list[str]:
+    """Return a note on named sides around holes that may be walls, but get no layers if no wall is named."""
+    outer = domain.loops[0].names
+    if 0 in domain.layered_loops or len(outer) == 1:
+        return []
+    periodic = {name for pair in domain.periodic for name in pair.names}
+    left = [name for name in dict.fromkeys(outer) if may_be_wall(name) and name not in periodic]
+    return [f"no layers at {', '.join(left)}: name all walls in {{walls}} to have them there"] if left else []
+
+
 def sharp_edge_notes(layout: Layout) -> list[str]:
     """Return a note for each sharp edge that no line with layers leaves, so that lines turn around it."""
     notes, mesh = [], layout.mesh

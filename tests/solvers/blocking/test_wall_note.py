@@ -53,6 +53,19 @@ def test_a_body_in_a_square_is_told_with_its_first_cell(walls: tuple[str, ...], 
     assert 1.0 < grown[1.1] < grown[1.3] < 1.3
 
 
+def test_named_sides_around_a_hole_without_layers_are_named() -> None:
+    turn = -2 * np.pi * np.arange(80) / 80
+    body = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    names = [("floor", "outlet", "ceiling", "inlet"), ("cylinder",)]
+    domain = Domain.of_polygons([SQUARE.loops[0].curve.points, body], names=names)
+    request = BlockRequest(cells=1500, first_cell=1e-2)
+    note = "no layers at floor, ceiling: name all walls in {walls} to have them there"
+    assert note in make_blocks(DomainShape(domain), request).notes
+    periodic = replace(request, periodic=(("floor", "ceiling"),))
+    for other in (replace(request, walls=("cylinder",)), periodic):
+        assert not [n for n in make_blocks(DomainShape(domain), other).notes if n.startswith("no layers")]
+
+
 def test_nothing_is_said_of_walls_without_layers() -> None:
     notes = make_blocks(DomainShape(SQUARE), BlockRequest(cells=50)).notes
     assert not [note for note in notes if note.startswith("first cell")]
