@@ -1,10 +1,10 @@
-"""The same grids on every machine: forty-seven commands on several, their results beside kept digests.
+"""The same grids on every machine: commands on several, their results beside kept digests.
 
     python benchmarks/same.py                    what differs from benchmarks/same.json, and where
     python benchmarks/same.py --emulated         on emulated processors too, where qemu-x86_64 is installed
     python benchmarks/same.py --record           keep the digests of this machine, with --only some of them
     python benchmarks/same.py --only 'infer' --machine emulated
-    python benchmarks/same.py --small --machine 'this one'     thirty commands of small grids, here: seconds
+    python benchmarks/same.py --small --machine 'this one'     commands of small grids, here: seconds
 
 Kept of each command is one digest: exit code, nodes, counts, figures and messages of its report, times and
 versions left out. A machine here is this processor with the kernels of BLAS and the functions of NumPy that

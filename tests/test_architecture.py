@@ -67,7 +67,7 @@ def test_the_main_job_needs_no_heavy_library(tmp_path: Path, command: str) -> No
 
 
 def test_the_main_job_does_not_grow(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What it runs through of this project; the figures may only fall."""
+    """What it runs through of this project; the limits rise only with a metric that every report contains."""
     monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
     from path_length import code_objects
 
