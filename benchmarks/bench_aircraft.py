@@ -5,8 +5,6 @@
 `space_judge` computes the figures, `random_aircraft` draws the aircraft.
 """
 
-from __future__ import annotations
-
 import os
 
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):

@@ -8,8 +8,6 @@ Printed are the value of the functional after 0, 10, 40 and 150 iterations from 
 of processor time of splines, network, and ten iterations.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from dataclasses import replace

@@ -7,8 +7,6 @@ Prints the largest non-orthogonality and skewness of both grids, growth across s
 of layers are off, and ends with 1 if an optimum is worse than its transfinite grid in one of the first two.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os
@@ -27,7 +25,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.layout.from_grid import layout_of
 from meshonet.geometry.quality.blocks import block_figures
 from meshonet.geometry.quality.checkmesh import faces
-from meshonet.solvers.smoothing.layers import lengths, thin_heights
+from meshonet.solvers.smoothing.layers import thin_heights
 from meshonet.solvers.smoothing.smooth import smooth
 
 ROUNDING = 1e-6
@@ -57,7 +55,7 @@ def _compared(grid: Grid, slide: bool, pictures: Path | None) -> bool:
     solution = smooth(grid, slide=slide)
     spent = time.perf_counter() - begun
     given, made = _figures(grid), _figures(solution.grid)
-    heights = [lengths(layout_of(each).mesh) for each in (solution.grid, grid)]
+    heights = [layout_of(each).mesh.edge_lengths for each in (solution.grid, grid)]
     thin = thin_heights(layout_of(grid).mesh)
     ratio = np.abs(np.log(heights[0][thin] / heights[1][thin])).max(initial=0.0)
     cells = sum((block.counts[0] - 1) * (block.counts[1] - 1) for block in grid.blocks)

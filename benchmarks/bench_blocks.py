@@ -7,8 +7,6 @@ Each domain is a whole process on one thread. Gmsh (of the extra `test`) runs in
 What is measured is kept in a folder, and a run goes on from there.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import resource

@@ -6,8 +6,6 @@ Bodies are random ones of seeds that no model was trained on, and the paper's mo
 model has seen. Folds are counted before the guard. Processor time of one thread, in one run.
 """
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

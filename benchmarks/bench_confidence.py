@@ -6,8 +6,6 @@ Shapes are those of benchmarks/yardstick. The trained network is `meshonet`, whi
 for other shapes too. A picture of all answers is written beside the page.
 """
 
-from __future__ import annotations
-
 import os
 
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):

@@ -6,8 +6,6 @@ The grids are tiny and computed in no time; what is measured is everything else 
 process: inputs, digests, parts, reports, the index. Samples are read by fresh processes of h5py alone.
 """
 
-from __future__ import annotations
-
 import json
 import resource
 import statistics

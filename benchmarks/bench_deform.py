@@ -7,8 +7,6 @@ FOLDER of airfoils holds ``*.dat``; that of bodies the elements of a multi-eleme
 ``*flap*.dat``, which is turned.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -6,8 +6,6 @@ One thread, float64, processor seconds, so that neighbours on the machine count 
 and those of the paper stand beside ours as they were measured or published; they are not measured here.
 """
 
-from __future__ import annotations
-
 import tracemalloc
 from collections.abc import Callable, Iterator
 from typing import TypeVar

@@ -8,8 +8,6 @@ each; the machine should do nothing else. The datasets take 350 KB a grid on the
 time. Needs the packages distributed, mpi4py and mpich.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import resource

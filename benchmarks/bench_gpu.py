@@ -7,8 +7,6 @@ Without a CUDA device the page says that. `--device cpu --quick` runs all of it 
 grids, to see that it works.
 """
 
-from __future__ import annotations
-
 import sys
 import tempfile
 import time

@@ -7,8 +7,6 @@ Deviation is that of all four corners of every cell from 90 degrees; growth is t
 between neighbouring cells, anywhere in the grid.
 """
 
-from __future__ import annotations
-
 import os
 
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):

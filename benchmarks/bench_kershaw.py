@@ -6,8 +6,6 @@ MFEM (``pip install mfem``) is needed for the rows of TMOP alone; without it the
 processor seconds of one thread, the least of three runs of ours and one run of TMOP.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from importlib.metadata import version

@@ -5,8 +5,6 @@
 The shapes are random four-sided domains, and random airfoils around which the far field is at 15 chords.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 

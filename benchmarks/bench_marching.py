@@ -6,8 +6,6 @@ Surfaces are those of the tests and the Plot3D files ``*.fmt`` of FOLDER, marche
 in rows ``| names | script | N | s0 | marchDist |``. One thread.
 """
 
-from __future__ import annotations
-
 import re
 import resource
 import subprocess

@@ -8,8 +8,6 @@ four-sided domains and the paper's families. All ways of a table run on the same
 quarter of an hour on one core.
 """
 
-from __future__ import annotations
-
 import os
 
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):

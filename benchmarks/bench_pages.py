@@ -6,8 +6,6 @@ Needs chromium and chromedriver. Of the other libraries those are measured that 
 k3d, pyvista with trame-pyvista and nest_asyncio2.
 """
 
-from __future__ import annotations
-
 import importlib.util
 import statistics
 import sys

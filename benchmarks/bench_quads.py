@@ -6,8 +6,6 @@ Domains are the random ones of the tests, of a generator that no model was train
 families. Folds are counted before the guard. Processor time of one thread, in one run.
 """
 
-from __future__ import annotations
-
 import os
 
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):

@@ -9,8 +9,6 @@ seconds; and nanoseconds of one thread for a node and an iteration of the descen
 `--surfaces` (a folder as of ``bench_marching.py``) are smoothed as they are: how far first cells change too.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 import time

@@ -3,8 +3,6 @@
 ``python benchmarks/bench_startup.py [RUNS]``; the machine should have nothing else to do.
 """
 
-from __future__ import annotations
-
 import statistics
 import subprocess
 import sys

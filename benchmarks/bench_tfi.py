@@ -5,8 +5,6 @@
 One thread, float64, a curved quad; seconds are medians. The bar is 2 copies at 3200x3200.
 """
 
-from __future__ import annotations
-
 import argparse
 import statistics
 import time

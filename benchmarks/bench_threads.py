@@ -6,8 +6,6 @@ Wall-clock seconds, the counts of threads in turn and the least of several round
 slows them alike. The machine should be idle otherwise: a thread without a core of its own only costs time.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import sys

@@ -6,8 +6,6 @@ Folded cells, included angles (largest of each cell), deviation from orthogonal 
 distance to the full solve, and processor time of one thread, beside that of copy of the grid in memory.
 """
 
-from __future__ import annotations
-
 import os
 
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):

@@ -7,8 +7,6 @@ is what copying the nodes in memory takes. Memory is the peak resident set less 
 read, without it), over the bytes of the grid.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import resource

@@ -7,8 +7,6 @@ Times are processor seconds of one thread, the least of several runs; a copy is 
 Angles are deviations from 90 degrees, the worst of the three at a corner; SJ is the scaled corner Jacobian.
 """
 
-from __future__ import annotations
-
 import tempfile
 import time
 from collections.abc import Callable, Sequence

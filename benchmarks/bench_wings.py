@@ -6,8 +6,6 @@ Wings are pairs of the sections in FOLDER (``.dat`` files), with a taper of 0.25
 degrees, a sweep of -0.2 to 0.8 and a dihedral of -0.1 to 0.25 of the span, which is 1.5 to 4 chords.
 """
 
-from __future__ import annotations
-
 import os
 
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):

@@ -12,8 +12,6 @@ the cells and grading. Corners run counter-clockwise. Nodes are blockMesh's to r
 src/mesh/blockMesh: lineDivide.C, arcEdge.C, blockCreate.C.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

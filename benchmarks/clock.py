@@ -1,7 +1,5 @@
 """Processor seconds of a call: those of other programs on the machine do not count."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from typing import TypeVar

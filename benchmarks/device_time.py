@@ -1,7 +1,5 @@
 """Seconds and memory on a device, and the time that is left of a run with a limit."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from typing import Any

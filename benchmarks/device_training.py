@@ -1,7 +1,5 @@
 """Rows of a table on training: models on a device, with and without --amp and --compile."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial

@@ -7,8 +7,6 @@ own errors in two lines at the most, within five seconds of processor time and w
 times the file. The exit code is 1 when one did not pass; its bytes are kept in fuzz-failures/.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

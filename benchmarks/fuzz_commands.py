@@ -7,8 +7,6 @@ of processor time and 2 GiB. The exit code is 1 when one did not pass; its words
 fuzz-failures/.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -3,8 +3,6 @@
 Folds are counted before the guard; times are processor seconds of one thread, in one run.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial

@@ -5,8 +5,6 @@
 Gmsh is a tool of the tests and benchmarks only (GPL).
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from pathlib import Path

@@ -9,8 +9,6 @@ there is none), its name when later commands read it as ``made/NAME``, or ``-`` 
     solve-pde duct.csv --res 41x21 --initial made/start.h5
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from itertools import product
 

@@ -4,8 +4,6 @@ figures = {label: figures_of(run) for label, run in ...}
 for line in differing(before, after): print(line)
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path

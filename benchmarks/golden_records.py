@@ -8,8 +8,6 @@ out.
     for difference in differences(before, after, tolerance=1e-10): print(difference)
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import json

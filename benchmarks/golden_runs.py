@@ -6,8 +6,6 @@ One process runs up to `BATCH` commands, since starting the program takes longer
 that dies leaves its command with the exit code of the signal, and the next process goes on behind it.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -6,8 +6,6 @@ Coordinates are rounded to twelve decimals, so that they do not depend on the la
 The grids are given by formulas: what `quality` and `convert` make of them does not depend on any solver.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 from collections.abc import Iterable, Mapping, Sequence

@@ -7,8 +7,6 @@ The current folder holds the inputs. Each job has its own folder: `out`, `stdout
 Uses the standard library only, so that what the program loads is up to the program.
 """
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import os

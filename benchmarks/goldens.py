@@ -15,8 +15,6 @@ have to be equal, angles to 1e-6. Only the command line of the checkout is used,
 25 commands run in one process, to save time; with ``--batch 1`` each has its own, with the same results.
 """
 
-from __future__ import annotations
-
 import os
 
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):

@@ -1,7 +1,5 @@
 """What a benchmark asks of a grid: folds, distance to a converged solution, angles beside the PDE's, time."""
 
-from __future__ import annotations
-
 import hashlib
 import time
 from collections.abc import Callable, Mapping

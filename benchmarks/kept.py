@@ -3,8 +3,6 @@
 A row belongs to the sources that made it: those of other sources are not used.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Callable, Iterable, Sequence

@@ -9,8 +9,6 @@ files after SIGKILL; and these are gone once the next command has written to the
 JSON for each command; the exit code is 1 when something was not so.
 """
 
-from __future__ import annotations
-
 import argparse
 import hashlib
 import json

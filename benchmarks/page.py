@@ -1,7 +1,5 @@
 """What the scripts that write a page share: the option --page, the writing, the name of the processor."""
 
-from __future__ import annotations
-
 import argparse
 import platform
 from pathlib import Path

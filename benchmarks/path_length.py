@@ -9,8 +9,6 @@ and whose source is a file of this project. What libraries generate, such as ``_
 no file and is not counted. From Python 3.12 on most comprehensions are no code objects of their own.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """What is right and how good a mesh of quads is, by means of its own, from nodes, quads and polygons."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Random bodies with a wing of real sections, and those with a fin and a tail plane too, by seed."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path

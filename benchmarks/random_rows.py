@@ -1,7 +1,5 @@
 """Random blade rows of real sections, by seed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import suppress

@@ -4,8 +4,6 @@ All figures come from the nodes of blocks, their connections and patches, and fr
 its blade.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -12,8 +12,6 @@ another one would be given, with one core, or another processor that is emulated
 digest differs.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import re

@@ -1,7 +1,5 @@
 """The commands of `same.py`, one of each kind, in the form of `golden_commands`, and inputs of their own."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys

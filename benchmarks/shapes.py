@@ -1,7 +1,5 @@
 """The boundaries of the operator's benchmark, each as a recipe at any finer node count."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

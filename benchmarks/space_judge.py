@@ -3,8 +3,6 @@
 Figures come from the nodes of blocks, their connections and patches.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Collection, Iterator
 from dataclasses import replace

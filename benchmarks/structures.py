@@ -1,7 +1,5 @@
 """Block structures to try: vertices, counts, gradings and curves as `block_mesh` takes them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -3,8 +3,6 @@
 python docs/command_pages.py > meshonet.1
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """Draw the cells of docs/reference/quality.md and the grids of docs/theory: python docs/make_drawings.py."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 

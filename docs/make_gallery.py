@@ -3,8 +3,6 @@
 Thirty domains of examples/domains, each gridded by `meshonet.solve_pde` and drawn with its blocks.
 """
 
-from __future__ import annotations
-
 import importlib.util
 import tempfile
 from pathlib import Path

@@ -5,8 +5,6 @@ shipped models, families.md from the families. In development/: blocking.md from
 Pictures: make_pictures.py.
 """
 
-from __future__ import annotations
-
 import ast
 import csv
 import json

@@ -3,8 +3,6 @@
 A picture that looks as it did is not written again.
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import tempfile

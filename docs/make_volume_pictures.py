@@ -1,7 +1,5 @@
 """Draw pictures of the guides of wings, pipes and aircraft: python docs/make_volume_pictures.py."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Keep pictures of the documentation small: python docs/reduce_pictures.py [--width PIXELS] PNG..."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

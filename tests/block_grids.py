@@ -1,7 +1,5 @@
 """Grids of many blocks made by hand, whose sides are joined by comparing all of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from itertools import combinations
 

@@ -1,7 +1,5 @@
 """Lines of commands as pages and the help show them, run in a folder."""
 
-from __future__ import annotations
-
 import io
 import re
 import shlex

@@ -1,7 +1,5 @@
 """Fixtures of all tests; the mark of those that run Debian's programs, from ``make test-clients``."""
 
-from __future__ import annotations
-
 import gc
 import os
 import shutil

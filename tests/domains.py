@@ -1,7 +1,5 @@
 """Domains and layouts made by hand, for tests of what comes before and behind decomposition."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats

@@ -1,7 +1,5 @@
 """Grids of many blocks in space, made by hand and joined by the places of their nodes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Domains with periodic sides, made here."""
 
-from __future__ import annotations
-
 import runpy
 from pathlib import Path
 

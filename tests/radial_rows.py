@@ -5,8 +5,6 @@ meridional direction that changes from edge to edge, with a thickness normal to 
 elliptic leading edge, and a trailing edge that is round or cut off at a constant place.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

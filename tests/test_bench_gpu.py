@@ -1,7 +1,5 @@
 """The script that measures on a GPU, run on the CPU, where everything but its figures can be checked."""
 
-from __future__ import annotations
-
 import importlib
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The text of every page of docs/benchmarks is that of the script which makes it."""
 
-from __future__ import annotations
-
 import ast
 import re
 from pathlib import Path

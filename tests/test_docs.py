@@ -1,7 +1,5 @@
 """Documents cannot drift: generated pages are current, links lead somewhere, the README's commands run."""
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import os

@@ -1,7 +1,5 @@
 """The runner of golden commands: its time limit is for each command, and what exceeds it is said to."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from types import ModuleType
 

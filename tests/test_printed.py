@@ -1,7 +1,5 @@
 """What is printed is compared with a page by words, and by figures to the digits that the page shows."""
 
-from __future__ import annotations
-
 import pytest
 from printed import differences
 

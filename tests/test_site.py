@@ -1,7 +1,5 @@
 """The site has every page in its place, and every page says when to use it; `make site` builds it."""
 
-from __future__ import annotations
-
 import inspect
 import re
 from pathlib import Path

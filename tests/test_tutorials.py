@@ -1,7 +1,5 @@
 """Tutorials run: the blocks of each page in their order, and they print what the page shows."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Volumes for tests: analytic maps of the unit cube, and random domains with bubbles on each face."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -10,8 +10,6 @@ paths of boundaries and of the grids to write, and records its processor time. G
 FOLDER/NAME by hand. `judge` measures all grids; `entries` runs the programs of this repository and Gmsh's.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import resource

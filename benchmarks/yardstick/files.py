@@ -1,7 +1,5 @@
 """Files of boundaries and of grids: HDF5 with a few arrays, or folders of Plot3D files."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

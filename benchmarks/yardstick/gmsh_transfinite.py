@@ -6,8 +6,6 @@ Every edge between two boundary nodes is a line of one element, so that Gmsh kee
 is a tool of tests and benchmarks only.
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The judge: angles, folded cells and errors at the boundary, by NumPy alone."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

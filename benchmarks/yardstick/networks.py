@@ -8,8 +8,6 @@ Physics-informed networks are trained for one geometry, as a part of their run:
 writes the grid of the first shape of a file.
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import tempfile

@@ -4,8 +4,6 @@ They are drawn for this comparison alone: no network of this repository was trai
 was tuned to them. Every shape depends on kind, seed and number alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 

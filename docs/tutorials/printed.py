@@ -4,8 +4,6 @@ Whole numbers are promises and are equal. Others may differ by a unit of their l
 from processor to processor. Times are let pass, and where a worst cell is: others may be as bad.
 """
 
-from __future__ import annotations
-
 import re
 from decimal import Decimal
 

@@ -10,8 +10,6 @@ A comment `<!-- needs: PROGRAM -->` in front of a block names a program or Pytho
 `<!-- within: 0.02 -->` in front of a block of text says by which part its figures may differ: printed.py.
 """
 
-from __future__ import annotations
-
 import argparse
 import importlib.util
 import os

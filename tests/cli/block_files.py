@@ -1,7 +1,5 @@
 """What tests measure of the one grid of many blocks in a file."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.formats.registry import read_grids

@@ -1,7 +1,5 @@
 """Families of grids of many blocks: one is made, every second, fourth and eighth node makes the others."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

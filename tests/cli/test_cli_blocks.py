@@ -1,7 +1,5 @@
 """Files of many blocks through quality, plot, convert and solve-pde."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """`meshonet infer --device`: the same grids through torch, a batch together, or a clear line."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Discs that are full, folders that may not be written, readers that go: told in a line."""
 
-from __future__ import annotations
-
 import os
 import resource
 import shutil

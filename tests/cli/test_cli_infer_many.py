@@ -1,7 +1,5 @@
 """`meshonet infer` on many boundaries with a network: solved together, told of one by one."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Commands on volumes and surfaces: `quality`, `convert` and `plot` from the command line."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

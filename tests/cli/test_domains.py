@@ -1,7 +1,5 @@
 """Domains of many blocks from the command line: what is read, what is made of it, what is refused."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

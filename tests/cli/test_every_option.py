@@ -9,8 +9,6 @@
 - workers: whether other processes worked.
 """
 
-from __future__ import annotations
-
 import hashlib
 import importlib.util
 import resource

@@ -1,7 +1,5 @@
 """Domains that are wrong, degenerate or hardly possible: one clear line, or a valid grid; in good time."""
 
-from __future__ import annotations
-
 import json
 import time
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Samples of a dataset are called like their files: tables, JSON and datasets are joined by one key."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import h5py

@@ -1,7 +1,5 @@
 """Layouts of what layers leave of a domain: saved, and taken for other cells, layers and shapes."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

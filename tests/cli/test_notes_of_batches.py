@@ -1,7 +1,5 @@
 """What was changed of shapes reaches whoever makes many grids, and whoever reads one of the files."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Sharp edges opened by ``--base`` have layers where layers fold otherwise."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The command line that travels in a grid: whole but for the output, and made once for all grids of a run."""
 
-from __future__ import annotations
-
 import shlex
 
 import pytest

@@ -1,7 +1,5 @@
 """Datasets of one method add up, and one without grids is refused with a remedy."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import h5py

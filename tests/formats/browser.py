@@ -1,7 +1,5 @@
 """Chromium without a window, driven by the WebDriver protocol: requests of JSON to chromedriver."""
 
-from __future__ import annotations
-
 import base64
 import io
 import json

@@ -1,7 +1,5 @@
 """One-to-one interfaces of a CGNS file, followed by the standard's rule."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

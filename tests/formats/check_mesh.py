@@ -1,7 +1,5 @@
 """OpenFOAM's own check of a case."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 from pathlib import Path

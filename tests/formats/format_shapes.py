@@ -1,7 +1,5 @@
 """Small grids with known answers, one of each topology, with names of their own."""
 
-from __future__ import annotations
-
 import io
 import sys
 from pathlib import Path

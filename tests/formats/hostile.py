@@ -1,7 +1,5 @@
 """Hostile files for every reader: good ones, what can be done to them, and what never was one."""
 
-from __future__ import annotations
-
 import functools
 import json
 import re

@@ -1,7 +1,5 @@
 """Grids of several blocks for formats: those of the other rooms, and passages with periodic sides."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

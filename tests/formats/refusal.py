@@ -1,7 +1,5 @@
 """Files of `meshonet stack` that are refused."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Cases of steady laminar flow for OpenFOAM's simpleFoam, and their runs."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 from collections.abc import Mapping

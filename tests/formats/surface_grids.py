@@ -1,7 +1,5 @@
 """Surfaces of one and of many patches, made by hand: closed, open, with patches turned in all ways."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

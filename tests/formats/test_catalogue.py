@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from meshonet.formats.catalogue import plain, rows
 from meshonet.formats.registry import TABLE
 

@@ -1,7 +1,5 @@
 """Grids of many blocks in CGNS: ours to the last bit, those of others with their interfaces."""
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Callable, Sequence
 from pathlib import Path

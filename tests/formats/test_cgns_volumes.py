@@ -1,7 +1,5 @@
 """Volumes and surfaces in CGNS: ours to the last bit, others' with their interfaces and names."""
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """O and C grids around airfoils, as the command line makes them, before cgnscheck and checkMesh."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

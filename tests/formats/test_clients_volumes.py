@@ -1,7 +1,5 @@
 """A wing and a pipe bend, as the command line makes them, before cgnscheck and checkMesh."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Pictures of grids of many blocks: every block, its outline, its irregular vertices."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import matplotlib.image

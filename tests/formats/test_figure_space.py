@@ -1,7 +1,5 @@
 """Pictures of volumes and surfaces: what they show, and what is refused."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Flow around a section with a base of 8 % of the chord: C grids that keep the base, in OpenFOAM."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

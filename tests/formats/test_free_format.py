@@ -1,7 +1,5 @@
 """Numbers out of text: the doubles that Python's own parser makes, to the last bit."""
 
-from __future__ import annotations
-
 import struct
 from random import Random
 

@@ -1,7 +1,5 @@
 """Whatever bytes a reader meets, only InputError comes out, with a place or a remedy, and soon."""
 
-from __future__ import annotations
-
 import time
 import warnings
 from collections.abc import Callable

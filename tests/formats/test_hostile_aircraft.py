@@ -1,7 +1,5 @@
 """Aircraft that cannot be: each is refused in one line, with file, place, problem and remedy."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

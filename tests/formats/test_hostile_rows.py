@@ -1,7 +1,5 @@
 """Blade rows that cannot be: each is refused in one line, with file, place, problem and remedy."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import blade_row

@@ -1,7 +1,5 @@
 """Layouts as JSON: written, read back, damaged."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 from dataclasses import replace

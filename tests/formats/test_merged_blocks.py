@@ -1,7 +1,5 @@
 """Grids of many blocks as one mesh: no seam, no inner face, names kept, periodic sides coupled."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The worked cases of OpenFOAM give the forces that finer grids and other codes give."""
 
-from __future__ import annotations
-
 import math
 import shutil
 import subprocess

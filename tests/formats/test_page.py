@@ -1,7 +1,5 @@
 """The page of a grid, its numbers unpacked here as the browser does; tests of it in a browser are beside."""
 
-from __future__ import annotations
-
 import base64
 import json
 import re

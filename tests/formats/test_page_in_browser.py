@@ -1,7 +1,5 @@
 """The page of a grid in a real browser: what is drawn, and what the mouse and the controls do to it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """From every format that is read to every one that is written and read again, nothing is lost."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What the guide on ParaView says opens there: every cell, every place and the quality that we measure."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

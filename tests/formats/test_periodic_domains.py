@@ -1,7 +1,5 @@
 """Domains with periodic sides, from the file to the formats that know such sides, and to a flow solver."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

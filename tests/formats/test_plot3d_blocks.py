@@ -1,7 +1,5 @@
 """Grids of many blocks in Plot3D: with their neutral map beside, and without."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable
 from pathlib import Path

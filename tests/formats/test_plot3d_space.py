@@ -1,7 +1,5 @@
 """Volumes and surfaces in Plot3D, with their maps and without, in every variant."""
 
-from __future__ import annotations
-
 import itertools
 import struct
 from collections.abc import Callable

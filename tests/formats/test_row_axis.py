@@ -1,7 +1,5 @@
 """Rows about any axis: the grid is about the axis of the file, as that about x turned."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Files of a blade row, one passage and copies of it: what the programs that read them say, and periods."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Sections of blade rows: their areas are those of the unrolled annulus and of the meridional channel."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

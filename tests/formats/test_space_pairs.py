@@ -1,7 +1,5 @@
 """Volumes and surfaces from any format that keeps blocks through any other, and by ten lines of h5py."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from dataclasses import replace

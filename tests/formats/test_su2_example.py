@@ -1,7 +1,5 @@
 """The worked case of SU2: its mesh parsed by another reader, its case file naming the mesh's markers."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Boundaries with their names out of Gmsh meshes, SU2 meshes and DXF drawings, others' and our own."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Outlines from SVG drawings: curves within the tolerance that is stated, names, maps, what is refused."""
 
-from __future__ import annotations
-
 from math import cos, radians, sin
 
 import numpy as np

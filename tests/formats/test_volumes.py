@@ -1,7 +1,5 @@
 """Volumes as the meshes of solvers: closed cells, every face once, names kept, periodic sides coupled."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

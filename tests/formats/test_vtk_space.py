@@ -1,7 +1,5 @@
 """Volumes and surfaces in VTK's formats, as VTK sees them and as they come back."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Volumes of one and of many blocks, made by hand, blocks of the pipe turned in all ways."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import combinations, product

@@ -1,7 +1,5 @@
 """Sections for tests, made from formulas written here apart from the code under test."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Blocks in space for tests: lattices, turned lattices, a pipe with an axis, the six faces of a ball."""
 
-from __future__ import annotations
-
 from itertools import permutations, product
 
 import numpy as np

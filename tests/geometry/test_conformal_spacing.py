@@ -1,7 +1,5 @@
 """Conformal wall spacing against maps of the circle that are known in closed form."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

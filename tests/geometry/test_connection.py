@@ -1,7 +1,5 @@
 """Blocks, patches and connections: one block, several, and three directions with the same types."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Copies of periodic grids: bitwise joined, in their places, closed to a ring where they fill the turn."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

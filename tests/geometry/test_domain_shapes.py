@@ -1,7 +1,5 @@
 """Domains out of polygons, airfoils and boundaries: what is one block, what is many, names and corners."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Planar blocks repeated in z: their volume, their patches and connections, and the way back."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Interfaces of planar blocks found by position: whole sides, parts, folds, rounded nodes and copies."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

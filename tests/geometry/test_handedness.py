@@ -1,7 +1,5 @@
 """The signed volume of a block against what is known of it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

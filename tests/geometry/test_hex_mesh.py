@@ -1,7 +1,5 @@
 """Blocks in space become one mesh: shared nodes, poles, what lies beyond connected sides, and back again."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from joined_volumes import bend, joined, shell

@@ -1,7 +1,5 @@
 """The layout of a grid of blocks has its nodes once, and a domain whose loops run through its own nodes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

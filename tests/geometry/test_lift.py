@@ -1,7 +1,5 @@
 """The conformal lift: conformal, invertible, indifferent to where the body lies."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Metrics of volumes and surface patches against Verdict (through VTK) and shapes known by hand."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Interfaces of blocks in space found by position: faces, parts, seams, axes, copies, edges of surfaces."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What is changed of a user's geometry is said in the notes of its boundary."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from sections import selig

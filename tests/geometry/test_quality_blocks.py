@@ -1,7 +1,5 @@
 """Grids of many blocks are measured as the same grid in one block is, and where blocks meet too."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from block_grids import butterfly, duct, joined, o_ring, turned

@@ -1,7 +1,5 @@
 """Reports of volumes and surfaces: walls, growth across faces, comparison, coarser grids."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Sides of blocks that share nodes of one table."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.layout.to_grid import shared, shared_in_part

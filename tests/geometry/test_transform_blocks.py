@@ -1,7 +1,5 @@
 """Grids of many blocks made coarser, moved to unit size and turned keep their connections and patches."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

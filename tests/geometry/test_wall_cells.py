@@ -1,7 +1,5 @@
 """Y+ and skewness of cells at walls, against values by hand."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

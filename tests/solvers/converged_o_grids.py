@@ -1,7 +1,5 @@
 """O grids of the compiled conformal solver whose Picard steps are repeated until nothing moves."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats

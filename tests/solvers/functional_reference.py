@@ -1,7 +1,5 @@
 """The functional of variational grids in plain numpy, against which the compiled one is tested."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats

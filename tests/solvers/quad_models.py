@@ -1,7 +1,5 @@
 """A quad model of small random weights, for tests that need a file and no quality."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Random four-sided domains: straight, wavy, bowed, kinked and bumped sides between moved corners."""
 
-from __future__ import annotations
-
 import numpy as np
 from solver_shapes import corner_jacobians, quad
 

@@ -1,7 +1,5 @@
 """Boundaries that the solver tests share: plain, kinked, re-entrant, periodic."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats

@@ -1,7 +1,5 @@
 """O grids around bodies in torch: those of numpy, and gradients that finite differences confirm."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

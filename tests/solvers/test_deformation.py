@@ -1,7 +1,5 @@
 """Grids that follow a changed boundary."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

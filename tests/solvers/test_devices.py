@@ -1,7 +1,5 @@
 """Grids on a device: those of here, and nothing left here on the way (`pretend_device`)."""
 
-from __future__ import annotations
-
 from typing import Any, cast
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The functional over hexahedra: its value and slopes, however a volume is cut into blocks and bricks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

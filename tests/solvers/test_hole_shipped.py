@@ -1,7 +1,5 @@
 """The shipped network for bodies: golden nodes, folds and angles on bodies that it was not trained on."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Kernels refuse indices below the first and beyond the last, whatever they are called with, and say so."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable, Iterator
 from typing import Any

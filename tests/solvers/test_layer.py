@@ -1,7 +1,5 @@
 """Grids as layers: batches in torch equal the compiled solvers, and their gradients are true."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Grids in JAX: the nodes of torch's functions, and gradients that finite differences confirm."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Derivatives of nodes by boundary nodes: against finite differences, and products against each other."""
 
-from __future__ import annotations
-
 import runpy
 from pathlib import Path
 

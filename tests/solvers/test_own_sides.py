@@ -1,7 +1,5 @@
 """Steps after the quad network do not depend on where a domain lies, nor on how its sides are named."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

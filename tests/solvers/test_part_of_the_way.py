@@ -1,7 +1,5 @@
 """A folded answer is taken part of the way, where that is valid."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import torch

@@ -1,7 +1,5 @@
 """The quad network around bodies: layers that go round, strips, symmetries, walls."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Quad grids in torch: those of numpy, and gradients that finite differences confirm."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

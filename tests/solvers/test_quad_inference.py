@@ -1,7 +1,5 @@
 """Four-sided domains through a quad model of random weights: exact edges, symmetries, batches, polish."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

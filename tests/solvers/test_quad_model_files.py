@@ -1,7 +1,5 @@
 """Files of quad models are untrusted input."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The shipped quad network: golden nodes, folds and angles on domains that it was not trained on."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from random_quads import random_quad

@@ -1,7 +1,5 @@
 """A layout carried over to other shapes of the same kind."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from domains import STEP, STEP_NAMES, circle, ring_layout, step_domain, step_layout

@@ -1,7 +1,5 @@
 """Given grids of blocks in space are smoothed across their interfaces and never become worse."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Given grids of blocks are smoothed across their interfaces, keep their spacing, and never become worse."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

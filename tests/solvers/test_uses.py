@@ -1,7 +1,5 @@
 """The table of what applies to what: it knows every option, and every option reaches code that reads it."""
 
-from __future__ import annotations
-
 import ast
 import functools
 import inspect

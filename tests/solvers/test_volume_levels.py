@@ -1,7 +1,5 @@
 """Coarser copies of blocks in space, and what is carried back from them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from joined_volumes import bend, joined, perturbed, shell

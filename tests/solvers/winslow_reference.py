@@ -8,8 +8,6 @@ exchanged, both coordinates x = (x, y) satisfy
 Winslow, J. Comput. Phys. 1 (1966) 149-172.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats

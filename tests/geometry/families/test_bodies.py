@@ -1,7 +1,5 @@
 """Random bodies in far fields: simple, apart, wound once, and the same shape at any node counts."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Random four-sided domains: simple, usable, and the same shape at any node counts."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

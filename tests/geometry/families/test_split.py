@@ -1,7 +1,5 @@
 """Splits of a family: what is trained on, what is tested on."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

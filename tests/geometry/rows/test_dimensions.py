@@ -1,7 +1,5 @@
 """Dimensions of rows in reports, and notes on those that are hardly meant."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

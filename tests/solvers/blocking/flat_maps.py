@@ -1,7 +1,5 @@
 """Seamless maps that are known: of right-angled domains, annuli and cones, over random triangulations."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import pairwise
 from typing import Any

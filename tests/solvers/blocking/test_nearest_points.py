@@ -1,7 +1,5 @@
 """The nearest of many points along walls: by brute force, the first of equally near ones."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What is said of the cells at walls with layers is what a grid has there."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path

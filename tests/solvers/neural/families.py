@@ -1,7 +1,5 @@
 """Small solved families for tests of training, written out by hand so that no solver is involved."""
 
-from __future__ import annotations
-
 import numpy as np
 import torch
 

@@ -1,7 +1,5 @@
 """Arrays that a cache hands out many times cannot be written to."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Separable evaluation against the sums and maps written out."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

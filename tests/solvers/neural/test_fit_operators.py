@@ -1,7 +1,5 @@
 """Operators learn, repeatably; a run that is cut off goes on as if it had not been."""
 
-from __future__ import annotations
-
 import signal
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Training is deterministic, resumable, and learns."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

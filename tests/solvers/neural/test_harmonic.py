@@ -1,7 +1,5 @@
 """The harmonic extension of a boundary against solutions in closed form."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The numpy network is the torch network."""
 
-from __future__ import annotations
-
 import numpy as np
 import torch
 

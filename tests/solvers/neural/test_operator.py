@@ -1,7 +1,5 @@
 """The operator's promises: exact walls, a bitwise seam, invariance, agreement with the elliptic solver."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

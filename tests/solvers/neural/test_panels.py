@@ -1,7 +1,5 @@
 """Panels carry a smooth line to round-off, cover what they say, and leave small grids alone."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

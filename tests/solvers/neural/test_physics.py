@@ -1,7 +1,5 @@
 """Physics-informed networks: derivatives, residual, what they learn, and whom they answer."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

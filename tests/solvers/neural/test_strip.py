@@ -1,7 +1,5 @@
 """Winslow's equations in the strip against solutions known in closed form."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Tensors that no operator can take are refused with the side and the remedy."""
 
-from __future__ import annotations
-
 import pytest
 
 torch = pytest.importorskip("torch")

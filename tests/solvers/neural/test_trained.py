@@ -1,7 +1,5 @@
 """A trained operator answers alike in numpy and torch, keeps its promises, and its file is untrusted."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Model files are untrusted input."""
 
-from __future__ import annotations
-
 import json
 import pickle
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Fields and grids seen from the elements of a quad's symmetry group."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes

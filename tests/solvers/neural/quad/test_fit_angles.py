@@ -1,7 +1,5 @@
 """The angles that the quad network is taught by."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

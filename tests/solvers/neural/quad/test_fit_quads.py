@@ -1,7 +1,5 @@
 """Training of the quad operator: learns, is deterministic and resumable, knows its symmetries."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The quad network's layers against plain numpy, and the whole against torch and its own symmetries."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

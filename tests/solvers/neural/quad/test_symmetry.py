@@ -1,7 +1,5 @@
 """The quad network's symmetries: a relabelled domain has the relabelled features, frame and kernels."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from relabelling import relabelled
