@@ -8,6 +8,7 @@
     tip_spacing = 0.001        # length of a wing's last cells along the span, in chords of the last section
     le_spacing = 0.002         # length of cells at leading edges, in chords of each section
     te_spacing = 0.001         # length of cells at trailing edges, likewise
+    cant = "panel"             # cant of all sections but the root; default: 0, planes of constant z
 
     [[sections]]               # the root
     airfoil = "naca:2412"      # or a file, relative to the folder of this one
@@ -22,6 +23,7 @@
     z = 3.0
     sweep = 20                 # sweep of the leading edge from the previous section in degrees; or x = 1.09
     dihedral = 5               # dihedral from the previous section in degrees; or y = 0.26
+    cant = 5                   # degrees about the chord line; or "panel": the mean dihedral of both panels
 
 With ``kind = "row"`` it is a row of blades (`meshonet.formats.rows.read`), with ``kind = "aircraft"`` a body
 with wings (`meshonet.formats.aircraft`).

@@ -9,7 +9,7 @@ from meshonet.formats.registry import is_designation, read_shapes
 from meshonet.formats.source import printable
 from meshonet.formats.toml_table import Table
 from meshonet.geometry.aircraft.fin import Fin
-from meshonet.geometry.sections.section import QUARTER, Section
+from meshonet.geometry.sections.section import MOST_CANT, QUARTER, Cant, Section
 from meshonet.geometry.sections.stack import BETWEEN, KINDS, TIPS, Stack
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.outline import Outline
@@ -24,11 +24,11 @@ def stack_table(data: Table, folder: Path, name: str, more: tuple[str, ...] = ()
 
     Raises InputError: see `meshonet.formats.stack.stack_of`.
     """
-    options = stack_options(data, name, ("about", *more))
-    about = data.pair("about", QUARTER)
+    options = stack_options(data, name, ("about", "cant", *more))
+    about, turn = data.pair("about", QUARTER), cant(data, 0.0)
     sections: list[Section] = []
     for row in data.rows("sections", least=2):
-        sections.append(_section(row, about, sections, folder))
+        sections.append(_section(row, about, turn if sections else 0.0, sections, folder))
     return Stack(tuple(sections), **options)
 
 
@@ -46,8 +46,21 @@ def stack_options(data: Table, name: str, more: tuple[str, ...]) -> dict[str, An
     }
 
 
-def _section(row: Table, about: tuple[float, float], before: list[Section], folder: Path) -> Section:
-    row.only("airfoil", "outline", "chord", "z", "x", "y", "twist", "about", "sweep", "dihedral")
+def cant(data: Table, default: Cant) -> Cant:
+    """Return the cant in a table: an angle in degrees, or ``panel``. Raises InputError: another value."""
+    if "cant" not in data.data or data.data["cant"] == "panel":
+        return "panel" if "cant" in data.data else default
+    degrees = data.number("cant")
+    if abs(degrees) > MOST_CANT:
+        remedy = f"use -{MOST_CANT:g} to {MOST_CANT:g}, or panel"
+        raise data.error("cant", f"{degrees:g} degrees", remedy)
+    return degrees
+
+
+def _section(
+    row: Table, about: tuple[float, float], turn: Cant, before: list[Section], folder: Path
+) -> Section:
+    row.only("airfoil", "outline", "chord", "z", "x", "y", "twist", "about", "sweep", "dihedral", "cant")
     z = row.number("z")
     if before and not z > before[-1].z:
         raise row.error("z", f"{z:g} is not behind {before[-1].z:g}", "give sections in order of z")
@@ -59,6 +72,7 @@ def _section(row: Table, about: tuple[float, float], before: list[Section], fold
         along(row, "y", "dihedral", z, before),
         row.number("twist", 0.0),
         row.pair("about", about),
+        cant(row, turn),
     )
 
 

@@ -120,6 +120,9 @@ def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
     )
 
 
+_SHOWN = 3  # of the worst cells in a message
+
+
 class NoValidGridError(MeshonetError):
     """Error if the grids of all methods that were tried have folded cells.
 
@@ -128,7 +131,7 @@ class NoValidGridError(MeshonetError):
     problem : str
         The methods that were tried, and the number of folded cells.
     worst : sequence of BadCell, optional
-        The worst cells.
+        The worst cells; the message shows three of them.
     """
 
     exit_code = 3
@@ -142,7 +145,7 @@ class NoValidGridError(MeshonetError):
 
     def text(self, spelling: Callable[[str], str]) -> str:
         """Return the message, with `spelling` applied to the names of parameters in braces."""
-        cells = ", ".join(f"({cell})" for cell in self.worst[:10])
+        cells = ", ".join(f"({cell})" for cell in self.worst[:_SHOWN])
         problem = spelled(self.problem, spelling)
         return f"{problem}; worst cells: {cells}" if cells else problem
 

@@ -49,9 +49,9 @@ class Fin(Stack):
 
 def _refuse_half(section: Section, at: str) -> None:
     """Raise InputError for a section whose halves on both sides of the plane z = 0 differ."""
-    for key, value in (("y", section.y), ("twist", section.twist)):
+    for key, value in (("y", section.y), ("twist", section.twist), ("cant", section.cant)):
         if value != 0.0:
-            raise InputError(f"{value:g} in a fin", "leave it out", place=f"{at}.{key}")
+            raise InputError(f"{value} in a fin", "leave it out", place=f"{at}.{key}")
     if not isinstance(section.shape, Airfoil):
         return
     curve, (origin, length) = section.shape.curve, section.frame

@@ -1,4 +1,4 @@
-"""A section placed in space: an outline in a plane of constant z, scaled, twisted and moved.
+"""A section placed in space: an outline in a plane of constant z, scaled, twisted, moved and canted.
 
 ::
 
@@ -11,7 +11,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -23,6 +23,8 @@ from meshonet.geometry.shapes.outline import Outline
 
 QUARTER = (0.25, 0.0)
 """Default centre of the twist, in chords from the leading edge."""
+Cant: TypeAlias = float | Literal["panel"]
+MOST_CANT = 90.0  # degrees
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,11 +45,14 @@ class Section:
         Twist angle in degrees, nose up.
     about : tuple of 2 float, optional
         Centre of the twist, in chords from the leading edge along x and y.
+    cant : float or 'panel', optional
+        Angle in degrees by which the section's plane is turned about the line parallel to x through the
+        leading edge, positive like dihedral. ``panel``: as the panels beside the section (`Stack.cants`).
 
     Raises
     ------
     InputError
-        A chord that is not positive; a value that is not finite.
+        A chord that is not positive; a value that is not finite; a cant beyond 90 degrees.
     """
 
     shape: Airfoil | Outline
@@ -57,6 +62,7 @@ class Section:
     y: float = 0.0
     twist: float = 0.0
     about: tuple[float, float] = QUARTER
+    cant: Cant = 0.0
 
     def __post_init__(self) -> None:
         values = {name: getattr(self, name) for name in ("chord", "z", "x", "y", "twist")}
@@ -65,6 +71,9 @@ class Section:
                 raise InputError(f"{name} is {value:g}", "use a finite number", place=name)
         if not self.chord > 0:
             raise InputError(f"a chord of {self.chord:g}", "use more than 0", place="chord")
+        if self.cant != "panel" and not (isinstance(self.cant, int | float) and abs(self.cant) <= MOST_CANT):
+            remedy = f"use -{MOST_CANT:g} to {MOST_CANT:g} degrees, or panel"
+            raise InputError(f"cant is {self.cant!r}", remedy, place="cant")
 
     @property
     def frame(self) -> tuple[Floats, float]:
@@ -116,3 +125,14 @@ def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
         ],
         axis=-1,
     )
+
+
+def turned(points: Floats, place: Floats, cant: Floats) -> Floats:
+    """Return `points` (..., 3) turned by angles about lines parallel to x.
+
+    The lines pass through y and z of `place` (..., 2); `cant` (...) is in radians, positive from z to y.
+    """
+    c, s = cos(cant), sin(cant)
+    away, along = points[..., 1] - place[..., 0], points[..., 2] - place[..., 1]
+    y, z = place[..., 0] + c * away + s * along, place[..., 1] + c * along - s * away
+    return np.stack([points[..., 0], y, z], axis=-1)

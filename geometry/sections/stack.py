@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal, TypeAlias, get_args
@@ -10,8 +11,10 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.sections.section import Fade, Section, placed
+from meshonet.geometry.notes import Change
+from meshonet.geometry.sections.section import Fade, Section, placed, turned
 
 Kind: TypeAlias = Literal["wing", "blade", "duct"]
 Tip: TypeAlias = Literal["round", "flat", "open"]
@@ -19,6 +22,8 @@ Between: TypeAlias = Literal["linear", "smooth"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 TIPS: tuple[Tip, ...] = get_args(Tip)
 BETWEEN: tuple[Between, ...] = get_args(Between)
+STEEP = 20.0
+"""Angle in degrees between a panel and the normals of its sections above which a note gives the thickness."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +82,19 @@ class Stack:
             if not after.z > before.z:
                 problem = f"z is {after.z:g} behind {before.z:g}"
                 raise InputError(problem, "give sections in order of z", place=f"sections[{k + 1}].z")
+        self._check_cants()
+
+    def _check_cants(self) -> None:
+        """Raise InputError for a cant of a section that lies in a wall or in a plane of symmetry."""
+        flat = {0, len(self.sections) - 1} if self.tip == "open" else {0}
+        for k, section in enumerate(self.sections):
+            place = f"sections[{k}].cant"
+            if self.kind != "wing" and section.cant != 0.0:
+                problem = f"the sections of a {self.kind} are in planes of constant z"
+                raise InputError(problem, "leave cant out", place=place)
+            if k in flat and section.cant not in (0.0, "panel"):
+                problem = f"{section.cant:g} degrees, and the section lies in a plane of symmetry"
+                raise InputError(problem, "leave it out", place=place)
 
     def with_tip(self, tip: Tip | None) -> Stack:
         """Return the same stack with another tip; None keeps its own.
@@ -112,21 +130,69 @@ class Stack:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on changes of the points of the sections, and on lines of their files that were left out."""
-        return tuple(dict.fromkeys(note for section in self.sections for note in section.shape.notes))
+        """Notes on the sections' points and files, and on the thickness of steep panels."""
+        notes = [note for section in self.sections for note in section.shape.notes]
+        return tuple(dict.fromkeys([*notes, *filter(None, [self.steep])]))
+
+    @property
+    def dihedrals(self) -> Floats:
+        """(n - 1,) dihedral of the panels in radians."""
+        return arctan2(np.diff([section.y for section in self.sections]), np.diff(self.z))
+
+    @property
+    def cants(self) -> Floats:
+        """(n,) cant of the sections in radians.
+
+        ``panel`` is the mean dihedral of the panels on both sides of a section, the dihedral of the last
+        panel at a tip, and 0 in a plane of symmetry.
+        """
+        panels = self.dihedrals
+        own = np.concatenate([[0.0], 0.5 * (panels[1:] + panels[:-1]), panels[-1:]])
+        if self.tip == "open":
+            own[-1] = 0.0
+        given = [0.0 if section.cant == "panel" else math.radians(section.cant) for section in self.sections]
+        return np.where([section.cant == "panel" for section in self.sections], own, given)
+
+    @property
+    def steep(self) -> str:
+        """A note on the panel that is thinnest in relation to its sections; empty if none is steep.
+
+        A section that is inclined to a panel is thicker than the panel, by the cosine of that angle.
+        """
+        if self.kind != "wing":
+            return ""
+        inclined = np.abs(self.dihedrals - np.stack([self.cants[:-1], self.cants[1:]])).min(axis=0)
+        worst = int(inclined.argmax())
+        if inclined[worst] <= math.radians(STEEP):
+            return ""
+        low, high = self.z[worst : worst + 2]
+        part, off = 100.0 * math.cos(inclined[worst]), math.degrees(inclined[worst])
+        return Change(
+            f"between z={low:g} and {high:g} the wing is {part:.0f} % as thick as its sections, because "
+            f'their planes are {off:.0f} degrees off the normal of the panel; cant = "panel" turns them'
+        )
 
     def lofted(self, unit: Floats, z: Floats, weight: Floats | None = None) -> Floats:
         """Return nodes (m, n, 3) of the sections at the heights `z` (m,).
 
         `unit` (sections, n, 2) are the nodes of the given sections, scaled to unit chord. Shape, chord, twist
         and position are interpolated separately, so that a section between two sections of different twist
-        keeps its length. Nodes with `weight` (n,) 0 are not twisted, and scaled by the longest chord.
+        keeps its length. Nodes with `weight` (n,) 0 are not twisted, and scaled by the longest chord. `z` is
+        that of the leading edge, about which a section with a cant is turned.
         """
         fade = None if weight is None else Fade(weight, self.chord)
         placements = np.stack([section.placement for section in self.sections])
         planes = placed(self.between_sections(unit, z), self.between_sections(placements, z), fade)
         heights = np.broadcast_to(z[:, None, None], (*planes.shape[:2], 1))
-        return np.concatenate([planes, heights], axis=-1)
+        nodes = np.concatenate([planes, heights], axis=-1)
+        return self.canted(nodes, z) if self.cants.any() else nodes
+
+    def canted(self, nodes: Floats, z: Floats) -> Floats:
+        """Return `nodes` (m, ..., 3) turned by the cant at the heights `z` (m,), about the leading edges."""
+        values = np.stack([np.array([section.y for section in self.sections]), self.cants], axis=1)
+        y, cant = self.between_sections(values, z).reshape(len(z), *[1] * (nodes.ndim - 2), 2).T
+        place = np.stack([y.T, z.reshape(y.T.shape)], axis=-1)
+        return turned(nodes, place, cant.T)
 
     def between_sections(self, values: Floats, z: Floats) -> Floats:
         """Return `values` (sections, ...) interpolated at the heights `z` (m,)."""

@@ -37,6 +37,10 @@ class Loft(Protocol):
     def remedy(self) -> str:
         """Text for a user whose lines do not begin inside the body."""
 
+    @property
+    def cant(self) -> float:
+        """Angle in radians by which the plane of the tip is turned about the x axis, from z to y."""
+
     def line(self, number: int, z: Floats) -> Floats:
         """Return points (m, 3) on a line at heights z (m,)."""
 
@@ -58,6 +62,11 @@ class SectionLoft:
     def tip(self) -> float:
         """Height of the last section."""
         return float(self.stack.z[-1])
+
+    @property
+    def cant(self) -> float:
+        """Cant of the last section in radians."""
+        return float(self.stack.cants[-1])
 
     def line(self, number: int, z: Floats) -> Floats:
         """Return points (m, 3) on a line at heights z (m,)."""
@@ -92,12 +101,13 @@ class SurfaceLoft:
     ----------
     lines : (stations, 3) each, from the upper corner of the base around the nose to the lower corner.
     begin : (n,) heights at which lines begin, including the lines in the middle of the base.
-    tip : height at which lines end.
+    tip : height at which lines end, in a plane without `cant`.
     """
 
     lines: Sequence[Floats]
     begin: Floats
     tip: float
+    cant: float = 0.0
     remedy: str = "give patches of the wing that end on the body or inside of it"
 
     @classmethod

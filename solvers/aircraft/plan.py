@@ -17,7 +17,7 @@ from meshonet.solvers.aircraft.body_plane import LevelPlan, planned
 from meshonet.solvers.aircraft.collar_level import Hole
 from meshonet.solvers.aircraft.holes import columns_of, grouped, holes_of, ordered
 from meshonet.solvers.aircraft.request import AircraftRequest
-from meshonet.solvers.aircraft.tip_fill import half_tip_patches, tip_patches
+from meshonet.solvers.aircraft.tip_fill import canted_tip_patches, half_tip_patches
 from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.rows.span_lines import key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, spaced_cells
@@ -217,8 +217,10 @@ def _refuse_acute(space: BodyMap, name: str, root: Floats) -> None:
 
 def _tip(wing: WingLines, first: float) -> tuple[Floats, Floats]:
     """Return the patches that fill the last section of a wing."""
-    filled = half_tip_patches if wing.fin else tip_patches
-    return filled(wing.points(np.ones((1, len(wing.roots))))[0], first)
+    loop = wing.points(np.ones((1, len(wing.roots))))[0]
+    if wing.fin:
+        return half_tip_patches(loop, first)
+    return canted_tip_patches(loop, first, wing.loft.cant)
 
 
 def _cells(patch: Floats) -> int:

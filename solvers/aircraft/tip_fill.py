@@ -3,6 +3,7 @@
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.sections.section import turned
 from meshonet.solvers.rows.span_spacing import smooth_arcs
 from meshonet.solvers.stacking.tip import ROWS, Cap
 
@@ -34,6 +35,17 @@ def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
     nodes = edge[:, None] + parts * (inner - edge)[:, None]
     nodes[:, -1] = inner
     return nodes, core
+
+
+def canted_tip_patches(loop: Floats, first: float, cant: float) -> tuple[Floats, Floats]:
+    """Return the patches inside a closed `loop` in a plane with a `cant`, in radians (see `tip_patches`)."""
+    if not cant:
+        return tip_patches(loop, first)
+    place, cants = loop[0, 1:], np.array([-cant, cant])
+    ring, core = tip_patches(turned(loop, place, cants[0]), first)
+    ring, core = turned(ring, place, cants[1]), turned(core, place, cants[1])
+    ring[:, 0] = loop
+    return ring, core
 
 
 def half_tip_patches(half: Floats, first: float) -> tuple[Floats, Floats]:

@@ -12,10 +12,12 @@ from meshonet.geometry.aircraft.fin import Fin
 from meshonet.geometry.aircraft.surface_wing import SurfaceWing
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.sections.section import turned
 from meshonet.geometry.sections.stack import Stack
 from meshonet.solvers.aircraft.lofts import FinLoft, Loft, SectionLoft, SurfaceLoft
 from meshonet.solvers.rows.span_spacing import spaced_cells, two_sided
 from meshonet.solvers.stacking.section_nodes import GAP, Around, around, unit_nodes
+from meshonet.solvers.stacking.wing_surface import refuse_crossing
 
 _TRIED = 1.2, 1.25, 1.3, 1.35, 1.4, 1.5, 2.0
 """Growth ratios of cells around sections, in order of attempts. Longer cells at the nose would hardly allow a
@@ -105,7 +107,9 @@ class WingLines:
     @property
     def axis(self) -> Floats:
         """(3,) direction of the span, at right angles to the tip."""
-        return np.array([0.0, 1.0, 0.0] if self.fin else [0.0, 0.0, 1.0])
+        if self.fin:
+            return np.array([0.0, 1.0, 0.0])
+        return turned(np.array([0.0, 0.0, 1.0]), np.zeros(2), np.array(self.loft.cant))
 
     @property
     def length(self) -> float:
@@ -122,7 +126,9 @@ def _through_sections(wing: Stack, nodes: int, base: float) -> tuple[Loft, tuple
     """Return lines through nodes around the sections of a wing, and notes."""
     plan = _around(nodes, base, wing.te_spacing, wing.le_spacing)
     units, notes = zip(*(unit_nodes(section, plan) for section in wing.sections), strict=True)
-    loft = FinLoft.of(wing, np.stack(units)) if isinstance(wing, Fin) else SectionLoft(wing, np.stack(units))
+    unit = np.stack(units)
+    refuse_crossing(wing, unit)
+    loft = FinLoft.of(wing, unit) if isinstance(wing, Fin) else SectionLoft(wing, unit)
     return loft, (*wing.notes, *dict.fromkeys(filter(None, notes)))
 
 

@@ -6,6 +6,8 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.revolve import bent
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
 
 _NEAR = 0.1  # deviation from the cells asked for, as a fraction, that is neither corrected nor noted
 _TRIES = 3  # most wings that are made to come near to it
+_BENT = math.radians(30.0)  # between panels, above which folded cells are put down to the bend
+_UPRIGHT = math.radians(60.0)  # dihedral above which folded cells are put down to it
 _REMEDY = "use more nodes {around}, a larger {first_cell} or a higher {base}"  # where cells fold
 
 
@@ -144,7 +148,22 @@ def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
     chord = stack.chord
     settings = _march(stack, request)
     with stage("grid", seconds):
-        solution = march_surface(surface, settings, wing=True)
+        solution = march_surface(surface, settings, wing=True, remedy=_remedy(stack))
     note = request.height_note(f"on a chord of {chord:.6g}", scale=chord)
     notes = (*notes, *[note] * bool(note), *solution.notes, *wall_facts(solution.grid))
     return replace(solution, grid=replace(solution.grid, name=stack.name), notes=notes)
+
+
+def _remedy(stack: Stack) -> str:
+    """Return what to change where the volume around a wing has folded cells."""
+    bends = abs(np.diff(stack.dihedrals, prepend=stack.dihedrals[0]))
+    worst = int(bends.argmax())
+    if bends[worst] > _BENT:
+        angle, z = math.degrees(bends[worst]), stack.z[worst]
+        where = f"at z={z:g}, where the dihedral changes by {angle:.0f} degrees"
+        return f'give more sections {where}, with cant = "panel"'
+    if stack.steep:
+        return 'give the sections cant = "panel"'
+    if abs(stack.dihedrals).max() > _UPRIGHT:
+        return "give a wider bend, or less dihedral"
+    return _REMEDY + (", or a larger tip_spacing" if stack.tip_spacing else ", or a nearer {far_field}")

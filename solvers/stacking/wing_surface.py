@@ -1,6 +1,7 @@
 """The surface of a wing: one patch around its sections from root to tip, and two patches of its cap."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,9 +10,9 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
-from meshonet.geometry.elementary import power
+from meshonet.geometry.elementary import cos, power, product, sin
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.sections.stack import Stack
+from meshonet.geometry.sections.stack import STEEP, Stack
 from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.tanh_law import TanhLaw
 from meshonet.solvers.stacking.section_nodes import BASE_CELLS, GAP, around, unit_nodes
@@ -65,9 +66,9 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
     plan = around(settings.around, gap=settings.base, edge=stack.te_spacing, nose=stack.le_spacing)
     units, notes = zip(*(unit_nodes(section, plan) for section in stack.sections), strict=True)
     unit = np.stack(units)
+    refuse_crossing(stack, unit)
     cap = cap_of(stack)
-    last = stack.lofted(unit, stack.z[-1:])[0]
-    tip = cap.patches(last) if cap else None
+    tip = _tip(stack, unit, cap) if cap else None
     main = _lofted(stack, unit, tip[0] if tip else None, settings.span)
     n, levels = main.shape[:2]
     blocks, patches = [Block(main)], [Patch("symmetry", "south", 0, n - 1)]
@@ -85,9 +86,45 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
     return grid, (*stack.notes, *dict.fromkeys(note for note in notes if note))
 
 
+def refuse_crossing(stack: Stack, unit: Floats) -> None:
+    """Raise InputError if neighbouring sections are turned so far that they cross; `unit` as in `lofted`."""
+    cants = stack.cants
+    if not cants.any():
+        return
+    steps = np.diff(stack.lofted(unit, stack.z), axis=0)
+    normals = np.stack([sin(cants), cos(cants)], axis=1)
+    for k, step in enumerate(steps):
+        apart = min(float(product(step[:, 1:], normals[end]).min()) for end in (k, k + 1))
+        if apart <= 0.0:
+            low, high = stack.z[k : k + 2]
+            turn = math.degrees(cants[k + 1])
+            problem = f"the sections at z={low:g} and {high:g} cross, at {turn:.4g} degrees"
+            raise InputError(problem, "turn them less, or move them apart", place=f"sections[{k + 1}].cant")
+
+
 def cap_of(stack: Stack) -> Cap | None:
     """Return the cap of the tip of a wing, or None if the tip is open."""
     return None if stack.tip == "open" else Cap(BASE_CELLS // 2, bulge=1.0 if stack.tip == "round" else 0.0)
+
+
+def _tip(stack: Stack, unit: Floats, cap: Cap) -> tuple[Floats, Floats]:
+    """Return ring and core of the cap of a tip.
+
+    The cap leans towards the last panel if this is steep, and it is turned as the last section is.
+    """
+    end, flat = stack.z[-1:], replace(stack.sections[-1], cant=0.0)
+    loop = replace(stack, sections=(*stack.sections[:-1], flat)).lofted(unit, end)[0]
+    patches = cap.patches(loop)
+    inclined = float(stack.dihedrals[-1] - stack.cants[-1])
+    lean = math.copysign(max(abs(inclined) - math.radians(STEEP), 0.0), inclined)
+    if lean:
+        for patch in patches:
+            height = patch[..., 2] - end
+            patch[..., 1] += math.sin(lean) * height
+            patch[..., 2] = end + math.cos(lean) * height
+    if stack.cants[-1]:
+        patches = stack.canted(patches[0][None], end)[0], stack.canted(patches[1][None], end)[0]
+    return patches
 
 
 def _tip_cells(ring: Floats) -> Floats:

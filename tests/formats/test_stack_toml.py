@@ -52,6 +52,11 @@ def test_words_of_the_whole_and_a_place_of_twist_for_all(tmp_path):
     assert stack.sections[0].twist == -3.0
 
 
+def test_a_cant_for_all_applies_to_all_but_the_root(tmp_path):
+    stack = read(tmp_path, 'cant = "panel"\n' + ROOT + TIP + TIP.replace("2.0", "3.0") + "cant = -20\n")
+    assert [section.cant for section in stack.sections] == [0.0, "panel", -20.0]
+
+
 def test_files_of_sections_are_looked_for_beside_the_stack(tmp_path):
     (tmp_path / "deep").mkdir()
     angle = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
@@ -80,6 +85,8 @@ def test_files_of_sections_are_looked_for_beside_the_stack(tmp_path):
         (ROOT + TIP + "x = 1\nsweep = 2", "sections[1].sweep: stands beside x"),
         (ROOT + "dihedral = 2" + TIP, "sections[0].dihedral: there is no section before"),
         (ROOT + TIP + "sweep = 90", "sections[1].sweep: 90 degrees"),
+        (ROOT + TIP + 'cant = "up"', "sections[1].cant: 'up' is no number"),
+        (ROOT + TIP + "cant = 120", "sections[1].cant: 120 degrees; use -90 to 90, or panel"),
         (ROOT + TIP + "about = [1, 2, 3]", "sections[1].about: [1, 2, 3] is not 2 numbers"),
         (ROOT + TIP.replace("naca:0012", "none.dat"), "sections[1].airfoil: "),
         (ROOT + TIP.replace("naca:0012", "naca:99"), "sections[1].airfoil: "),

@@ -52,6 +52,44 @@ def test_sections_are_met_bitwise():
             assert np.array_equal(made[k, :, :2], placed(unit[k], part.placement))
 
 
+def steep(cant, last="panel", **values) -> Stack:
+    """Return a wing whose last panel has 70 degrees of dihedral."""
+    rise = 0.2 * np.tan(np.radians(70.0))
+    ends = section(z=2.2, y=rise, cant=last)
+    return Stack((section(), section(z=2.0, cant=cant), ends), **values)
+
+
+def test_a_canted_section_is_turned_about_the_chord_line_and_keeps_its_size():
+    unit = np.array([[0.0, 0.0], [1.0, 0.0], [0.3, 0.06], [0.3, -0.06]])
+    stack = Stack((section(), section(z=2.0, y=1.0, x=0.5, cant=30.0)))
+    nose, tail, upper, lower = stack.lofted(np.stack([unit, unit]), np.array([2.0]))[0]
+    assert nose == pytest.approx([0.5, 1.0, 2.0])
+    assert tail == pytest.approx([1.5, 1.0, 2.0])
+    assert upper - lower == pytest.approx([0.0, 0.12 * np.cos(np.pi / 6), -0.12 * np.sin(np.pi / 6)])
+
+
+def test_a_panel_between_sections_with_its_cant_is_as_thick_as_they_are():
+    unit = np.repeat(np.array([[[0.3, 0.06], [0.3, -0.06]]]), 3, axis=0)
+    normal = np.array([0.0, np.cos(np.radians(70.0)), -np.sin(np.radians(70.0))])
+    upper, lower = steep(70.0).lofted(unit, np.array([2.1]))[0]
+    assert (upper - lower) @ normal == pytest.approx(0.12)
+    upper, lower = steep(0.0, 0.0).lofted(unit, np.array([2.1]))[0]
+    assert (upper - lower) @ normal == pytest.approx(0.12 * np.cos(np.radians(70.0)))
+
+
+def test_the_cant_of_panels_is_the_mean_of_those_beside_a_section_and_0_in_planes_of_symmetry():
+    assert np.degrees(steep("panel").cants) == pytest.approx([0.0, 35.0, 70.0])
+    assert np.degrees(steep("panel", tip="open").cants) == pytest.approx([0.0, 35.0, 0.0])
+
+
+def test_a_note_says_how_much_thinner_a_steep_panel_is_than_its_sections():
+    (note,) = steep(0.0, 0.0).notes
+    assert note.startswith("between z=2 and 2.2 the wing is 34 % as thick as its sections")
+    assert note.endswith('cant = "panel" turns them')
+    assert steep("panel").notes == ()
+    assert Stack((section(), section(z=2.0, y=0.7))).notes == ()
+
+
 def test_smooth_values_overshoot_nowhere_and_have_no_kink():
     x, values = np.array([0.0, 1.0, 2.0, 5.0]), np.array([[0.0, 1.0], [1.0, 1.0], [1.0, 0.2], [4.0, 0.9]])
     fine = np.linspace(0.0, 5.0, 2001)
@@ -73,6 +111,10 @@ def test_smooth_values_overshoot_nowhere_and_have_no_kink():
         (lambda: Stack((section(), section(z=1.0)), tip="pointed"), "tip 'pointed' is not known"),
         (lambda: section(chord=0.0), "a chord of 0"),
         (lambda: section(x=np.inf), "x is inf"),
+        (lambda: section(cant=91.0), "cant is 91.0"),
+        (lambda: section(cant="up"), "cant is 'up'"),
+        (lambda: Stack((section(cant=5.0), section(z=1.0))), "5 degrees, and the section lies in a plane of"),
+        (lambda: Stack((section(), section(z=1.0, cant=5.0)), kind="blade"), "the sections of a blade are"),
         (lambda: Stack((section(), section(z=1.0)), kind="blade").with_tip("flat"), "a blade has no tip"),
     ],
 )

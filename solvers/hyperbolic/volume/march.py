@@ -59,13 +59,16 @@ class _Volume(NamedTuple):
 
 
 @timed
-def march_surface(surface: Surface, settings: VolumeMarch, *, wing: bool = False) -> Solution:
+def march_surface(
+    surface: Surface, settings: VolumeMarch, *, wing: bool = False, remedy: str = ""
+) -> Solution:
     """Return the volume between a surface and a far field, with one block per patch.
 
     Blocks have the indices i and j of their patches; k goes from the wall (``bottom``) to the far field
     (``top``). Sides in planes of symmetry are patches ``symmetry``, sides that grow from free edges patches
     ``free``; all others are connected. First cells have the given height along every line. For a `wing` other
-    smoothing is tried not only if cells are folded, but also if cells are poor.
+    smoothing is tried not only if cells are folded, but also if cells are poor. The error for folded cells
+    names the `remedy`, if one is given.
 
     Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` lists the differences.
 
@@ -80,7 +83,7 @@ def march_surface(surface: Surface, settings: VolumeMarch, *, wing: bool = False
     hollows = hollows_of(surface)
     volume, tries = _best(surface, planes, inside, nodes, hollows, steps, settings.limit, wing=wing)
     if volume.made < len(steps) or volume.folded:
-        raise _refusal(volume, len(steps), tries, surface, hollows)
+        raise _refusal(volume, len(steps), tries, surface, hollows, remedy)
     grid = volume_grid(surface, volume.blocks, np.any(inside, axis=0))
     notes = [*surface.notes, *assumed]
     if tries > 1:
@@ -200,7 +203,9 @@ def _keep_planes(lines: Floats, surface: Surface, planes: tuple[Plane, ...], ins
         lines[plane.axis, edges[flags]] = plane.value
 
 
-def _refusal(volume: _Volume, cells: int, tries: int, surface: Surface, hollows: Hollows) -> NoValidGridError:
+def _refusal(
+    volume: _Volume, cells: int, tries: int, surface: Surface, hollows: Hollows, remedy: str
+) -> NoValidGridError:
     if volume.made < cells:
         problem = f"the march stops after {volume.made} of {cells} cells from the wall"
     else:
@@ -210,12 +215,13 @@ def _refusal(volume: _Volume, cells: int, tries: int, surface: Surface, hollows:
     worst = _worst(volume.blocks)
     under = [int(surface.lattices[cell.block or 0][cell.i, cell.j]) for cell in worst]
     edge = hollows.nearest(surface, np.array(under)) if under else hollows.sharpest()
-    remedy = "give a nearer {far_field}, or smoother patches"
+    smoother = "smoother patches"
     if edge is not None:
         problem += f"; walls meet at an angle of {edge[0]:.0f} degrees at {surface.place(edge[1])}"
-        remedy = "give a nearer {far_field}, or a wider or rounded edge there"
+        smoother = "a wider or rounded edge there"
     elif under:
         problem += f", the worst above {surface.place(under[0])}"
+    remedy = remedy or f"give a nearer {{far_field}}, or {smoother}"
     return NoValidGridError(f"{problem}; {remedy}", worst)
 
 

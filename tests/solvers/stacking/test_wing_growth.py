@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.blocks.across import across
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.quality.growth import ratios
 from meshonet.geometry.quality.report import quality_report
 from meshonet.geometry.sections.section import Section
@@ -38,6 +38,53 @@ def test_cells_across_the_sides_of_blocks_are_alike_and_at_the_edge_of_the_tip_n
         own, donor = across(made.grid, each, 2)
         growth = ratios(np.stack([own[1], own[0], donor[1]]))[0][1:-1].max()
         assert growth <= (3.0 if {each.block, each.donor} == {0, 1} else 1.2)
+
+
+def winglet(cant=0.0, **values) -> Stack:
+    """Return a wing whose dihedral increases to 70 degrees over its last panels."""
+    chords, heights = (1.5, 1.35, 1.15, 0.9, 0.6), (11.0, 11.5, 11.9, 12.2, 12.4)
+    angles = zip((25, 30, 35, 40, 55), (5, 15, 35, 55, 70), strict=True)
+    sections, x, y, z = [Section(naca("2412"), 4.0, 0.0)], 0.0, 0.0, 0.0
+    for chord, height, (sweep, dihedral) in zip(chords, heights, angles, strict=True):
+        x += (height - z) * math.tan(math.radians(sweep))
+        y, z = y + (height - z) * math.tan(math.radians(dihedral)), height
+        sections.append(Section(naca("2410"), chord, z, x, y, twist=-2.0, cant=cant))
+    return Stack(tuple(sections), **values)
+
+
+@pytest.mark.parametrize(
+    "stack", [winglet(), winglet("panel"), winglet(between="smooth"), winglet("panel", between="smooth")]
+)
+def test_cells_at_the_edge_of_the_tip_of_a_winglet_differ_by_3_at_most(stack):
+    grid = make_stack(stack, StackRequest(around=97, span=41)).grid
+    (edge,) = (each for each in grid.connections if (each.block, each.donor) == (0, 1))
+    own, donor = across(grid, edge, 2)
+    assert ratios(np.stack([own[1], own[0], donor[1]])).max() <= 3.0
+
+
+@pytest.mark.parametrize(("cant", "least"), [(0.0, 0.0), ("panel", 0.35)])
+def test_a_winglet_with_a_prescribed_cell_at_its_tip_has_no_folded_cells(cant, least):
+    made = make_stack(winglet(cant, tip_spacing=0.02), StackRequest(around=97, span=41))
+    assert made.quality.folded == 0
+    assert made.quality["scaled_jacobian"].min > least
+
+
+def test_folded_cells_at_a_sharp_bend_are_refused_with_what_helps_there():
+    middle, tip = Section(naca("2412"), 0.5, 3.0, x=0.8), Section(naca("0012"), 0.3, 3.07, x=1.0, y=0.8)
+    stack = Stack((Section(naca("2412"), 1.0, 0.0), middle, tip))
+    with pytest.raises(NoValidGridError) as refusal:
+        make_stack(stack, StackRequest(around=81, span=33))
+    *_, remedy, worst = str(refusal.value).split("; ")
+    assert " cells are folded" in str(refusal.value)
+    where = "at z=3, where the dihedral changes by 85 degrees"
+    assert remedy == f'give more sections {where}, with cant = "panel"'
+    assert worst.count("block=") == 3
+
+
+def test_sections_that_are_turned_through_each_other_are_refused():
+    middle, tip = Section(naca("0024"), 1.0, 2.0), Section(naca("0024"), 1.0, 2.05, cant=60.0)
+    with pytest.raises(InputError, match=r"at z=2 and 2\.05 cross, at 60 degrees; turn them less"):
+        wing_surface(Stack((Section(naca("0024"), 1.0, 0.0), middle, tip)))
 
 
 def test_the_report_says_first_cells_and_growth_at_wing_and_tip(made):
