@@ -235,9 +235,9 @@ VALID = """
 BESIDE = """
 ## Gmsh at equal cell count
 
-Gmsh gets the same domains; splines connect their corners. It uses one thread and the options for
-quadrilaterals only. The time of Gmsh is the time of `generate(2)`; the time of meshonet is the time of the
-whole process. Algorithm 11 generates quasi-structured quadrilaterals; algorithm 8 is Delaunay for
+Gmsh gets the same domains, with a spline through the points between two corners. It uses one thread and the
+options for quadrilaterals only. The time of Gmsh is the time of `generate(2)`; the time of meshonet is the
+time of the whole process. Algorithm 11 generates quasi-structured quadrilaterals; algorithm 8 is Delaunay for
 quadrilaterals, algorithm 9 packing of parallelograms. *with triangles*: number of meshes of Gmsh that contain
 triangles. The columns after it give two medians over the domains: meshonet / Gmsh.
 

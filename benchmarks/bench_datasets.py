@@ -43,11 +43,11 @@ HEAD = """# Datasets of a million grids
 
 <!-- made by python benchmarks/bench_datasets.py --page docs/benchmarks/datasets.md -->
 
-Read this page before you generate a dataset in several files. It gives the memory and time of such a
-batch, and the time to read a sample. A large dataset is divided into files called *parts*; the index file
-`out.h5` presents them as one HDF5 file ([large datasets](../guide/datasets.md)). The grids here are tiny,
-so that a million of them take only minutes; memory and the times for the index do not depend on their
-size. Times are wall-clock times of one process.
+Read this page before you generate a dataset in several files. It gives the memory and time of such a batch,
+and the time to read a sample. A large dataset is divided into files called *parts*; the index file `out.h5`
+presents them as one HDF5 file ([large datasets](../guide/datasets.md)). The grids here are tiny, so that a
+million of them take only minutes; memory and the times for the index file do not depend on the size of the
+grids. Times are wall-clock times of one process.
 """
 READING = """
 ## Reading
@@ -58,15 +58,15 @@ reads the name of that sample. Times are medians over {repeats} processes, with 
 PARTS = """
 ## Number of parts
 
-The index file of parts with ten grids each: time to write it, its size, and time to open it and to read
-the last sample in a new process.
+Here each part has ten grids. The table gives the time to write the index file, its size, and the time to open
+it and to read the last sample in a new process.
 """
 ZARR = """
 ## Comparison with Zarr
 
-Nodes of 200,000 grids in 200 files: HDF5 parts with their index file, and shards of Zarr. Times are
-medians of five new processes that import the package, open the dataset and read the last grid. The script
-omits this table if Zarr is not installed (`pip install zarr`).
+The nodes of 200,000 grids are stored in 200 files: as HDF5 parts with an index file, and as shards of Zarr.
+Times are medians over five new processes, each of which imports the package, opens the dataset and reads the
+last grid. The script omits this table if Zarr is not installed (`pip install zarr`).
 """
 TAIL = """
 HDF5 reads the list of all parts when a virtual dataset is opened, and searches it at each read. This

@@ -76,9 +76,9 @@ sharp trailing edge therefore get a C grid unless `--topology` is given.
 CONSTRUCT2D = """
 ## Compared with Construct2D
 
-The table compares with hyperbolic grids of Construct2D: 250x100 nodes, first-cell height 1e-5. The metrics
-are computed as above, from all corners of all cells. Construct2D rounds blunt trailing edges; its O grids are
-therefore compared with meshonet's grids with rounded edges.
+The table compares meshonet's grids with hyperbolic grids of Construct2D: 250x100 nodes, first-cell height
+1e-5. The metrics are computed as above, from all corners of all cells. Construct2D rounds blunt trailing
+edges; its O grids are therefore compared with meshonet's grids with rounded edges.
 
 | grid | deviation of Construct2D, max / mean | deviation of meshonet, max / mean |
 | --- | --- | --- |

@@ -35,9 +35,9 @@ uniform grid, and smaller values compress the cells more.
 
 The objective is metric 303 of TMOP with ideal targets. For one cell, it is the integral of f = |**T**|² / (3
 det(**T**)^⅔) − 1, where **T** is the Jacobian matrix of the map from a reference cube to the cell and |**T**|
-its Frobenius norm. The objective of a grid is the mean over its cells; it is 0 if all cells are cubes. It is
-evaluated for all grids with the quadrature that TMOP uses by default, Gauss-Lobatto with six points per
-direction.
+its Frobenius norm. The objective of a grid is the mean over its cells; it is 0 if all cells are cubes. For
+all grids the integral is evaluated with the quadrature that TMOP uses by default, Gauss-Lobatto with six
+points per direction.
 
 *Deviation*: for each cell corner, the largest deviation of its three angles from 90 degrees; the table gives
 the mean and the 99th percentile over all corners. *SJ*: scaled Jacobian at the corners. Times are CPU times

@@ -50,10 +50,11 @@ HEAD = """# Threads
 <!-- made by python benchmarks/bench_threads.py --page docs/benchmarks/threads.md -->
 
 Use this page to find the speed-up of a second thread on one large grid. [Threads and
-GPUs](../guide/threads-and-gpu.md) explains how to set the number of threads. Times are wall-clock seconds,
-the minimum over several repetitions in which the numbers of threads alternate; the speed-up is the ratio of
-the minima. CPU times (one thread / two threads) are summed over all threads; they include the time in which a
-thread waits for another one. The last column says whether the two results are bitwise identical.
+GPUs](../guide/threads-and-gpu.md) explains how to set the number of threads. Times are wall-clock seconds.
+Runs with one and with two threads alternate; the table gives the minimum of several runs, and the speed-up is
+the ratio of the minima. CPU times (one thread / two threads) are summed over all threads; they include the
+time in which a thread waits for another one. The last column says whether the two results are bitwise
+identical.
 
 The speed-up is meaningful only if at least as many cores were idle as there were threads. On a loaded
 machine compare the CPU times: if they do not rise with the number of threads, no time is lost to

@@ -231,9 +231,9 @@ to see what `--coarse N` saves and costs. The methods are described in [elliptic
 - *CPU ms*: CPU time of one thread, best of several runs, while other programs used the machine.
 
 Around a notch the full variational solve takes many iterations on fine grids; `--coarse auto` solves on fewer
-nodes if the grid is fine. The distance between a solution on 33 nodes and the full solution is the
-discretisation error of the coarse solution, which is of second order. The distance does not change if both
-solutions are converged to 1e-6.
+nodes if the grid is fine. The distance between a solution on 33 x 33 nodes and the full solution is not an
+error of the iteration: it does not change if both solutions are converged to 1e-6. It is the discretisation
+error of the coarse solution, which is of second order.
 
 ![Grids by five methods, coloured by the largest included angle](../img/quad-grids.png)
 """

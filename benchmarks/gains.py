@@ -61,7 +61,10 @@ def gains(title: str, boundaries: Sequence[Boundary], ways: Mapping[str, Way]) -
             f"| {100 * of_mean:.0f} / {100 * each:.0f} | {100 * of_max:.0f} | {1e3 * np.median(spent):.1f} |"
         )
     count = int(valid.sum())
-    lines.append(f"\nWinslow's own grid is valid in {count} cases. The gains count only these cases.")
+    lines.append(
+        f"\nWinslow's grid is valid in {count} of these {len(boundaries)} cases; the gains are computed from "
+        "the valid ones only."
+    )
     return "\n".join(lines)
 
 

@@ -153,7 +153,7 @@ def as_good(found: Mapping[str, Floats]) -> str:
             and np.median(figures[:, 5]) <= 1.05 * np.median(own[:, 5])
         ]
         if rivals:
-            told.setdefault("; ".join(rivals), []).append(ours)
-    pairs = (("; ".join(ours), rivals) for rivals, ours in told.items())
-    lines = [f"- As good as {own}: {rivals}.".replace("**", "") for own, rivals in pairs]
+            told.setdefault("`, `".join(rivals), []).append(ours)
+    pairs = (("`, `".join(ours), rivals) for rivals, ours in told.items())
+    lines = [f"- As good as `{own}`: `{rivals}`.".replace("**", "") for own, rivals in pairs]
     return "\n".join([_RIVALS, *lines]) + "\n" if lines else ""
