@@ -199,7 +199,7 @@ hexagons and semicircles, and on two of the six kinds of four-sided domains. The
 TAIL = """
 ![expected and true errors](confidence.png)
 
-Each point is an answer; crosses have folded cells, and the dotted line is the threshold.
+Each point is an answer. Crosses are answers with folded cells; the dotted line is the threshold.
 """
 
 if __name__ == "__main__":

@@ -37,9 +37,9 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
 
 
 def height_note(y_plus: str, reynolds: float | None, where: str, height: str) -> str:
-    """Return a sentence on how the `height` of first cells was computed from y+."""
-    cells = f"needs first cells of height {height}, with their centres at half that y+"
-    return f"y+ {y_plus} at Re {reynolds:g} {where} {cells}: {FORMULA} ({SOURCE})"
+    """Return a note on how the `height` of first cells was computed from y+."""
+    cells = f"needs first cells of height {height}; y+ at their centres is half of that"
+    return f"y+ {y_plus} at Re {reynolds:g} {where} {cells}. Formula: {FORMULA} ({SOURCE})"
 
 
 def first_cell_note(
@@ -63,5 +63,5 @@ def first_cell_note(
     )
     if max(abs(low / asked - 1.0), abs(high / asked - 1.0)) > SAME:
         return f"first cells are {low:.3g} to {high:.3g} instead of {size}"
-    rows = "" if growth is None else f", growing by {growth:.3f} a row on average"
-    return f"first cell {size} at every {where}{rows}"
+    rows = "" if growth is None else f"; the mean growth ratio is {growth:.3f}"
+    return f"the first-cell height is {size} at every {where}{rows}"

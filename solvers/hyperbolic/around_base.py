@@ -57,7 +57,7 @@ def around_base(
         np.concatenate([nodes[wake : len(nodes) - wake, 1] - lines.wall, between[1] - between[0]])
     )
     off = float(np.abs(heights / first - 1.0).max())
-    note = f"first cell {first:.6g} at every node of wall and base, to {off:.1g}"
+    note = f"the first-cell height is {first:.6g} at every node of wall and base, to {off:.1g}"
     base = f"the base has {len(lines.base)} nodes, the H block behind it {wake + 1} x {len(lines.base)}"
     return Solution(grid, "hyperbolic", notes=(*lines.notes, note, base, *_thick(lines, first, ends)))
 

@@ -1,5 +1,6 @@
 """Sweeps the planar grid of a section along a path and measures the volume."""
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -72,7 +73,8 @@ def make_sweep(
 
 def _tapered(notes: tuple[str, ...], grid: Grid, scale: float, *, layers: bool) -> tuple[str, ...]:
     """Return the notes on a section with those on first cells, which change along the path with its size."""
-    notes = tuple(f"at the start of the path: {note}" if "first cell" in note else note for note in notes)
+    start = "at the start of the path: "
+    notes = tuple(start + note if re.search(r"first[ -]cell", note) else note for note in notes)
     if layers:
         heights = ((row.name, row.height) for row in wall_rows(grid, grid.walls()))
         notes += tuple(

@@ -28,7 +28,7 @@ def test_wall_spacing_is_the_height_of_every_first_cell(meshonet: Meshonet, comm
     (grid,) = read_grids("g.h5")
     heights = np.linalg.norm(grid.nodes[:, 1] - grid.nodes[:, 0], axis=1)
     np.testing.assert_allclose(heights, 1e-5, rtol=1e-8)
-    assert "first cell 1e-05 at every wall node" in told["notes"][-1]
+    assert "first-cell height is 1e-05 at every wall node" in told["notes"][-1]
 
 
 @pytest.mark.parametrize("command", LAYER_COMMANDS)

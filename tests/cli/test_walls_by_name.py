@@ -152,7 +152,7 @@ def test_y_plus_of_a_duct_names_its_length(meshonet: Meshonet) -> None:
     note = next(note for note in report["notes"] if note.startswith("y+"))
     height = first_cells("g.h5")["wall"]
     assert "y+ 30 at Re 1e+06 on a length of 0.2, the extent of south, needs first cells" in note
-    assert f" of height {height:.6g}, with their centres at half that y+" in note
+    assert f" of height {height:.6g}; y+ at their centres is half of that" in note
     assert "chord" not in note
 
 

@@ -30,7 +30,8 @@ def test_values_out_of_range_are_refused(values: tuple[float, float, float]) -> 
 
 
 def test_a_first_cell_names_its_unit_where_that_is_not_the_chord() -> None:
-    assert first_cell_note(1e-5, 1e-5, 1e-5, None) == "first cell 1e-05 at every wall node"
+    assert first_cell_note(1e-5, 1e-5, 1e-5, None) == "the first-cell height is 1e-05 at every wall node"
     note = first_cell_note(2.5e-3, 2.5e-3, 2.5e-3, 1.2, chord=250.0)
-    assert note.startswith("first cell 0.0025 in the unit of the points (1e-05 chords) at every wall node")
+    height = "the first-cell height is 0.0025 in the unit of the points (1e-05 chords)"
+    assert note.startswith(f"{height} at every wall node")
     assert "0.0025 in the unit of the points" in first_cell_note(1e-3, 1e-2, 2.5e-3, 1.2, chord=250.0)

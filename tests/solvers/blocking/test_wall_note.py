@@ -25,7 +25,9 @@ SQUARE = Domain.of_polygons([np.array([[-4.0, -4], [4, -4], [4, 4], [-4, 4]])])
 
 def test_heights_and_growth_are_those_of_the_grid() -> None:
     note = wall_note(RING, SQUARE, ("wall",), FIRST)
-    assert note == f"first cell {FIRST:.6g} at every node of wall, growing by 1.300 a row on average"
+    assert (
+        note == f"the first-cell height is {FIRST:.6g} at every node of wall; the mean growth ratio is 1.300"
+    )
 
 
 def test_heights_that_are_not_as_asked_are_told() -> None:
@@ -44,8 +46,9 @@ def test_a_body_in_a_square_is_told_with_its_first_cell(walls: tuple[str, ...], 
     grown = {}
     for growth in (1.1, 1.3):
         request = BlockRequest(cells=1500, first_cell=1e-2, growth=growth, walls=walls)
-        (note,) = (n for n in make_blocks(shape, request).notes if n.startswith("first cell"))
-        found = re.fullmatch(rf"first cell 0[.]01 at every {where}, growing by (\S+) a row on average", note)
+        (note,) = (n for n in make_blocks(shape, request).notes if n.startswith("the first-cell height"))
+        height = rf"the first-cell height is 0[.]01 at every {where}"
+        found = re.fullmatch(rf"{height}; the mean growth ratio is (\S+)", note)
         assert found, note
         grown[growth] = float(found[1])
     assert 1.0 < grown[1.1] < grown[1.3] < 1.3
@@ -66,7 +69,7 @@ def test_named_sides_around_a_hole_without_layers_are_named() -> None:
 
 def test_nothing_is_said_of_walls_without_layers() -> None:
     notes = make_blocks(DomainShape(SQUARE), BlockRequest(cells=50)).notes
-    assert not [note for note in notes if note.startswith("first cell")]
+    assert not [note for note in notes if "first cell" in note or "first-cell" in note]
 
 
 def test_a_sharp_edge_around_which_lines_turn_is_named_with_what_avoids_it(tmp_path: Path) -> None:
