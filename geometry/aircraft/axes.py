@@ -18,7 +18,7 @@ the size of the surface.
 
 @dataclass(frozen=True)
 class AircraftAxes:
-    """The numbers of the axes of a file that point upwards and along the span.
+    """Which coordinate axes of a file point upwards and along the span; x is along the body.
 
     Parameters
     ----------
@@ -39,11 +39,15 @@ class AircraftAxes:
         return f"{_NAMES[self.up]} points up, and the half is that of {_NAMES[self.span]} {half} 0"
 
     def to_aircraft(self, points: Floats) -> Floats:
-        """Return points (..., 3) of a file in the axes of the aircraft."""
+        """Return the `points` (..., 3) of a file, converted to the axes of the aircraft."""
         return np.stack([points[..., 0], points[..., self.up], self.sign * points[..., self.span]], axis=-1)
 
     def to_file(self, grid: Grid) -> Grid:
-        """Return a grid in the axes of the file; i of its blocks is reversed where these are mirrored."""
+        """Return the `grid` of an aircraft, converted to the axes of the file.
+
+        If this mirrors the grid, the direction of i is reversed in all blocks, so that they stay
+        right-handed.
+        """
         if self == AircraftAxes():
             return grid
         if (self.sign > 0) != (self.up == 1):  # the other handedness
@@ -62,9 +66,9 @@ FILE_AXES = AircraftAxes()
 
 
 def axes_of(points: Floats) -> AircraftAxes | None:
-    """Return the axes of the file of half an aircraft with points (n, 3).
+    """Return the axes of a file whose `points` (n, 3) lie on one half of an aircraft.
 
-    None if the points are those of both halves.
+    None if the points lie on both halves.
     """
     flat = FLAT * float(np.ptp(points, axis=0).max())
     for span in (2, 1):

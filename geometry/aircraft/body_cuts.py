@@ -70,11 +70,11 @@ class BodyCuts:
 
 
 def body_cuts(patches: Sequence[Floats], name: str) -> BodyCuts:
-    """Return cuts through the half z >= 0 of a body, whose surface are `patches` (ni, nj, 3).
+    """Return cuts through the half z >= 0 of a body with the surface patches `patches` (ni, nj, 3).
 
-    The planes of the cuts have the x of the nodes in the plane of symmetry z = 0; beside corners of keel and
-    crown there are more. An end of the body that is not a point gets a cap, half of an ellipsoid, whose
-    length is half the height of this end.
+    There is a cut at the x of each surface node in the plane of symmetry z = 0, and there are further cuts
+    beside corners of keel and crown. An end of the body that is not a point gets a cap, half of an ellipsoid,
+    whose length is half the height of this end.
 
     Raises InputError: a surface with holes, or with fewer than 4 nodes in the plane of symmetry.
     """

@@ -58,7 +58,8 @@ class SurfaceWing:
     Raises
     ------
     InputError
-        Strips of other shapes, with lines along which z does not rise; a wing without thickness.
+        A strip whose array does not have the shape (stations, n, 3); a line along which z does not rise; a
+        wing without thickness.
     """
 
     strips: tuple[Floats, ...]
@@ -107,7 +108,7 @@ class SurfaceWing:
 
     @property
     def z(self) -> Floats:
-        """(n,) heights z, from the lowest one that all lines along the span reach to the tip."""
+        """(n,) heights z, from the lowest one that all lines along the span reach, up to the tip."""
         begin = max(float(strip[0, :, 2].max()) for strip in self.strips)
         return np.linspace(begin, self.height, _LEVELS)
 
@@ -166,7 +167,7 @@ class SurfaceWing:
         return out
 
     def arc(self, place: float) -> float:
-        """Return the length around the section from the upper corner of the base to a place.
+        """Return the length around the section from the upper corner of the base (the blunt edge) to a place.
 
         It is measured half way along the span, in chords there.
         """
@@ -181,7 +182,10 @@ class SurfaceWing:
         return np.append(0.0, np.cumsum(self.arcs))
 
     def base(self, z: Floats) -> Floats:
-        """Return the thickness of the base (n,) at heights z (n,), divided by the chord at each z."""
+        """Return the thickness (n,) of the base at heights z (n,), divided by the chord at each z.
+
+        The base is the blunt trailing edge.
+        """
         upper, lower = self.edges(z)
         across = upper - lower
         along = 0.5 * (upper + lower) - on_line(self.line(self.nose), z)
@@ -193,7 +197,7 @@ class SurfaceWing:
         return on_line(self.line(0.0), z), on_line(self.line(float(len(self.strips))), z)
 
     def opened(self, least: float) -> SurfaceWing:
-        """Return the wing with a base at least `least` chords thick.
+        """Return the wing with a base (blunt trailing edge) at least `least` chords thick.
 
         A wing whose base is thinner gets a note.
 

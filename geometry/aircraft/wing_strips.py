@@ -71,12 +71,18 @@ def wing_strips(patches: Sequence[Floats], name: str) -> tuple[tuple[Floats, ...
 
 
 def at_heights(strip: Floats, z: Floats) -> Floats:
-    """Return the nodes (k, n, 3) of a strip (stations, n, 3) at heights z (k,), or beyond its ends."""
+    """Return the nodes (k, n, 3) of a strip (stations, n, 3) at heights z (k,).
+
+    Heights below the first or above the last station are extrapolated linearly.
+    """
     return np.stack([on_line(strip[:, k], z) for k in range(strip.shape[1])], axis=1)
 
 
 def on_line(line: Floats, z: Floats) -> Floats:
-    """Return points (k, 3) on a line (stations, 3) at heights z (k,), or beyond its ends."""
+    """Return points (k, 3) on a line (stations, 3) at heights z (k,).
+
+    Heights below the first or above the last station are extrapolated linearly.
+    """
     return monotone_cubic(line[:, 2], line, z, linear=True)
 
 

@@ -41,8 +41,8 @@ class Block:
     """The nodes of one block; they are checked when it is made.
 
     `nodes` are (ni, nj, 2), (ni, nj, nk, 3), or (ni, nj, 3) on a surface, in any unit of length; they are
-    kept as float64 in planar layout (see `meshonet.geometry.arrays`). With `finite`, they are known to be
-    finite: the check takes a tenth of the run time of some methods.
+    kept as float64 in planar layout (see `meshonet.geometry.arrays`). `finite` says that they are known to be
+    finite; this check is then left out, because it takes a tenth of the run time of some methods.
 
     Raises InputError: nodes of another shape, fewer than 2 along a direction, or not finite.
     """

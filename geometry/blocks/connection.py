@@ -92,7 +92,7 @@ class Connection:
         )
 
     def reversed(self) -> Connection:
-        """Return the connection as seen from the donor; its transform is inverted, to rounding."""
+        """Return the connection with side and donor exchanged; its transform is inverted, to rounding."""
         ways = [0] * len(self.orientation)
         for k, way in enumerate(self.orientation, start=1):
             ways[abs(way) - 1] = k if way > 0 else -k
@@ -147,7 +147,7 @@ def o_seam(nj: int) -> Connection:
 
 
 def c_wake(ni: int, cells: int) -> Connection:
-    """Return the connection of the first `cells` cells of the south side of a C block to its last."""
+    """Return the connection of the first `cells` cells of a C block's south side to the last ones."""
     return Connection(0, "south", ((0, cells),), 0, "south", ((ni - 1 - cells, ni - 1),), (-1,))
 
 

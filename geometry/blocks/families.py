@@ -16,10 +16,12 @@ from meshonet.geometry.blocks.grid import Grid
 
 @dataclass(frozen=True)
 class Member:
-    """The lines along a direction (0 is xi, 1 eta) of a block, as a part of a family.
+    """The grid lines along a direction `axis` (0 is xi, 1 eta) of a block, as a part of a family.
 
-    Lines are numbered by the index of the other direction. `aligned`: they have the numbers that they have in
-    the family's first block, in reverse order if `flipped`. Not `aligned`: only some belong to the family.
+    A family contains all lines that continue each other from block to block. Lines are numbered by the index
+    of the other direction. If `aligned`, each line has the same number as its continuation in the family's
+    first block, or the number counted from the other end if `flipped`. If not `aligned`, only some lines of
+    this block continue into the family's first block.
     """
 
     block: int
@@ -37,7 +39,7 @@ def joins_whole_sides(grid: Grid, connection: Connection) -> bool:
 
 
 def families(grid: Grid) -> list[list[Member]]:
-    """Return the families of the lines of a grid; each (block, direction) is in exactly one.
+    """Return the families of grid lines; each pair of block and direction belongs to exactly one.
 
     `flipped` has no meaning in volumes, where lines have two indices.
     """

@@ -122,7 +122,8 @@ class Grid(Connected):
     ) -> Grid:
         """Return the grid of a single block (see `Block`); its connections are found from its nodes.
 
-        The wake of a ``c`` is where the south side lies on itself; no `patches` means `default_patches`.
+        In the topology ``c``, the wake consists of the nodes at the start of the south side that its end
+        repeats in reverse. Without `patches`, the grid gets those of `default_patches`.
 
         Returns
         -------

@@ -58,7 +58,9 @@ class Motion:
     def alike(self, other: Motion, tolerance: float) -> bool:
         """Return whether two motions are equal to a relative `tolerance`.
 
-        Differences are compared with the length of the shifts, of rotations with 1.
+        Both motions are applied to the origin and to a point on each axis, at a distance L from the origin.
+        The results may differ by `tolerance` times L. L is the largest component of the shifts, and at least
+        1 if there is a rotation.
         """
         size = max(1e-300, *map(abs, (*self.shift, *other.shift, float(bool(self.turn or other.turn)))))
         dimension = max(2, *(len(rows) for rows in (self.shift, self.turn, other.shift, other.turn)))

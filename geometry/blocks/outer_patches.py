@@ -33,9 +33,10 @@ def owners_of(
 ) -> NDArray[np.intp]:
     """Return for each cell (n,) or (n, m) at a side the index in `patches` of its patch.
 
-    If there are several, the last.
+    If several patches contain a cell, the last of them counts.
 
-    Cells in the connected sides and ranges `inside` get `JOINED`, other cells without a patch `UNNAMED`.
+    `inside` lists the connected parts of the sides, each as its side and its index range. Cells in these
+    parts get `JOINED`; other cells without a patch get `UNNAMED`.
     """
     nodes = face_counts(counts, side)
     owners = np.full([n - 1 for n in nodes], UNNAMED, dtype=np.intp)
@@ -57,7 +58,8 @@ def outer_patches(
     """Return patches that cover the outer boundary of block number `block`, each boundary cell once.
 
     Where `patches` overlap, the later patch counts; cells without a patch get one with the name of their
-    side. `counts` are the numbers of nodes along each direction, `inside` the connected sides and ranges.
+    side. `counts` are the numbers of nodes along each direction; `inside` lists the connected parts of the
+    sides, each as its side and its index range.
     """
     own = [patch for patch in patches if patch.block == block]
     inside = list(inside)

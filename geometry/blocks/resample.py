@@ -27,7 +27,7 @@ def resample_edge(nodes: Floats, m: int, *, closed: bool) -> Floats:
 
     The arc length, as a function of the index divided by the number of cells, is preserved. Corners of the
     curve stay nodes if `m` is large enough; the end nodes are kept bitwise. A `closed` edge repeats its first
-    node at the end, before and after.
+    node at the end, both in `nodes` and in the result.
 
     Raises InputError: the errors of `Curve`.
 
@@ -54,8 +54,8 @@ def resample_edges(
 ) -> dict[Side, Floats]:
     """Return the four `edges` of a block resampled to ni nodes along xi and nj along eta.
 
-    South has a wake of `wake` cells at each end. Both share their nodes, and they keep their fraction of the
-    number of cells.
+    The south edge has `wake` cells of the wake at each of its two ends. These two parts of the edge keep
+    having the same nodes, and their share of the cells of the edge does not change.
 
     Raises InputError: too few nodes for a closed edge, or for the wall between the two sides of a wake.
     """
@@ -104,7 +104,7 @@ def resample_patches(
 
 
 def patches_in_place(had: Boundary, has: Boundary) -> tuple[Patch, ...]:
-    """Return the patches of the boundary `had` for `has`, which has the same edges with other nodes.
+    """Return the patches of `had`, transferred to `has`, a boundary with the same edges but other nodes.
 
     The ends of a patch move to the nearest nodes, measured by the fraction of the length of the side.
     """

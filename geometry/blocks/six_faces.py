@@ -85,11 +85,14 @@ class SixFaces:
         return self.west, self.east, self.south, self.north, self.bottom, self.top
 
     def edge(self, side: Side, second: Side) -> Floats:
-        """Return a view of the nodes (n, 3) of a face on its edge with a second face."""
+        """Return a view of the nodes (n, 3) of the edge that two faces share, as stored in the first one."""
         return edge_of(getattr(self, side), side, second)
 
     def steps_inwards(self, side: Side, second: Side) -> Floats:
-        """Return the vectors (n, 3) from the edge of a face with the face `second` to its next row."""
+        """Return the steps (n, 3) between two rows of nodes of the face at `side`, by ascending index.
+
+        The rows are the edge that this face shares with the face `second`, and the row next to it.
+        """
         axis, end = PLACES[second]
         rows = np.moveaxis(getattr(self, side), axis - (axis > PLACES[side][0]), 0)
         return np.asarray(rows[1] - rows[0] if end == 0 else rows[-1] - rows[-2])
@@ -168,7 +171,7 @@ def edges() -> Iterator[tuple[Side, Side]]:
 
 
 def edge_of(face: Floats, side: Side, second: Side) -> Floats:
-    """Return a view of the nodes (n, 3) of the face at a side on its edge with a second face."""
+    """Return a view of the nodes (n, 3) of the edge that `face`, at `side`, shares with the face `second`."""
     axis, end = PLACES[second]
     return np.asarray(np.moveaxis(face, axis - (axis > PLACES[side][0]), 0)[end])
 

@@ -46,9 +46,9 @@ def matched_patches(grid: Grid) -> SixFaces:
     Patches in the order west, east, south, north, bottom, top keep their sides and directions; otherwise the
     first patch becomes the bottom. The volume is right-handed.
 
-    Raises InputError, with the patches and the place: corners at which not three patches meet; shared edges
-    with different node counts, or with nodes that differ by more than 1e-6 of the diagonal of the bounding
-    box.
+    Raises InputError, with the patches and the place: corners at which more or fewer than three patches meet;
+    shared edges with different node counts, or with nodes that differ by more than 1e-6 of the diagonal of
+    the bounding box.
     """
     patches = [block.nodes for block in grid.blocks]
     vertices = _vertices(patches)

@@ -37,9 +37,10 @@ SECOND_PRONG = 0.25  # as in kernels/conformal/lift.c
 
 @dataclass(frozen=True)
 class Corner:
-    """One corner removal: the points p, q before it and P, Q after it, and k, with the exterior angle k pi.
+    """The map of Karman and Trefftz that straightens one corner, whose exterior angle is k pi.
 
-    All are numbers or torch tensors.
+    It takes v to v' by ((v-p)/(v-q))^(1/k) = (v'-P)/(v'-Q), and so the points p and q to P and Q. All
+    attributes are numbers or torch tensors.
     """
 
     p: Any
@@ -56,7 +57,9 @@ class Corner:
 
 @dataclass(frozen=True)
 class Lift:
-    """The composed map of one body, made by `lift_body`.
+    """The conformal map between the plane z around one body and a strip w = psi + i phi.
+
+    It is made by `lift_body`. The wall is near psi = 0, and phi grows by 2 pi once around the body.
 
     `centre` and `quarter` hold the position, rotation and size of the body; `phase` puts the first wall node
     at phi = 0. All are numbers or torch tensors.
@@ -76,9 +79,9 @@ class Lift:
         return self.centre + self.quarter * (zeta + 1.0 / zeta)
 
     def to_strip(self, z: Complexes) -> Complexes:
-        """Return the strip points w (n,) of points z (n,) outside the body, which go around it in order.
+        """Return the strip points w (n,) of points z (n,) that lie outside the body, in order around it.
 
-        phi is continuous from each point to the next.
+        The imaginary part phi of w is continuous from each point to the next.
         """
         return _native.lift_to_strip(self, np.ascontiguousarray(z, complex))
 
@@ -92,9 +95,10 @@ def mirrored(nodes: Floats) -> Complexes:
 def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, tuple[int, ...]]:
     """Return the lift of a body, its wall (n,) in the strip, and the indices of its trailing corners.
 
-    `wall` (n,) runs counter-clockwise from the trailing edge, its first node not repeated; phi rises from 0
-    along it. `swap` removes the second corner of a blunt edge first. The two removals do not commute: with
-    swapped corners, a mirrored body is lifted to the mirrored strip.
+    `wall` (n,) runs counter-clockwise from the trailing edge and does not repeat its first node; the
+    imaginary part phi of the strip coordinate rises from 0 along it. `swap` removes the second corner of a
+    blunt edge first. The two removals do not commute: with swapped corners, a mirrored body is lifted to the
+    mirrored strip.
 
     Raises InputError: fewer than 8 nodes, or a wall that does not wind once around the pole.
     """
@@ -109,9 +113,10 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
 
 
 def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
-    """Return zeta (n,) along the `wall` (n,), continuous although the wall may cross the slit.
+    """Return zeta (n,) of the nodes of a `wall` (n,), where z = centre + quarter (zeta + 1/zeta).
 
-    Where a cambered wall crosses the slit, the other root of Joukowski's equation is taken.
+    zeta is continuous along the wall: where a cambered wall crosses the slit that this map opens to a circle,
+    the other root of the equation is taken.
     """
     return _native.lift_follow(np.ascontiguousarray(wall, complex), centre, quarter)
 

@@ -38,12 +38,13 @@ DENSE = 640  # points that represent the whole wall
 def conformal_knots(
     curve: Curve, marks: Floats, count: int, at: NDArray[np.intp] | None = None, steps: tuple[int, ...] = (1,)
 ) -> Floats:
-    """Return arc lengths (count,) on a closed curve at equal steps of the circle's angle.
+    """Return arc lengths (count,) on a closed curve at equal steps of an angle.
 
-    The curve is closed and clockwise; arc length 0 is at the first node, which is repeated as the last.
-    `marks` (m,) are rising arc lengths in (0, length) that become nodes; the angles between them are divided
-    smoothly. The indices of these nodes are `at` (m,), or multiples of the first of `steps` that does not
-    exceed the index of the first mark.
+    The angle is that on the circle to which the curve is mapped conformally. The curve is clockwise; arc
+    length 0 is at the first node, which is repeated as the last. `marks` (m,) are rising arc lengths in (0,
+    length) that become nodes; the angles between them are divided smoothly. The indices of the nodes at the
+    marks are `at` (m,). Without `at`, they are multiples of the first number in `steps` that does not exceed
+    the index of the first mark.
 
     Raises InputError: the wall in the strip is not a function of phi, or the iteration does not converge.
     """

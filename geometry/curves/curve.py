@@ -27,8 +27,8 @@ class Curve:
     There are at least 2 `points` (n, 2), for a closed curve 3, in any unit of length; neighbours must differ.
     A closed curve may repeat its first point at the end. At `corners`, indices of points, the tangent may
     jump; if None, corners are detected (`meshonet.geometry.polygon.corners`). Intervals with a true value in
-    `straight` (intervals,) are straight; where one is long and its neighbours are rounded corners, these are
-    tangent to it (`meshonet.geometry.polygon.straights`).
+    `straight` (intervals,) are straight; where a straight interval is long and lies between rounded corners,
+    the rounded corners are tangent to it (`meshonet.geometry.polygon.straights`).
 
     Raises InputError: too few points; a point that is not finite or equals its neighbour; a corner out of
     range.
@@ -151,9 +151,9 @@ class Curve:
         return np.asarray(d / np.hypot(d[:, 0], d[:, 1])[:, None])
 
     def polyline(self, places: Floats) -> Floats:
-        """Return the points at the same parameters `places` (k,), in [0, 1), of every interval.
+        """Return points of every interval, at its parameters `places` (k,) in [0, 1).
 
-        They are (intervals * k, 2), followed by the end point of an open curve.
+        The result has the shape (intervals * k, 2), and one more row for the end point of an open curve.
         """
         i = np.arange(self._cubic.shape[1])[:, None]
         t = places[None, :, None]

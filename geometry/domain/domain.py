@@ -105,7 +105,7 @@ class Domain:
 
     @property
     def curved_area(self) -> float:
-        """Area between the loops themselves, of which smooth ones leave the lines between their points."""
+        """Area bounded by the curves of the loops, not by the polygons through their points."""
         return float(sum(polygon_area(_drawn(loop.curve)) for loop in self.loops))
 
     @cached_property

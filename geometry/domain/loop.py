@@ -118,11 +118,12 @@ class Loop:
 
 
 def place_at(loop: Loop, arc: Floats) -> Floats:
-    """Return the places (n,) of arc lengths (n,); those of corners are exact integers.
+    """Return the places (n,) of points of a `loop` at the arc lengths `arc` (n,).
 
-    The integer part of a place is the number of a corner, the fractional part the fraction of arc length to
-    the next corner, which carries over to other loops with as many corners. Without corners a place is the
-    fraction of the loop's length from its first point.
+    The integer part of a place is the number of the corner before the point. The fractional part is the
+    distance from this corner, divided by the arc length to the next corner; it is exactly 0 at a corner. The
+    same place can therefore be found on another loop with as many corners. On a loop without corners a place
+    is the arc length from its first point, divided by the length of the loop.
     """
     arc = np.mod(arc, loop.length)
     if not loop.corners:

@@ -35,9 +35,9 @@ class Periodic:
 
 
 def rounded(values: Floats, domain: Domain) -> Floats:
-    """Return coordinates (..., 2), rounded so that sums with the shifts do not depend on their order.
+    """Return coordinates (..., 2), rounded so that the order in which shifts are added has no effect.
 
-    If the shifts are along different axes, the order has no effect, and coordinates are not rounded.
+    If the shifts are along different axes, the order never has an effect, and nothing is rounded.
     """
     shifts = np.unique(np.abs([each.shift for each in domain.periodic]), axis=0)
     if (np.count_nonzero(shifts, axis=0) < 2).all():

@@ -39,7 +39,10 @@ def _turned(loop: Loop, arc: Floats, arcs: Floats, turned: Floats) -> Floats:
 
 
 def corners_between(loop: Loop, first: float, last: float) -> tuple[Floats, Indices]:
-    """Return the corners of a loop strictly between two arc lengths, in this direction, and their cells."""
+    """Return the corners of a loop strictly between two arc lengths, ordered from `first` to `last`.
+
+    The result is the arc length of each corner, and the number of cells that should meet there.
+    """
     low, high = min(first, last), max(first, last)
     rounds = np.floor(low / loop.length) + np.arange(3)
     arcs = (loop.corner_arcs + rounds[:, None] * loop.length).ravel()
@@ -52,7 +55,7 @@ def corners_between(loop: Loop, first: float, last: float) -> tuple[Floats, Indi
 
 
 def sizes_by_bend(loop: Loop, largest: float, turn: float) -> tuple[Floats, Floats]:
-    """Return arc lengths (n,) around a loop, its corners among them, and lengths of cells there.
+    """Return arc lengths (n,) around a loop, including its corners, and the cell length (n,) at each.
 
     Cells are at most `largest` long, and the wall turns by at most `turn` radians along a cell.
     """

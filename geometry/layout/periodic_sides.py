@@ -21,7 +21,7 @@ first.
 def sides_of(mesh: QuadMesh) -> list[Sides]:
     """Return for each periodic pair the nodes along both parts.
 
-    The two numbers of nodes are equal only if the counts of the mesh were matched.
+    The two parts have equally many nodes only if their cell counts were matched before.
     """
     after = following(mesh)
     return [
@@ -53,7 +53,7 @@ def with_tied_sides(mesh: QuadMesh) -> QuadMesh:
 
 
 def matched_nodes(mesh: QuadMesh) -> Floats:
-    """Return the nodes (n, 2); those of the second side of each pair are bitwise those of the first, moved.
+    """Return the nodes (n, 2), with the second side of each pair bitwise equal to the shifted first side.
 
     A corner that belongs to two pairs satisfies both.
     """

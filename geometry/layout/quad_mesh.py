@@ -96,7 +96,10 @@ class QuadMesh:
 
     @property
     def twin(self) -> Indices:
-        """(m, 4) the quad across each of these edges, as 4 q + k for edge k of quad q; -1 at walls."""
+        """(m, 4) for each edge of each quad, the quad on its other side; -1 on the boundary.
+
+        The entry is 4 q + k if the edge is edge k of quad q.
+        """
         return self._sides[1]
 
     @property
@@ -141,13 +144,13 @@ class QuadMesh:
 
     @property
     def tied(self) -> Bools:
-        """(n,) whether a node has a partner or is a partner: nodes of periodic sides, which can move."""
+        """(n,) whether a node on a periodic side is tied to a node on the opposite side."""
         tied = self.places.partner >= 0
         tied[self.places.partner[tied]] = True
         return tied
 
     def shifts(self, images: Indices) -> Floats:
-        """Return the period (k, 2) by which each of the nodes `images` (k,) is moved from its partner."""
+        """Return the period (k, 2) from the partner of each of the nodes `images` (k,) to this node."""
         known = np.array([each.shift for each in self.domain.periodic] or [(0.0, 0.0)])
         way = self.nodes[images] - self.nodes[self.places.partner[images]]
         off = np.hypot(*(way[:, None] - known).transpose(2, 0, 1))

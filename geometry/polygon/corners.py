@@ -55,9 +55,9 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     five times as much as the points beyond them. The two ends of an oblique base are both corners too.
 
     The round end of a thin body given by few points can turn by up to 155 degrees at one point, but is no
-    corner: there the thickness grows like the square root of the distance, behind an edge linearly
-    (`growth_exponent`). Closed polygons of at most `few` points are not sampled curves; all their points may
-    be corners.
+    corner: with the distance from this point, the thickness of the body grows like the square root; from an
+    edge it grows linearly (`growth_exponent`). Closed polygons of at most `few` points are not sampled
+    curves; all their points may be corners.
     """
     angle = np.abs(turning(points, closed=closed))
     if not angle.max() > KINK:
@@ -120,10 +120,12 @@ def _widens_on(points: Floats, k: int) -> bool:
 
 
 def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:
-    """Return p where the thickness behind point k of a polygon (n, 2) grows like distance to the power p.
+    """Return the exponent p with which a body becomes thicker away from its point k.
 
-    p is about 1/2 behind a round end, 1 behind a wedge, and more behind a cusp. It is computed from the first
-    and the second points on both sides of point k, and infinite if an open polygon has too few points there.
+    At a small distance d from point k of the polygon `points` (n, 2), the thickness is proportional to d to
+    the power p: p is about 1/2 behind a round end, 1 behind a wedge, and more behind a cusp. It is computed
+    from the first and the second points on both sides of point k, and infinite if an open polygon has too few
+    points there.
     """
     n = len(points)
     if n < 5 or (not closed and not 2 <= k < n - 2):

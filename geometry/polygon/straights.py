@@ -18,7 +18,7 @@ _ROUNDING = np.radians(0.1)  # turns of rounded coordinates
 
 
 def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
-    """Return the ascending indices of kinks of an open polygon `points` (n, 2) that are no larger corners.
+    """Return the ascending indices of kinks of an open polygon `points` (n, 2); corners may be among them.
 
     A turn of more than 2 degrees is a kink if it is 20 times as large as both neighbouring turns. Among at
     most `few` points all such turns are kinks if somewhere the polygon turns one way and back in a single
@@ -37,9 +37,11 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
 def straight_intervals(points: Floats, corners: Indices) -> Bools:
     """Return which intervals (n,) of a closed polygon `points` (n, 2) are straight lines.
 
-    They are `LONG` beside an interval that continues them (none does at `corners`, indices of points), and
-    turn at both ends by no more than a tangent to the circle through the next three points: lines between
-    rounded corners. A long chord of a curve turns more.
+    This finds straight lines between rounded corners. An interval counts as straight under two conditions. It
+    is at least `LONG` times as long as one of its neighbours; a neighbour beyond one of the `corners`,
+    indices of points, does not count. And at both ends the polygon turns by no more than it would where a
+    tangent meets the circle through the next three points, with the tolerance `EXPLAINED`; at a long chord of
+    a curve it turns more.
     """
     turn, joined = turning(points, closed=True), np.ones(len(points), dtype=bool)
     turn[corners], joined[corners] = 0.0, False

@@ -52,7 +52,9 @@ boundary), and skewness (m, n[, l]).
 
 @dataclass(frozen=True)
 class FaceMeasures:
-    """Statistics of each measure, with the cell (i, j) of the largest value; None if there are no such faces.
+    """Statistics of each measure, with the cell (i, j) of the largest value.
+
+    None for a measure that applies to no face of the grid.
 
     Cells are (block, i, j) in a multi-block grid, and (block, i, j, k) in volumes.
     """

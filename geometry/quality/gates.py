@@ -86,8 +86,8 @@ def end_of(compare: str) -> str:
 def in_short(name: str, figure: Figure, compare: str, limit: float) -> str:
     """Return a figure and its limit as text.
 
-    Growth and bend with direction and place, which tables do not have. The figure has as many digits as
-    distinguish it from the limit, at least four.
+    Growth and bend are given with their direction and place. The figure has as many digits as distinguish it
+    from the limit, at least four.
 
     >>> in_short("growth", Figure(1.417, (12, 0), "xi"), ">", 1.3)
     'growth 1.417 > 1.3 along xi at i=12, j=0'
@@ -108,7 +108,7 @@ class Judgement:
         A line for each gate, and each check of a profile, that failed.
     beyond : tuple of str
         The same as short texts, including the warnings of profiles: ``max_angle 178.2 > 170``.
-        replaced : tuple of str
+    replaced : tuple of str
         Limits of gates that replace those of profiles: ``box_ratio > 4000``.
     profile : ProfileReport, optional
         The outcome of every check of the profiles.
@@ -128,7 +128,8 @@ class Judgement:
 def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
     """Return the gate that `text` describes; `more` are names of figures allowed besides `FIGURES`.
 
-    If a metric has no statistic, ``>`` judges its greatest cell and ``<`` its least.
+    For a metric without a statistic, ``>`` is applied to the largest value in any cell, ``<`` to the
+    smallest.
 
     Raises InputError: `text` is no gate, or names an unknown metric or statistic.
 

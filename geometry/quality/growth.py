@@ -142,7 +142,7 @@ def beyond_seam(grid: Grid) -> Floats:
 def across_wake(grid: Grid) -> Floats:
     """Return nodes (n, 3, 2) across the wake of a C grid: above, on and below the wake.
 
-    N is 0 for other grids.
+    For other grids there are no such nodes: n is 0.
     """
     nodes = grid.wake + 1 if grid.wake else 0
     below = grid.nodes[::-1][:nodes, 1]

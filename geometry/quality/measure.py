@@ -102,8 +102,9 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     """Return the quality of `grid`.
 
     The cells of all blocks are measured as one grid: cells on both sides of a connection, of the seam of an O
-    grid or of the wake of a C grid are neighbours. With `percentiles`, the 1st and 99th of every metric are
-    computed too, by linear interpolation between cells; this takes four times as long as the rest.
+    grid or of the wake of a C grid are neighbours. With `percentiles`, the 1st and the 99th percentile of
+    every metric are computed too, by linear interpolation between cells; this takes four times as long as the
+    rest.
     """
     quality = _compiled(grid, percentiles)
     if not metrics.METRICS:

@@ -28,10 +28,12 @@ _HALF_TURN = np.pi
 
 
 class BladeSurface:
-    """Surface of a blade: maps the place u around it and the height h to (s, theta).
+    """Surface of a blade: maps the place u around the blade and the height h to (s, theta).
 
-    For u see `BladeProfile`, for s and h `Channel`. Between profiles, lines of equal u are cubic splines;
-    beyond the first and the last profile they are continued straight.
+    u goes around a profile, from 0 at the leading edge to 0.5 at the trailing edge and back to 1
+    (`BladeProfile`). s is 0 at the inlet and 1 at the outlet; h is 0 at the hub and 1 at the casing
+    (`Channel`). Between profiles, lines of equal u are cubic splines; beyond the first and the last profile
+    they are continued straight.
 
     Parameters
     ----------

@@ -47,7 +47,9 @@ _SAME = 1e-13  # of the distance to a wall, relative to the gap
 
 @dataclass(frozen=True, eq=False)
 class MeridionalMap:
-    """The coordinate m' of a surface of revolution, with dm' = dm / r: the map from (m', theta) is conformal.
+    """The coordinate m' of a surface of revolution, with which the map from (m', theta) to it is conformal.
+
+    dm' = dm / r, with the arc length m of the meridian and the distance r from the axis.
 
     Wu, NACA TN 2604 (1952).
     """
@@ -65,6 +67,8 @@ class MeridionalMap:
 
 class Channel:
     """The channel between hub and casing: maps (s, h) to (x, r).
+
+    s is 0 at the inlet and 1 at the outlet; h is 0 at the hub and 1 at the casing.
 
     Parameters
     ----------
@@ -135,9 +139,10 @@ class Channel:
         return out
 
     def store(self, values: Floats, ids: Indices, space: Floats) -> None:
-        """Write the positions x, y, z of points s, theta, h `values` (levels, m, 3) into `space`.
+        """Write the positions x, y, z of points into `space`.
 
-        `space` is (levels, n, 3); the points become the nodes `ids` (m,) of each level.
+        `values` (levels, m, 3) are s, theta, h of the points, `space` is (levels, n, 3); the points become
+        the nodes `ids` (m,) of each level.
         """
         channel_nodes(self._tables, values, ids, space)
 

@@ -33,7 +33,10 @@ _OTHER_UNIT = 1.5  # factor between radii of blade and channel from which on the
 
 
 class BladeProfile:
-    """A profile in a channel.
+    """A profile of a blade in a channel: a closed curve around the blade.
+
+    A place on the curve is u: 0 at the leading edge, 0.5 at the trailing edge, which is reached over the side
+    of larger theta, and 1 at the leading edge again.
 
     Parameters
     ----------

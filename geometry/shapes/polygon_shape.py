@@ -37,7 +37,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 class PolygonRing:
     """A closed polygon of a file: points (n, 2), corners, names, and positions of the points in the file.
 
-    Corners None: detected; names empty: the default names.
+    If `corners` is None, they are detected; if `names` is empty, the polygon gets the default names.
     """
 
     points: Floats
@@ -164,7 +164,7 @@ class Annulus:
         self.body, self.outer, self.name = body, outer, name
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the O boundary: the body sampled as usual, with the given curve in place of a circle.
+        """Return the O boundary: the body sampled as usual, with the given far field in place of a circle.
 
         Raises InputError: another topology, or a setting that does not apply to the body.
         """

@@ -47,11 +47,13 @@ _LEAST_WALL = 5  # fewest nodes of a wall, with its trailing edge counted twice
 def cells_of_wake(
     ni: int, nodes_wanted: int | None, first: float, length: float, steps: tuple[int, ...] = (1,)
 ) -> int:
-    """Return the cells of the wake of a C grid with `ni` nodes along xi, both sides of the wake included.
+    """Return the number of cells along the wake of a C grid.
 
-    `nodes_wanted` is the number of nodes of the wake, with the trailing edge. If it is None, cells grow from
-    `first` by 13 % over the `length` of the wake, but are 20 to 23 % of all cells, and nearly a multiple of
-    the first of `steps` that is at most a quarter of the wake's cells.
+    The grid has `ni` nodes along xi, which include both sides of the wake. `nodes_wanted` is the number of
+    nodes along the wake, with the trailing edge. If it is None, the number of cells is chosen in three steps.
+    Cells that grow from `first` by 13 % each fill the `length` of the wake. Their number is then limited to
+    20 to 23 % of the cells along xi. It is finally rounded to a multiple of the first number in `steps` that
+    is at most a quarter of it.
 
     Raises InputError: too few nodes are left for the wall.
     """
@@ -119,11 +121,14 @@ class WakeLine:
 
 
 def growing(first: float, length: float, cells: int) -> Floats:
-    """Return distances (cells + 1,) in units of `first`, from 0 to `length`, of growing cells.
+    """Return the distances (cells + 1,) of nodes from the start of a line; cells grow from `first` on.
 
-    From cell k of n to the next, the logarithm of the size increases by
+    Distances are in units of `first`; the last one corresponds to `length`. From cell k of n to the next, the
+    logarithm of the size increases by
 
         g (1 - exp(-k/m)) (1 + b (2k/n - 1))
+
+    with constants m and b; g follows from the length.
     """
     if first * cells >= length or cells < 2:
         return np.arange(cells + 1.0)
@@ -142,7 +147,10 @@ def growing(first: float, length: float, cells: int) -> Floats:
 
 
 def rise(behind: Floats) -> Floats:
-    """Return the increase (n,) of first-cell heights at distances `behind` (n,) the edge, in chords."""
+    """Return by how much (n,) first-cell heights increase at distances `behind` (n,) the trailing edge.
+
+    All are in chords.
+    """
     return np.asarray(_RISE * behind**2 / ((behind + _FROM) * (1.0 + behind / _UP_TO)))
 
 

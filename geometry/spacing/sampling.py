@@ -168,7 +168,9 @@ def first_within(steps: tuple[int, ...], most: float) -> int:
 
 
 def nodes_beside(cells: int, every: int) -> str:
-    """Return the numbers of nodes next to `cells` whose numbers of cells are multiples of `every`, in words.
+    """Return in words which numbers of nodes give a number of cells that is a multiple of `every`.
+
+    They are those next below and above `cells` cells.
 
     >>> nodes_beside(49, 4), nodes_beside(3, 4)
     ('49 or 53', '5')

@@ -42,7 +42,7 @@ replace.
 
 @dataclass(frozen=True)
 class PoleCore:
-    """A core and rows of cells that replace the first columns of a fan.
+    """A core and rows of cells that replace the cells around a pole, the first columns of a fan.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class PoleCore:
 
 
 def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> PoleCore:
-    """Return the core of a `fan` (m + 1, n, 3) of curves that leave a pole at j = 0.
+    """Return the core of a `fan` (m + 1, n, 3) of curves that leave a pole, a single point, at j = 0.
 
     By default the core is rounded, and so are the rings of cells around it, as a march from the surface needs
     it. An `even` core is square: its lines have no kinks, across which cell sizes would differ by a factor of

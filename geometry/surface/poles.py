@@ -41,10 +41,10 @@ def without_poles(
 ) -> tuple[list[Floats], list[int], tuple[str, ...]]:
     """Return the patches without poles, for each of them the number of a given patch, and notes.
 
-    `patches` are (ni, nj, 3). Patches keep their numbers; rows of cells replace their first columns. Cores
-    are appended; the number of a core is that of a patch at its pole. Several patches that meet in one pole
-    get one core together. Without
-    `replace` all patches are returned unchanged.
+    A pole is a side of a patch that is a single point. `patches` are (ni, nj, 3). Patches keep their numbers;
+    rows of cells replace their first columns. Cores are appended; the number of a core is that of a patch at
+    its pole. Several patches that meet in one pole get one core together. Without `replace` all patches are
+    returned unchanged.
 
     Raises InputError: too few cells around a pole, or an odd number of them.
     """

@@ -65,7 +65,7 @@ _LEAST_WALL = 24  # fewest cells on a wall
 
 @dataclass(frozen=True, eq=False)
 class BaseWake:
-    """Lines of nodes around and behind a section with a base, as drawn above.
+    """Lines of nodes around and behind a section with a base, that is with a blunt trailing edge.
 
     The `wall` (n, 2) runs clockwise from the lower to the upper corner, the `base` (m, 2) from the lower to
     the upper corner, and the wakes (k, 2) from their corners to the outlet; corners are bitwise shared.
