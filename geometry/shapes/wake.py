@@ -37,9 +37,12 @@ _RAMP = 3.0  # cells of a wake over which growth sets in: the lines that leave i
 _LATE = 0.05  # fraction by which growth is faster at the outlet than on average, and slower at the edge
 _STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the trailing edge
 _RISE, _FROM, _UP_TO = 3e-4, 1.0, 200.0
+BEHIND_BASE = 0.15
 """First cells at a wake are higher by a x²/((x + b)(1 + x/c)) chords at x chords behind the edge, with these
 a, b and c: by far less than a wake is wide. Cells at its end are chords long; where they are a millionth as
-high, lines between their middles are at 80 to 89 degrees from the normal of the wake.
+high, lines between their middles are at 80 to 89 degrees from the normal of the wake. Behind a base b is
+smaller: its rows of cells get higher by different factors, so that they have to be higher where cells are
+only as long as the base is wide.
 """
 _LEAST_WALL = 5  # fewest nodes of a wall, with its trailing edge counted twice
 
@@ -146,12 +149,12 @@ def growing(first: float, length: float, cells: int) -> Floats:
     return np.concatenate([[0.0], np.cumsum(exp(g * shape))])
 
 
-def rise(behind: Floats) -> Floats:
+def rise(behind: Floats, begin: float = _FROM) -> Floats:
     """Return by how much (n,) first-cell heights increase at distances `behind` (n,) the trailing edge.
 
-    All are in chords.
+    The increase sets in at about the distance `begin`: behind a base, `BEHIND_BASE`. All are in chords.
     """
-    return np.asarray(_RISE * behind**2 / ((behind + _FROM) * (1.0 + behind / _UP_TO)))
+    return np.asarray(_RISE * behind**2 / ((behind + begin) * (1.0 + behind / _UP_TO)))
 
 
 def c_boundary(

@@ -9,6 +9,8 @@ First cells on both sides of a wake line have equal heights, which increase with
 up to about the mean cell of the H block.
 """
 
+import math
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms, planar_nodes
@@ -19,8 +21,11 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.elementary import exp
 from meshonet.geometry.notes import Advice
+from meshonet.geometry.quality.bad_cell import centre_of
+from meshonet.geometry.quality.checkmesh import faces
 from meshonet.geometry.shapes.airfoil.base_wake import BaseWake, end_fractions
 from meshonet.geometry.shapes.far_field import straight
+from meshonet.geometry.shapes.wake import BEHIND_BASE, rise
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import redistribute
 from meshonet.solvers.hyperbolic.front import Front, opening
@@ -31,6 +36,7 @@ from meshonet.solvers.solution import Solution, timed
 _FULL = 0.95  # largest height of the H block's first cells far behind the base, in its mean cells
 _SAME = 0.99  # least height of cells behind a base, in first cells, without advice
 _THIN = 0.04  # first cell over the width of a base with which lines from its corners are straight
+_SEVERE, _OBLIQUE = 70.0, 80.0  # non-orthogonality in degrees: limit of checkMesh, and largest without advice
 _FADE = 1.0  # widths of the base over which the correction of first cells off it fades out
 
 
@@ -59,7 +65,8 @@ def around_base(
     off = float(np.abs(heights / first - 1.0).max())
     note = f"the first-cell height is {first:.6g} at every node of wall and base, to {off:.1g}"
     base = f"the base has {len(lines.base)} nodes, the H block behind it {wake + 1} x {len(lines.base)}"
-    return Solution(grid, "hyperbolic", notes=(*lines.notes, note, base, *_thick(lines, first, ends)))
+    advice = *_thick(lines, first, ends), *_oblique(grid, wake)
+    return Solution(grid, "hyperbolic", notes=(*lines.notes, note, base, *advice))
 
 
 def _thick(lines: BaseWake, first: float, ends: Floats) -> tuple[str, ...]:
@@ -75,6 +82,22 @@ def _thick(lines: BaseWake, first: float, ends: Floats) -> tuple[str, ...]:
     )
 
 
+def _oblique(grid: Grid, wake: int) -> tuple[str, ...]:
+    """Return advice if faces are far from normal to the lines between the centres of their cells."""
+    worst = faces(grid).non_orthogonality
+    if worst is None or worst.max <= _OBLIQUE:
+        return ()
+    x, y = centre_of(grid, worst.at)
+    ni, nj = grid.blocks[0].counts
+    # with half as long cells, centres are a quarter as far beside each other
+    more = math.sqrt(math.tan(math.radians(min(worst.max, 89.9))) / math.tan(math.radians(_SEVERE)))
+    remedy = f"{{wake_nodes}} {math.ceil(more * wake) + 1}"
+    if worst.at[0] == 0 and wake <= worst.at[1] < ni - 1 - wake:
+        remedy = f"{{res}} {2 * wake + math.ceil(more * (ni - 1 - 2 * wake)) + 1}x{nj}"
+    problem = f"cells at ({x:.4g}, {y:.4g}) are too long: non-orthogonality as in checkMesh is"
+    return (Advice(f"{problem} {worst.max:.1f} degrees; {remedy} makes it about {_SEVERE:g}"),)
+
+
 def _h_block(lines: BaseWake, first: float, growth: float | None) -> tuple[Floats, Floats]:
     """Return the steps (k,) at both wake lines and the nodes (k, m, 2) of the block between them.
 
@@ -83,7 +106,9 @@ def _h_block(lines: BaseWake, first: float, growth: float | None) -> tuple[Float
     ways = lines.upper - lines.lower
     width, cells = norms(ways), len(lines.base) - 1
     behind = norms(lines.lower - lines.lower[0])
-    ends = np.minimum(first * opening(behind / lines.chord, first / lines.chord), _FULL * width / cells)
+    away = behind / lines.chord
+    higher = rise(away, BEHIND_BASE) / (first / lines.chord)
+    ends = np.minimum(first * opening(away, higher), _FULL * width / cells)
     ends[0] = float(norms(lines.base[1] - lines.base[0]))
     t = end_fractions(ends / width, cells)[..., None]
     nodes = planar_nodes(len(lines.lower), cells + 1)

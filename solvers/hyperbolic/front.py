@@ -50,7 +50,8 @@ class Front:
     ends: Floats | None  # (2, 2) unit directions in which the ends of an open front move
     widening: Floats | None  # (n,) factors of the first step, relative to the wall, for an open front
     edge: Edge | None  # the sharpest corner of a closed front
-    concave: bool  # it has corners that turn towards the grid, at its smallest cells
+    narrow: bool  # it has corners of a base, where cells along it are as short as first cells are high
+    concave: bool  # some of them turn towards the grid
 
     def __init__(
         self,
@@ -66,7 +67,7 @@ class Front:
         `first` is the height of first cells at the wall; `widening` (wake + 1,) are the factors of that
         height along this wake, from the edge on.
         """
-        self._south, self.concave = boundary.south, concave
+        self._south, self.concave, self.narrow = boundary.south, concave, wake > 0
         self._closed = boundary.periodic
         self.ends = self.widening = None
         self.slender, self.edge = 0.0, None
@@ -83,7 +84,7 @@ class Front:
         if widening is None:
             edge = self._south[self._wake - 1]
             behind = np.hypot(*(self._south[: self._wake] - edge).T) / boundary.chord
-            widening = opening(behind, first / boundary.chord)[::-1]
+            widening = opening(behind, rise(behind) / (first / boundary.chord))[::-1]
         self.widening = np.ones(len(self._south))
         self.widening[: self._wake] = widening[::-1]
         self.widening[len(self._south) - self._wake :] = widening
@@ -126,12 +127,12 @@ class Front:
         return math.sqrt(b * b + 2.0 * area / math.pi) - b
 
 
-def opening(behind: Floats, first: float) -> Floats:
-    """Return the factors (n,) of heights of first cells at distances `behind` (n,) the edge.
+def opening(behind: Floats, higher: Floats) -> Floats:
+    """Return the factors (n,) of heights of first cells at distances `behind` (n,) the edge, in chords.
 
-    Both these and `first`, the height at the wall, are in chords.
+    `higher` (n,) is their `rise` there, relative to the height at the wall.
     """
-    return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR) + rise(behind) / first)
+    return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR) + higher)
 
 
 def _radius(ring: Floats) -> float:

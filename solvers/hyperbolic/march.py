@@ -11,6 +11,7 @@ with the area of the boundary's far field.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -33,6 +34,7 @@ from meshonet.solvers.hyperbolic.settings import (
     RISING,
     SHARP_ATTEMPTS,
     MarchSettings,
+    attempts_around_base,
 )
 from meshonet.solvers.layers.limited import limit_growth
 from meshonet.solvers.solution import Solution, timed
@@ -115,27 +117,34 @@ def marched(
     least = cells = _rows(asked, first, distance, growth, free_rows, constant, multiple)
     if free_rows:
         cells = -(-cells // multiple) * multiple
-    nodes = _unfolded(front, cells, first, growth, constant)
+    nodes = _unfolded(front, cells, first, growth, constant, free_rows)
     while growth and float(fastest(nodes).max()) > math.log(growth):
         cells += -(-(1 + (cells - least) // 8) // multiple) * multiple
         if cells > 2 * least + 8:
             problem = f"no number of rows keeps to a growth of {growth:g}"
             raise InputError(problem, "allow more", parameter="growth")
-        nodes = _unfolded(front, cells, first, growth, constant)
+        nodes = _unfolded(front, cells, first, growth, constant, free_rows)
     if cells > asked and not free_rows:
         raise _too_few(asked, cells, growth or MOST_GROWTH, multiple)
     return nodes
 
 
-def _unfolded(front: Front, cells: int, first: float, growth: float | None, constant: int) -> Floats:
+def _unfolded(
+    front: Front, cells: int, first: float, growth: float | None, constant: int, free_rows: bool
+) -> Floats:
     """Return the nodes (ni, cells + 1, 2) of the attempt with the fewest folded cells.
 
     Raises SolverError: no attempt gave finite nodes.
     """
     best, least = None, math.inf
-    closed = SHARP_ATTEMPTS if front.edge else ATTEMPTS
-    for settings in closed if front.ends is None else OPEN_ATTEMPTS:
-        nodes = _evened(front, cells, first, settings, constant, growth)
+    attempts: Sequence[MarchSettings] = SHARP_ATTEMPTS if front.edge else ATTEMPTS
+    if front.narrow:
+        ratio = growth_ratio(first, front.outer - front.inner, cells)
+        attempts = attempts_around_base(ratio, concave=front.concave)
+    elif front.ends is not None:
+        attempts = OPEN_ATTEMPTS
+    for settings in attempts:
+        nodes = _evened(front, cells, first, settings, constant, growth, free_rows)
         folded = math.inf if nodes is None else count_folded(nodes)
         if folded < least:
             best, least = nodes, folded
@@ -190,9 +199,18 @@ def _rows(
 
 
 def _evened(
-    front: Front, cells: int, first: float, settings: MarchSettings, constant: int, growth: float | None
+    front: Front,
+    cells: int,
+    first: float,
+    settings: MarchSettings,
+    constant: int,
+    growth: float | None,
+    free_rows: bool,
 ) -> Floats | None:
-    """Return the nodes of a march whose steps are corrected so that cells grow by at most `growth`."""
+    """Return the nodes of a march whose steps are corrected so that cells grow by at most `growth`.
+
+    They may still grow faster where more rows of cells are better.
+    """
     nodes, steps = _marched(front, cells, first, settings, constant, edge=None if growth else front.edge)
     for _ in range(EVENINGS):
         if nodes is None or growth is None or cells < 3:
@@ -204,9 +222,10 @@ def _evened(
         nodes, steps = _marched(front, cells, first, settings, constant, edge=None, shares=shares)
     if nodes is not None and growth is not None:
         faster = fastest(nodes) > math.log(growth)
-        # beside a concave corner even equal steps grow; other levels need more rows there, since nodes moved
-        # along some lines but not along their neighbours bend cells as narrow as those at the corner
-        more_rows = front.concave and bool((faster & (np.diff(steps) > EQUAL * steps[1:])).any())
+        # beside a concave corner even equal steps grow; other levels need more rows there and beside a base,
+        # since nodes moved along some lines but not along their neighbours bend cells as narrow as those are
+        more_rows = front.concave or (front.narrow and free_rows)
+        more_rows = more_rows and bool((faster & (np.diff(steps) > EQUAL * steps[1:])).any())
         if faster.any() and not more_rows:
             limit_growth(nodes, growth, constant)
     return nodes
@@ -251,6 +270,7 @@ def _marched(
         if front.concave and widening is not None:
             # were nodes moved afterwards, only the lines from the corner would, past their neighbours
             wrong = norms((levels[:, 1] - levels[:, 0]).T) / front.heights(first)
+            wrong[[0, -1]] = wrong[[1, -2]]  # both ends move as far as their neighbours, whatever their areas
             widening = widening / wrong
             alike = float(np.abs(wrong - 1.0).max()) <= ALIKE
         if alike and near:

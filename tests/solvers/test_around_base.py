@@ -11,6 +11,7 @@ import meshonet
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.transform import coarser_grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.checkmesh import faces
 from meshonet.geometry.quality.report import quality_report
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.spacing.sampling import Sampling
@@ -231,3 +232,57 @@ def test_too_few_rows_beside_a_rounded_flank_are_refused_with_as_many_as_suffice
     least = re.search(r"use (\d+) rows or more", str(told.value))
     assert least is not None
     assert made(body, growth=1.15, ni=401, nj=int(least[1])).quality["max_angle"].max < 135.0
+
+
+def most_oblique(result: Result, k: int = 1) -> float:
+    """Return the largest non-orthogonality as in checkMesh, of every k-th node."""
+    worst = faces(coarser_grid(result.grid, k) if k > 1 else result.grid).non_orthogonality
+    assert worst is not None
+    return worst.max
+
+
+def test_cells_at_the_outlet_behind_rounded_flanks_are_orthogonal_for_flow_solvers() -> None:
+    result = made(rounded(0.2, 60, 30), first=8e-6, growth=None, ni=401, nj=100)
+    assert most_oblique(result) < 60.0  # was 85: the ends of rows were widened at each try
+
+
+@pytest.mark.parametrize("growth", [1.2, 1.3])
+@pytest.mark.parametrize("body", [blunt(0.003), blunt(0.02), rounded(0.2, 60, 30)])
+def test_lines_off_a_base_stay_orthogonal_for_flow_solvers_in_the_far_field(
+    body: Airfoil, growth: float
+) -> None:
+    result = made(body, first=8e-6, growth=growth)
+    assert most_oblique(result) < 72.0  # were up to 89, where the limit of growth moved some of them
+    assert result.quality["max_angle"].max < 135.0
+
+
+def test_cells_behind_a_base_are_nearly_orthogonal_for_flow_solvers_on_coarser_grids_too() -> None:
+    result = made(blunt(0.003), first=8e-6, growth=None, ni=377, nj=97)
+    assert most_oblique(result, 2) < 71.0  # was 72
+    assert most_oblique(result, 4) < 80.5  # was 84
+
+
+def test_cells_too_long_for_their_height_behind_a_base_are_noted_with_the_nodes_that_suffice() -> None:
+    def advice(**nodes: int) -> tuple[list[str], float]:
+        result = made(blunt(0.02), first=8e-6, growth=None, ni=401, nj=100, **nodes)
+        told = re.findall(r"non-orthogonality .* degrees; {wake_nodes} (\d+) makes", "; ".join(result.notes))
+        return told, most_oblique(result)
+
+    (enough,), angle = advice(wake_nodes=25)
+    assert angle > 80.0
+    none, angle = advice(wake_nodes=int(enough))
+    assert not none
+    assert angle < 72.0
+
+
+def test_cells_too_long_for_their_height_on_the_wall_are_noted_with_the_nodes_that_suffice() -> None:
+    def advice(ni: int) -> tuple[list[str], float]:
+        result = made(blunt(0.02), first=4e-7, growth=None, ni=ni, nj=100)
+        told = re.findall(r"non-orthogonality .* degrees; {res} (\d+)x100 makes", "; ".join(result.notes))
+        return told, most_oblique(result)
+
+    (enough,), angle = advice(401)
+    assert angle > 80.0
+    none, angle = advice(int(enough))
+    assert not none
+    assert angle < 72.0

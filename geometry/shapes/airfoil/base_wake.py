@@ -28,7 +28,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Advice
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.wall_plan import arcs_to_corners
-from meshonet.geometry.shapes.wake import c_far_field, growing, rise, wake_axis
+from meshonet.geometry.shapes.wake import BEHIND_BASE, c_far_field, growing, rise, wake_axis
 from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth
 from meshonet.geometry.spacing.sampling import (
     DEFAULT_NI,
@@ -295,7 +295,7 @@ def _lines(
         x += more * near * expm1(-x / near)
         x *= own / x[-1]
         y = -mean * chord * expm1(-x / chord) - (slope - mean) * near * expm1(-x / near)
-        y += way * across * chord * rise(x / chord)
+        y += way * across * chord * rise(x / chord, BEHIND_BASE)
         line = corner + x[:, None] * axis + y[:, None] * normal
         line[0] = corner
         line[1] = corner + (line[1] - corner) * (first / float(np.hypot(*(line[1] - corner))))
