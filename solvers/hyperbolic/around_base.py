@@ -23,7 +23,8 @@ from meshonet.geometry.elementary import exp
 from meshonet.geometry.notes import Advice
 from meshonet.geometry.quality.bad_cell import centre_of
 from meshonet.geometry.quality.checkmesh import faces
-from meshonet.geometry.shapes.airfoil.base_wake import BaseWake, end_fractions
+from meshonet.geometry.quality.growth import ratios
+from meshonet.geometry.shapes.airfoil.base_wake import GROWTH, BaseWake, end_fractions
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.shapes.wake import BEHIND_BASE, rise
 from meshonet.geometry.threads import threads_for
@@ -66,6 +67,8 @@ def around_base(
     note = f"the first-cell height is {first:.6g} at every node of wall and base, to {off:.1g}"
     base = f"the base has {len(lines.base)} nodes, the H block behind it {wake + 1} x {len(lines.base)}"
     advice = *_thick(lines, first, ends), *_oblique(grid, wake)
+    if growth is None:
+        advice = *advice, *_growing(nodes[wake : len(nodes) - wake], between)
     return Solution(grid, "hyperbolic", notes=(*lines.notes, note, base, *advice))
 
 
@@ -80,6 +83,15 @@ def _thick(lines: BaseWake, first: float, ends: Floats) -> tuple[str, ...]:
     return (
         Advice(f"{problem}; use {{first_cell}} {_THIN * width / lines.chord:.1g} or less, or {{te}} wedge"),
     )
+
+
+def _growing(around: Floats, between: Floats) -> tuple[str, ...]:
+    """Return advice if cells along lines from the wall, or from the base, grow by more than `GROWTH`."""
+    most = max(float(ratios(around.swapaxes(0, 1)).max()), float(ratios(between).max()))
+    if most <= GROWTH * (1.0 + 1e-6):
+        return ()
+    problem = f"cells along lines from the wall and its base grow by up to {most:.3f}"
+    return (Advice(f"{problem}; {{growth}} {GROWTH:g} limits that by as many rows as it needs"),)
 
 
 def _oblique(grid: Grid, wake: int) -> tuple[str, ...]:

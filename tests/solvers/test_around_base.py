@@ -234,6 +234,22 @@ def test_too_few_rows_beside_a_rounded_flank_are_refused_with_as_many_as_suffice
     assert made(body, growth=1.15, ni=401, nj=int(least[1])).quality["max_angle"].max < 135.0
 
 
+@pytest.mark.parametrize(("body", "nj"), [(rounded(0.2, 60, 30), 101), (blunt(0.02), 61)])
+def test_growth_off_walls_above_the_default_is_noted_with_the_option_that_limits_it(
+    body: Airfoil, nj: int
+) -> None:
+    def advice(result: Result) -> list[str]:
+        told = r"from the wall and its base grow by up to (\S+); {growth} 1\.2 limits"
+        return re.findall(told, "; ".join(result.notes))
+
+    few = made(body, first=8e-6, growth=None, ni=401, nj=nj)
+    figure = quality_report(few.grid).figures("wall_growth")
+    assert figure is not None
+    assert advice(few) == [f"{figure.value:.3f}"]
+    assert not advice(made(body, first=8e-6, growth=1.2))
+    assert not advice(made(blunt(0.02), first=8e-6, growth=None, ni=401, nj=101))
+
+
 def most_oblique(result: Result, k: int = 1) -> float:
     """Return the largest non-orthogonality as in checkMesh, of every k-th node."""
     worst = faces(coarser_grid(result.grid, k) if k > 1 else result.grid).non_orthogonality
