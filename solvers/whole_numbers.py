@@ -43,8 +43,8 @@ def difference(first: Iterable[int], second: Iterable[int], low: float = 0.0, hi
 def whole_numbers(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices:
     """Return integers n (k,) of at least `least` (k,) that satisfy the constraints.
 
-    They minimise the sum of n / wanted + wanted / n, which for small differences is that of squared
-    logarithms.
+    They minimise the sum of n / wanted + wanted / n. For small differences, this is a constant plus the sum
+    of the squared logarithms of n / wanted.
 
     Raises SolverError: there is no solution, or none was found.
     """

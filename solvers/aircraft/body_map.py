@@ -37,7 +37,11 @@ _COARSE = 8
 
 
 class BodyMap:
-    """The map from (s, zeta) to (x, r) around a `body`, up to the distance `far` of the far field."""
+    """The map from (s, theta, zeta) to the space around a `body`, up to the distance `far` of the far field.
+
+    s goes from 0 at the nose to the length of the body at the tail. theta is the angle about the axis, 0 at
+    the keel and pi at the crown. zeta is 0 on the body and 1 in the far field.
+    """
 
     def __init__(self, body: Body, far: float) -> None:
         self.body = body
@@ -73,12 +77,12 @@ class BodyMap:
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
     def around(self, places: Floats) -> Floats:
-        """Return the lengths in space (...) of a radian of theta at places (..., 3)."""
+        """Return the length in space (...) of one radian of theta at each of the places (..., 3)."""
         points = self.points(places)
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angles (...) in radians between z and the body's section at places (..., 3)."""
+        """Return the angles (...) in radians between the z axis and the body's section at places (..., 3)."""
         return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:

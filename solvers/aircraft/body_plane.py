@@ -38,7 +38,9 @@ _POLE_CELL = 0.5
 
 @dataclass(frozen=True, eq=False)
 class BodyEnd:
-    """The part of the grid at nose or tail that is the same on all levels.
+    """The part of the grid at nose or tail, whose nodes have the same s and theta on all levels.
+
+    A level is a surface of nodes around the body; the first one is the body itself.
 
     Parameters
     ----------
@@ -56,9 +58,9 @@ class BodyEnd:
 
     @classmethod
     def of(cls, points: Points, sides: Sequence[Side]) -> BodyEnd:
-        """Return the end for the sides of the first column on some levels, beginning at the root.
+        """Return the end next to a column, given the `sides` of this column on some levels.
 
-        s is counted from the pole.
+        The first of these levels is the body. s is counted from the pole, the tip of the nose or of the tail.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))
@@ -147,10 +149,10 @@ class LevelPlan:
 def planned(
     space: BodyMap, holes: Sequence[Sequence[Sequence[Hole]]], first: float, growth: float
 ) -> LevelPlan:
-    """Return the numbers of cells for the holes of each column on some levels, beginning at the root.
+    """Return the numbers of cells that suit all `holes`, the sections of wings on some levels.
 
-    Columns are in order from nose to tail. `first` is the height of first cells, `growth` the largest growth
-    ratio.
+    `holes` has an entry for each column, from nose to tail, each wing of the column and each level; the first
+    level is the body. `first` is the height of first cells, `growth` the largest growth ratio.
     """
     plans, levels = zip(*(planned_column(each, first, growth) for each in holes), strict=True)
     columns = _with_equal_lines(plans)

@@ -87,11 +87,12 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return the two numbers of nodes, from the middle of the trailing edge and of the nose, to the corners.
+    """Return the numbers of the nodes of a `root` whose lines end at the corners of the rectangle `box`.
 
-    The lines of these nodes end at the corners of the rectangle. Their normals point best at the corners, so
-    that lines are bent least; only nodes are considered with which cells on neighbouring sides of the
-    rectangle have similar lengths. There are at least `fewest` nodes.
+    The first number counts nodes from the middle of the trailing edge, the second from the middle of the
+    nose, both upwards and downwards. The nodes are chosen whose normals point most directly at the corners,
+    so that lines are bent least. Only nodes are considered with which cells on neighbouring sides of the
+    rectangle have similar lengths. Both numbers are at least `fewest`.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)

@@ -99,7 +99,8 @@ class CollarPlan:
     first : height of the cells at the wing.
     straight : weight of straight lines in the collars (`collar`).
     sine : smallest sine of an angle in the collars.
-    widest : largest ratio of a cell above or below the collar, next to it, to the mean of these cells.
+    widest : the cells next to the collar, above and below it, are at most this many times as long as the mean
+        of the cells from the collar to crown or keel.
     """
 
     edge: int
@@ -114,9 +115,10 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return the numbers of nodes from the middles of trailing edge and nose to the corners.
+    """Return the results of `corner_nodes`, as means over `holes`.
 
-    They are means over `holes`.
+    They are numbers of nodes from the middle of the trailing edge, and from that of the nose, to the nodes
+    whose lines end at the corners of the collar's rectangle.
     """
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))

@@ -30,7 +30,10 @@ the pole.
 
 
 class LoftedMap(BodyMap):
-    """The map from (s, theta, zeta) to the space around a lofted `body`, up to the distance `far`."""
+    """The map from (s, theta, zeta) to the space around a lofted `body`, up to the distance `far`.
+
+    The three coordinates are those of `BodyMap`.
+    """
 
     body: LoftedBody
 
@@ -83,11 +86,14 @@ class LoftedMap(BodyMap):
         return super().places(lowered)
 
     def around(self, places: Floats) -> Floats:
-        """Return the lengths in space (...) of a radian of theta at places (..., 3)."""
+        """Return the length in space (...) of one radian of theta at each of the places (..., 3)."""
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angles (...) between z and the body's sections at places (..., 3) on it."""
+        """Return the angles (...) in radians between the z axis and the body's section at places (..., 3).
+
+        The places lie on the body.
+        """
         around = np.abs(self._around(places))
         return np.asarray(arctan2(around[..., 1], around[..., 2]))
 

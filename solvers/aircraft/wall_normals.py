@@ -28,10 +28,11 @@ _OBLIQUE = 0.4
 
 
 def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: float) -> Floats:
-    """Return the points (k, p, 3) of lines, turned to the normals of the body, on which they begin at k = 0.
+    """Return `points` (k, p, 3) moved so that the p lines leave the body along its normals.
 
-    `normal` (p, 3) are the points at the height `first` on the normals of the body; first cells get this
-    height. `rings` (n, m) are the column numbers of each collar, from the wing outwards.
+    Lines begin on the body, at k = 0. `normal` (p, 3) are the points at the height `first` on the normals of
+    the body; first cells get this height. `rings` (n, m) are the column numbers of each collar, from the wing
+    outwards.
     """
     turned = (normal - points[1]) / first
     turned[points[0, :, 2] == 0.0, 2] = 0.0
@@ -48,7 +49,7 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
 
 
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
-    """Return the points (k, p, 3) with the lines of a collar turned to right angles to the span of its wing.
+    """Return `points` (k, p, 3), with the lines of a collar turned at right angles to the span of its wing.
 
     `ring` (n, m) are the column numbers of the collar, `first` is the height of its first cells.
     """
@@ -77,12 +78,12 @@ def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Fl
 def across_tip(
     low: Floats, high: Floats, ring: Indices, wing: WingLines, first: float
 ) -> tuple[Floats, Floats]:
-    """Return the points (k, p, 3) below and beyond a tip, with the level of the tip less oblique at its edge.
+    """Return `points` (k, p, 3) below and beyond a tip, moved where they make oblique cells at its edge.
 
-    Lines reach the tip along the span and leave it along the normal of the tip. Near the edge, the level of
-    the collar `ring` (n, m) is turned towards right angles to the mean of both directions, if it is too
-    oblique. The displacement decreases along the lines, to 0 at their ends. First cells keep the height
-    `first`.
+    Lines reach the tip along the span and leave it along the normal of the tip. Near the edge of the tip, the
+    surface formed by the nodes of the collar `ring` (n, m) is turned towards right angles to the mean of both
+    directions, if it is too oblique. The displacement decreases along the lines, to 0 at their ends. First
+    cells keep the height `first`.
     """
     level = high[0, ring]
     along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]
@@ -118,9 +119,9 @@ def _chord(edge: Floats, wing: WingLines) -> float:
 
 
 def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
-    """Return the points (k, p, 3) of lines beyond a tip, turned to its normals.
+    """Return `points` (k, p, 3) beyond a tip, moved so that the p lines leave the tip along its normals.
 
-    Lines begin on its level, k = 0.
+    Lines begin at the level of the tip, at k = 0.
 
     `cap` (c,) are the numbers of the columns that fill the last section, `ring` (n, m) those of its collar.
     Lines of the collar are turned less the farther they are from the section.

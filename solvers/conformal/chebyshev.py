@@ -53,8 +53,9 @@ def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
 class Panels(NamedTuple):
     """Panels that follow each other: panel k makes the grid levels ``ends[k]`` to ``ends[k + 1]``.
 
-    `eta` (panels NODES,) are their points, and `matrix` (NODES, levels) has a column for each level: values
-    at the points of its panel times that are the value at the level. Without panels there is one end.
+    `eta` (panels NODES,) are their points, and `matrix` (NODES, levels) has a column for each level: the
+    product of the values at the points of its panel with this column is the value at the level. Without
+    panels there is one end.
     """
 
     ends: list[int]

@@ -145,9 +145,9 @@ class _HighModes:
                 start = count
 
     def felt(self, depth: Floats) -> list[tuple[int, int]]:
-        """Return for each octave of modes, the highest first, the levels it reaches and its last mode.
+        """Return for each octave of modes the number of levels that it reaches, and its last mode.
 
-        Beyond these levels of ascending `depth` it is negligible.
+        The highest octave comes first. `depth` ascends; beyond these levels the octave is negligible.
         """
         octaves: list[tuple[int, int]] = []
         strength = modulus(self.ahead) + modulus(self.behind[::-1])
@@ -218,8 +218,8 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
     smallest if both are A/2. Solutions of Winslow's equations approach this only as the cells shrink. A local
     shift of phi near the first node of the line achieves it directly, and decays within a few cells.
 
-    With them the first grid lines at `corners` are bisectors in the plane. `wall` (n,) are nodes in the
-    plane, counter-clockwise, and `corners` indices into it.
+    With these shifts the first grid lines at `corners` are bisectors in the plane. `wall` (n,) are nodes in
+    the plane, counter-clockwise, and `corners` indices into it.
     """
     n, step = len(wall), 2.0 * np.pi / len(wall)
     between = np.subtract.outer(corners, corners) % n

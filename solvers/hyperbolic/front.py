@@ -128,9 +128,10 @@ class Front:
 
 
 def opening(behind: Floats, higher: Floats) -> Floats:
-    """Return the factors (n,) of heights of first cells at distances `behind` (n,) the edge, in chords.
+    """Return the factors (n,) by which first cells are higher at distances `behind` (n,) the trailing edge.
 
-    `higher` (n,) is their `rise` there, relative to the height at the wall.
+    The distances are in chords. `higher` (n,) is the `rise` of first cells there, divided by the height at
+    the wall.
     """
     return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR) + higher)
 

@@ -150,7 +150,7 @@ def evened_loops(
     """Return the layout with nodes moved along some loops, and less and less in the adjacent blocks.
 
     Neighbouring steps of the measures of each loop then differ by at most the exponential of `limit`; corners
-    are fixed. `most` is that of `evened_places`. It is the layout itself if cells would fold.
+    are fixed. `most` is that of `evened_places`. If cells would fold, the given layout is returned.
     """
     mesh = layout.mesh
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()
@@ -220,7 +220,7 @@ class _Line:
 
     @cached_property
     def pattern(self) -> SparsePattern:
-        """That of the normal equations of one measure; most lines are even, and need none."""
+        """The positions of the entries in the normal equations of one measure."""
         kinds = [self.unknown[of] for of in (self.triples, self.links.pairs)]
         return NormalEquations(len(self.free), kinds).pattern
 

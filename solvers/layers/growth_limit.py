@@ -37,9 +37,10 @@ Numbers = TypeVar("Numbers", Floats, Complexes)
 
 @dataclass(frozen=True, eq=False)
 class GrowthLimit:
-    """The term for logarithms of ratios (..., k).
+    """The penalty term w Σ max(0, |ρ| - L)² + μ Σ (ρ - ρ0)² for the growth of cells.
 
-    `limit` is L, a number or an array like them; `wanted` (..., k) is ρ0; `change` is μ.
+    ρ (..., k) are logarithms of ratios of neighbouring cells. `limit` is L, a number or an array that
+    broadcasts with ρ; `wanted` (..., k) is ρ0; `change` is μ. The weight w is given to each method.
     """
 
     limit: float | Floats

@@ -82,8 +82,9 @@ def judged(
     """Return a solution with its quality; the time of the measurement is added to `seconds`.
 
     The provenance of the grid lists the changes of the shape. A note says where cells grow by more than the
-    the solution, or by more than `JUMP` along a wall if it has none. Raises NoValidGridError: folded cells,
-    unless these are allowed; the error has the given `remedy`.
+    growth ratio that was prescribed for the solution; if none was prescribed, where they grow by more than
+    `JUMP` along a wall. Raises NoValidGridError: folded cells, unless these are allowed; the error has the
+    given `remedy`.
     """
     with stage("quality", seconds):
         quality = measure(solution.grid, percentiles=request.percentiles)

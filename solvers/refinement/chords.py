@@ -28,7 +28,10 @@ TURNING_DEG = 25.0
 
 @dataclass(frozen=True, eq=False)
 class Chords:
-    """The edges of a layout's blocks, each once.
+    """The edges of a layout's blocks, each once, and the chords that they form.
+
+    A chord is a set of edges that must have the same number of cells, because they are opposite each other in
+    blocks.
 
     `sides` (b, 4) are the numbers of the edges at south, north, west and east of each block; `reversed` (b,
     4) says whether the block runs along the edge in the opposite direction; `wall` (e,) whether an edge is on

@@ -45,10 +45,10 @@ class ChannelLines:
         return cls(upper, upper, squares)
 
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
-        """Return the tangents by which lines lean more with places u (k,) than with the places `start` (k,).
+        """Return how much more lines across the channel lean with places `u` (k,) than with `start` (k,).
 
-        `pairs` (p, 2) are the numbers of the places that lines join. The result is linearised at `u` and
-        multiplied by `weight`.
+        The result is the increase of the tangent of each line's angle to the normal, linearised at `u` and
+        multiplied by `weight`. `pairs` (p, 2) are the numbers of the places that lines join.
         """
         one = u[pairs[:, 0]]
         slope = np.interp(one, self.upper, np.gradient(self.lower, self.upper))

@@ -34,10 +34,10 @@ _KEPT = 0.4
 def even_behind(sections: Sequence[KeySection], columns: Indices) -> tuple[KeySection, ...]:
     """Return sections at `key_heights` with nodes behind the blade on polynomials of the height.
 
-    The polynomials are those of the share of the way (see `SectionPlane.shares`) and of the difference of
-    theta from the trailing edge. Nodes of layers, which are in `columns` (k, m), stay; nodes near the layers
-    and near the trailing edge move by a fraction. If a Jacobian would become too small, all nodes move by
-    less.
+    For each node, two quantities become polynomials of the height: the share of the way (see
+    `SectionPlane.shares`), and the difference of theta from the trailing edge. Nodes of layers, which are in
+    `columns` (k, m), stay; nodes near the layers and near the trailing edge move by a fraction. If a Jacobian
+    would become too small, all nodes move by less.
     """
     mesh = sections[0].layout.mesh
     values = []

@@ -26,7 +26,7 @@ def exact_in_corners(
     ----------
     nodes : in any coordinates.
     begins : of the lines (..., 3), likewise.
-    sizes : lengths of the lines, the second for (...).
+    sizes : lengths of the two lines; the second is an array (...).
     in_space : maps coordinates to x, y, z.
     """
     starts = [in_space(begin) for begin in begins]

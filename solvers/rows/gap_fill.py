@@ -68,7 +68,8 @@ class GapFill:
 def outline_sides(count: int, lead: int, aside: int) -> list[Indices]:
     """Return positions of the four sides among `count` nodes of an outline, `lead` at the leading edge.
 
-    Sides 1 and 3 reach `aside` nodes to both sides of the edges of the blade.
+    Side 1 is at the trailing edge and side 3 at the leading edge of the blade. Each extends over `aside`
+    nodes on both sides of this edge.
     """
     m, half = aside, count // 2
     cuts = [m, half - m, half + m, count - m, count + m]

@@ -127,7 +127,8 @@ def planned(
 
     Columns are None if they are not known yet. `coarse` is the `coarse_section` in the middle, if it is
     known; `longest` are the largest lengths of the rows to inlet and outlet, by the number of their loop;
-    `wake` is that of the plan; `gaps` tells whether the blade ends in a gap at the hub and at the casing.
+    `wake` is that of `SectionPlan`; `gaps` tells whether the blade ends in a gap at the hub and at the
+    casing.
     """
     plane = planes[len(planes) // 2]
     whole = middle_section(planes, cells, longest, coarse)

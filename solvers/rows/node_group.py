@@ -128,7 +128,10 @@ class NodeGroup:
         own[beside, :, 1] = exact_in_corners(own[beside][:, :, 1], begins, lengths, self.row.channel.in_space)
 
     def store(self, values: Floats, rises: Sequence[Rise], space: Floats) -> None:
-        """Store nodes of s, theta, h (levels, m, 3) in x, y, z (levels, n, 3) of all, layers raised."""
+        """Store the positions x, y, z of the group's nodes in `space` (levels, n, 3), which has all nodes.
+
+        `values` (levels, m, 3) are s, theta, h of the group's nodes. Nodes of layers are moved by `rises`.
+        """
         self.row.channel.store(values, self.ids, space)
         if rises:
             shape = len(values), self.columns, -1, 3

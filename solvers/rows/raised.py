@@ -38,15 +38,16 @@ _STEP = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class Rise:
-    """Moves of nodes of layers next to one end of the blade.
+    """Displacements of nodes in the layers next to one end of the blade.
 
     Parameters
     ----------
     end : height at which the blade ends.
     up : 1 where the gap is above it, -1 below.
     gap : height of the gap.
-    deep : (k,) distances in height, on the side of the blade, at which moves have died out.
-    moves : (k, 3) of the nodes next to the blade at its end, in space, of each column.
+    deep : (k,) for each column, the distance in height from this end, along the blade, at which moves become
+        0.
+    moves : (k, 3) for each column, the displacement in space of the node next to the end of the blade.
     """
 
     end: float
@@ -62,8 +63,8 @@ class Rise:
         Parameters
         ----------
         row, blade : the row, and the zone of the blade.
-        around : u of the blade at which columns begin.
-        lines : s, theta (k (rows + 1)) of their nodes.
+        around : places u on the blade at which the k columns begin, as functions of the height.
+        lines : s and theta of the k (rows + 1) nodes of these columns, as functions of the height.
         """
         end, up, width = (blade.high, 1.0, row.tip_gap)
         if zone.low == 0.0:
@@ -102,14 +103,15 @@ def rises_of(
 def raise_layers(
     rises: Sequence[Rise], space: Floats, heights: Floats, ends: tuple[Indices, Indices, Floats], first: float
 ) -> None:
-    """Move nodes of columns, `space` (levels, k, rows, 3), first cells staying exact.
+    """Move the nodes of columns in place; first cells keep their exact heights.
 
     Parameters
     ----------
     rises : the moves.
-    space : x, y, z (levels, k, rows, 3).
+    space : (levels, k, rows, 3) x, y, z of the nodes.
     heights : (levels, k) of the nodes on the blade.
-    ends : levels that bound zones, those next to them, and the heights of cells between.
+    ends : the numbers of the levels that bound zones; the numbers of the levels next to them; the heights of
+        the cells between both.
     first : height of first cells at the blade.
     """
     rows = space.shape[2]

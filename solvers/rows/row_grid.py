@@ -86,7 +86,10 @@ def turned_by(angle: float) -> Motion:
 
 @dataclass(frozen=True, eq=False)
 class ZoneSection:
-    """Blocks of a level of a zone, as a planar grid and as a layout, and those inside the blade's outline."""
+    """The blocks of one level of a zone, and the blocks inside the outline of the blade.
+
+    The former are given both as a planar grid and as a layout; the latter are None unless the zone is a gap.
+    """
 
     plane: Grid
     layout: Layout

@@ -186,14 +186,14 @@ class SectionPlane:
         return f"section at {100.0 * self.height:.3g} % of the span, {along}"
 
     def shares(self, points: Floats) -> Floats:
-        """Return the shares (n,) of the way of points (n, 2).
+        """Return how far points (n, 2) are along the passage, as shares (n,) of the way.
 
-        They are -1 at the inlet, 0 at the leading edge, 1 at the trailing edge and 2 at the outlet.
+        A share is -1 at the inlet, 0 at the leading edge, 1 at the trailing edge and 2 at the outlet.
         """
         return np.interp(points[:, 0], self._stations, _SHARES)
 
     def stations(self, shares: Floats) -> Floats:
-        """Return m' (n,) of `shares` (n,) of the way; the inverse of `shares`."""
+        """Return the coordinate m' (n,) at `shares` (n,) of the way: the inverse of the method `shares`."""
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:

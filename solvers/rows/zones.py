@@ -46,7 +46,10 @@ class Zone:
 
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
-    """Return the number of cells of a section if the row has about `cells`, or as many as `growth` needs."""
+    """Return the number of cells of a section with which the row has about `cells` cells.
+
+    It is larger if `growth` needs more cells.
+    """
     return max(_needed(growth), int(cells / _sections(zones)))
 
 

@@ -158,7 +158,10 @@ def with_counts(
         return cap.cells(around) if cap else 0
 
     def away(around: int) -> float:
-        """Return how far the cells of the surface are from those wanted; it has one minimum."""
+        """Return by how much the number of cells of the surface differs from the wanted number.
+
+        The difference has one minimum.
+        """
         along = request.span or max(least_span, round(_ALONG * (around - 1)) + 1)
         return abs((around - 1) * (along - 1) + beside(around) - surface)
 

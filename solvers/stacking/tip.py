@@ -164,7 +164,10 @@ class Cap:
         return middle + CORE * across, middle - CORE * across, np.hypot(*across.T)
 
     def connections(self, n: int, ring: int, core: int) -> tuple[Connection, ...]:
-        """Return the connections of the blocks with numbers `ring`, with `n` nodes around, and `core`."""
+        """Return the connections of the ring to itself and to the core.
+
+        `ring` and `core` are the numbers of these blocks; the ring has `n` nodes around.
+        """
         m, half = self.short, (n - 1) // 2
         whole = ((0, self.rows),)
         parts = (

@@ -53,7 +53,10 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) from second derivatives at n knots to their contribution at places."""
+    """Return the matrix (count, n) from second derivatives at n knots to their part of the spline.
+
+    The knots are uniform; the spline is evaluated at `count` uniform places.
+    """
     return _weighted(n, count, 2)
 
 

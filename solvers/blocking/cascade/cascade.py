@@ -138,7 +138,10 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Measures whose steps along the front should be even, by loop; none without a limit of growth."""
+        """Measures whose steps along the front (the outer edge of the layers) should be even.
+
+        They are in a dict with the number of the loop; it is empty if growth has no limit.
+        """
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:
@@ -149,9 +152,9 @@ class Cascade:
 
     @cached_property
     def reach(self) -> tuple[float, float]:
-        """Requested lengths from the front to inlet and outlet.
+        """Requested lengths from the front (the outer edge of the layers) to inlet and outlet.
 
-        `ends` are at least as long as blocks need.
+        They may be too short for blocks; see `ends`, which checks this.
         """
         axial, around = self._axial(self.blade), self._axial(self.ring.front)
         before = self.inlet * self.chord - float(axial.min() - around.min())
@@ -193,7 +196,7 @@ class Cascade:
         return replace(sizes, points=points, normals=normals, across=across, along=along)
 
     def check_reach(self, cells: int | None, cell_size: float | None) -> None:
-        """Raise InputError if there must be far more than `cells` cells, or too many of `cell_size`."""
+        """Raise InputError if there must be far more than `cells` cells, or too many of size `cell_size`."""
         largest = cell_size or abs(self.left) / ACROSS * COARSEST**0.5
         length = (1.0 + self.inlet + self.outlet) * self.chord
         most = MOST_CELLS if cell_size else min(MORE * (cells or CELLS), MOST_CELLS)

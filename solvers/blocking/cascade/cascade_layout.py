@@ -118,8 +118,8 @@ def passage_optimum(
 ) -> Layout:
     """Return the layout of a passage with nodes that minimise the functional.
 
-    If `metric` is given, with its target sizes. The two end nodes of the cut and nodes in `held` (n,) do not
-    move.
+    If `metric` is given, its cell sizes are targets. The two end nodes of the cut, and the nodes in the mask
+    `held` (n,), do not move.
     """
     mesh = layout.mesh
     ends = (mesh.places.loop >= 0) & mesh.tied
@@ -157,7 +157,7 @@ def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
 
 
 def row_steps(first: float, length: float, largest: float) -> Floats:
-    """Return distances from 0 to a length, of cells that grow from `first` to about `largest`."""
+    """Return distances of nodes from 0 to `length`; cells grow from `first` to about `largest`."""
     cells = [min(first * ROW_GROWTH**0.5, length)]
     total = cells[0]
     while total < length - 0.5 * cells[-1]:
@@ -171,7 +171,7 @@ def row_steps(first: float, length: float, largest: float) -> Floats:
 def counts_of(
     cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
 ) -> tuple[Indices, int, SizeMetric]:
-    """Return coarse counts (chords,), the factor to the final counts, and the target sizes."""
+    """Return the coarse number of cells of each chord, the factor to the final numbers, and target sizes."""
     sizes = cascade.metric
     wanted = WantedCounts(chords, sizes)
     if cell_size is not None:
@@ -197,7 +197,9 @@ def attached_cells(
     cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric, layers: int | None = None,
     longest: Mapping[int, float] | None = None,
 ) -> int:  # fmt: skip
-    """Return the cells of the layers and of the rows to inlet and outlet.
+    """Return the number of cells in the layers and in the rows to inlet and outlet.
+
+    `counts` (chords,) are the numbers of cells of the chords.
 
     `layers` replaces the number of layers of the cascade. `longest` are lengths of the rows by the number of
     their loop, which replace those of the cascade.

@@ -94,7 +94,10 @@ class Passage:
         return centre + np.array(axial)[:, None] * self.axis + np.array(along)[:, None] * self.pitch
 
     def zeta(self, points: Floats) -> Complexes:
-        """Return ζ (n,) of points (n, 2), in which the pitch is iπ and the axis is real."""
+        """Return the complex coordinate ζ (n,) of points (n, 2).
+
+        In ζ the pitch is iπ, and the axial direction is real.
+        """
         return np.asarray(times(1j * np.pi, (complex_of(points) - self.centre)) / self.period)
 
     def of_zeta(self, zeta: Complexes) -> Floats:
@@ -152,9 +155,9 @@ def _crossings(polygon: Floats, x: float) -> Floats:
 
 
 def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
-    """Return the layout with `rows` attached, around a `wall`, as a domain with periodic sides.
+    """Return the layout with `rows` attached around a `wall`; its domain has periodic sides.
 
-    `cut` (k,) are the nodes of the lower side of its cut.
+    `cut` (k,) are the nodes on the lower side of the layout's cut, from inlet to outlet.
     """
     mesh = layout.mesh
     count = len(mesh.nodes)

@@ -36,7 +36,10 @@ _LEAST = 1e-9  # of the slit: by how much the potential rises from point to poin
 
 @dataclass(frozen=True, eq=False)
 class PassageFlow:
-    """A blade as a slit, and as the edges of a strip.
+    """The flow past a cascade, which maps a blade to a slit, and further to the edges of a strip.
+
+    ζ is the position, scaled so that the pitch is iπ. G is the complex potential, in which the blade is a
+    slit from -h to h. σ is the coordinate in the strip.
 
     Parameters
     ----------

@@ -42,7 +42,7 @@ _FEET = 1e3
 
 
 def template(passage: Passage, *, at_corners: bool) -> Layout:
-    """Return the layout of a passage; nodes may be moved to the blade's corners."""
+    """Return the layout of a passage; if `at_corners`, some nodes are moved to the blade's corners."""
     flow = PassageFlow.of(passage.zeta(passage.front.curve.points))
     pieces, angles = _pieces(flow, passage)
     potential, blocks = _joined_pieces(pieces)

@@ -52,8 +52,8 @@ _SLACK = 0.02  # radians by which such corners may become worse
 def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines, following: Indices = NO_PAIRS) -> QuadMesh:
     """Return the mesh with nodes moved where edges along its grid lines grow too fast.
 
-    `held` (n,) nodes are fixed. `following` (k, 2) are nodes on loops, and each with one that moves with it,
-    so that first cells keep their heights.
+    The nodes in the mask `held` (n,) are fixed. `following` (k, 2) are pairs of a node on a loop and a node
+    that moves with it, so that first cells keep their heights.
 
     Other nodes on loops slide along them, except corners and periodic sides. Where a limit cannot be
     reached, it is exceeded as little as good angles permit.
@@ -193,7 +193,7 @@ class _Patch:
         )  # fmt: skip
 
     def evened(self, z: Complexes, weight: float) -> tuple[Complexes, float]:
-        """Return the nodes after some steps, and the last weight of what exceeds the limit."""
+        """Return the nodes after some steps, and the last weight of the penalty for too large growth."""
         z, part = z.copy(), self.part[self.nodes]
         for _ in range(STEPS):
             weight = min(weight * RISE, MOST_WEIGHT)

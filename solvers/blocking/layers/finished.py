@@ -26,8 +26,8 @@ NEAR_FOLDS = 5
 def finished(layout: Layout, settings: LayerSettings, held: Bools, following: Indices = NO_PAIRS) -> Layout:
     """Return the layout with limited growth of its cells.
 
-    Nodes `held` (n,) are fixed; `following` (k, 2) are nodes on walls and others that move with them.
-    Raises NoValidGridError, with the place: cells are folded.
+    The nodes in the mask `held` (n,) are fixed; `following` (k, 2) are pairs of a node on a wall and a node
+    that moves with it. Raises NoValidGridError, with the place: cells are folded.
     """
     inner = held.copy()
     for number in layout.layers:
@@ -49,7 +49,8 @@ def evened(
 ) -> Layout:
     """Return the layout with cells whose growth is limited, as far as the first cells permit it.
 
-    Nodes `held` (n,) are fixed; `following` (k, 2) are nodes on walls and others that move with them.
+    The nodes in the mask `held` (n,) are fixed; `following` (k, 2) are pairs of a node on a wall and a node
+    that moves with it.
     """
     places = layout.mesh.places
     held = np.zeros(len(places.loop), dtype=bool) if held is None else held.copy()

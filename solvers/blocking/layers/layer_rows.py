@@ -20,7 +20,9 @@ _WINDOW = 4  # columns to either side over which lengths along fronts are averag
 
 
 def ring_metric(ring: Ring, settings: LayerSettings, factors: Floats | float = 1.0) -> SizeMetric:
-    """Return the cell sizes that the front of a ring requires: those of its columns and its last layer.
+    """Return the cell sizes that the front (outer edge) of a ring of layers requires.
+
+    They follow from the distances of its columns and the heights of its last layer.
 
     First cells have the height of the settings times `factors` (n,) at the columns.
     """
@@ -48,7 +50,9 @@ def ring_rows(
     mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats,
     factors: Callable[[Floats], Floats] | None = None,
 ) -> Rows:  # fmt: skip
-    """Return the layers below the nodes of a front; `inner` (k,) are the heights of the cells beyond it.
+    """Return the layers between a wall and the nodes of a front, the outer edge of the layers.
+
+    `inner` (k,) are the heights of the cells beyond the front.
 
     First cells have the height of the settings times `factors`, a function of arc lengths (k,) of the wall,
     if given.

@@ -68,8 +68,8 @@ def layered(
     """Return a fine layout of about `cells` cells, with layers at loops of a domain and some stretches.
 
     Without `cells`, edges away from walls are at most `cell_size` long. `layout`, if given, is used instead
-    of a decomposition; it belongs to a similar domain, outside of rings like these or as a whole. Raises
-    InputError; SolverError; NoValidGridError: folded cells.
+    of a decomposition. It belongs to a similar domain, and fills either the whole domain or the part of it
+    outside of such layers. Raises InputError; SolverError; NoValidGridError: folded cells.
     """
     timings = {} if timings is None else timings
     sheets = () if layout else tuple(k for k in loops if k and has_sharp_edge(domain.loops[k]))

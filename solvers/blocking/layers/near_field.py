@@ -76,7 +76,10 @@ class NearField:
         return cls(circle, centre, NEAR * reach, outer, angles, radii, arcs)
 
     def cells(self, first: float, settings: LayerSettings) -> int:
-        """Return the number of cells in a row to the outer loop."""
+        """Return the number of cells along a line from the circle to the outer loop.
+
+        `first` is the height of the cells inside the circle.
+        """
         growth, multiple = settings.below(GROWTH), settings.multiple
         distance = float(self.radii.mean()) - self.radius
         cells = max(2, math.ceil(math.log1p(distance / first * (growth - 1.0)) / math.log(growth)))

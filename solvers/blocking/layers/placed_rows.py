@@ -84,8 +84,8 @@ def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings
 def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings, sheets: int) -> tuple[Bools, Indices]:
     """Return a mask (n,) of nodes of rows that stay, and pairs (k, 2) of nodes that move together.
 
-    Those are nodes on walls and the ones of first cells above them; at corners, and in the first `sheets`
-    rows, they stay.
+    A pair is a node on a wall and a node of a first cell above it. At corners, and in the first `sheets`
+    rows, such nodes stay.
     """
     mesh, cells = layout.mesh, settings.constant + 1
     held, pairs = np.zeros(len(mesh.nodes), dtype=bool), []

@@ -123,9 +123,9 @@ def march_ring(
     """Return the ring around a loop of a domain, as thick as `thickness` where there is room.
 
     `first` is the height of first cells, `largest` the length of cells along the wall, all in the domain's
-    unit. The ring is symmetric to those of some mirrors of the domain that take the loop to itself. It is no
-    thicker than `room` (n,) at the columns of the ring `before`, if these are given. Raises
-    InputError: a gap that no layer fits in, or a wall that every march folds at; with the place.
+    unit. The ring is symmetric about those of the `mirrors` that take the loop to itself. It is no thicker
+    than `room` (n,) at the columns of the ring `before`, if these are given. Raises InputError: a gap that no
+    layer fits in, or a wall that every march folds at; with the place.
     """
     loop = domain.loops[number]
     own = [mirror for mirror in mirrors if mirror.loops[number] == number]
@@ -189,7 +189,10 @@ def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
 
 
 def mirrored(ring: Ring, loop: Loop, mirror: Mirror, total: float) -> Ring:
-    """Return the mirror image of a ring, around another loop; `total` is the sum of arc lengths of both."""
+    """Return the mirror image of a ring, which goes around another loop.
+
+    `total` is the sum of the arc lengths of a point and of its mirror image.
+    """
     arcs = _at_corners(loop, np.mod(total - ring.arcs[::-1], loop.length))
     levels = mirror.images(ring.levels[::-1])
     levels[:, 0] = loop.at(arcs)

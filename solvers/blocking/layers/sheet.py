@@ -37,7 +37,8 @@ def wake_of(mesh: QuadMesh, number: int) -> list[int]:
 def with_sheet(mesh: QuadMesh, number: int) -> QuadMesh:
     """Return the mesh with the row inserted at loop `number`.
 
-    The quads of the row are the last of the mesh; each begins at the path and ends at the front.
+    The quads of the row are the last of the mesh; each begins at the loop or its wake and ends at the front,
+    the other side of the row.
     """
     wake = wake_of(mesh, number)
     return with_row(mesh, [*wake[:0:-1], *_edge(mesh, number), *wake])

@@ -163,7 +163,10 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Measures, besides arc length, whose steps should be even along the loops that replace others."""
+        """Measures, besides arc length, whose steps should be even along the new loops of `rest`.
+
+        These loops are the fronts of rings and the circle of `near`.
+        """
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])
@@ -175,7 +178,10 @@ class WallLayers:
         return self.of_ring(number).rows(float(self.rings[number].thickness.max()))
 
     def attached_cells(self, chords: Chords, counts: Indices) -> int:
-        """Return the number of cells in rings and in rows to the far field, for counts (chords,)."""
+        """Return the number of cells in rings and in rows to the far field.
+
+        `counts` (chords,) are the numbers of cells of the chords.
+        """
         along = chords.along_loops(counts).tolist()
         total = sum(along[number] * self.ring_rows(number) for number in self.rings)
         if self.near is not None:

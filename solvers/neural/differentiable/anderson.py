@@ -63,7 +63,10 @@ class _Past:
         return few
 
     def after(self, x: Tensor, change: Tensor) -> Tensor:
-        """Return the values after `x`, whose plain step is `change`: where its linear part is least."""
+        """Return the values after `x`, at which a linear model of the steps predicts the smallest step.
+
+        `change` is the plain step from `x`. The model is fitted to the last steps.
+        """
         if self._count:
             self._add(x, change)
         self._count, self._x, self._change = self._count + 1, x, change

@@ -129,7 +129,10 @@ class _Slope:
         self._second = [fields.scale * part for part in (fields.alpha, -2.0 * fields.beta, fields.gamma)]
 
     def transposed(self, share: Tensor, members: Tensor) -> Tensor:
-        """Return the transposed derivative, of some `members`, times `share` (m, LEVELS - 2, modes)."""
+        """Return the product of the transposed derivative of a step with `share` (m, LEVELS - 2, modes).
+
+        `members` (m,) are the indices of the strips.
+        """
         grid, fields = across(), self._fields
         filtered = _product(grid.vectors.T, share) * fields.smooth[members]
         r = strip.to_columns(_product(grid.inverse.T, filtered), torch)

@@ -146,7 +146,10 @@ class _Linearised:
         return self._inverse.solve(change).flatten(1)
 
     def transposed(self, rows: Tensor) -> Tensor:
-        """Return the transposed derivative, by all nodes, times `rows` (batch, 2, mi, mj)."""
+        """Return the product of the residual's transposed derivative with `rows` (batch, 2, mi, mj).
+
+        The derivative is that with respect to all nodes.
+        """
         xi, eta, bend, twist, rise = self._here
         rows = self._inverse.solve_transposed(rows)
         by_alpha, by_beta, by_gamma = 2.0 * _dot(rows, bend), -2.0 * _dot(rows, twist), 2.0 * _dot(rows, rise)

@@ -40,7 +40,7 @@ class Plan:
     def kept(self, count: int, held_out: int, what: str) -> int:
         """Return the number of the `count` shapes, called `what` in messages, that remain for training.
 
-        Raises InputError: none held out, or fewer than one batch to train on.
+        Raises InputError: no shape is held out, or less than one batch remains for training.
         """
         if held_out < 1 or count < held_out + self.batch:
             needed = max(held_out, 1) + self.batch

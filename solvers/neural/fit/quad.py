@@ -53,7 +53,9 @@ class QuadUNetSizes:
 
 
 class QuadTask(Task):
-    """Training of the quad network on edges of both target grids, and later on the angles of its output too.
+    """Training of the quad network on the edges of both target grids.
+
+    In later steps the loss also contains the angles of the network's grids.
 
     `training`, `held_out`: domains; `sizes`: of the network; `steps`: their number in the whole run;
     `device`: to compute on; `weights`: of the parts of the loss, by name; `initial`: initial weights of the

@@ -40,7 +40,9 @@ class StripSizes:
 
 
 class StripTask(Task):
-    """Training of the strip network on solved strips and their mirror images, small residuals weighted up.
+    """Training of the strip network on solved strips and their mirror images.
+
+    Strips with small residuals get larger weights.
 
     `training`, `held_out`: strips; `sizes`: of the network; `device`: to compute on.
     """

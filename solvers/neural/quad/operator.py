@@ -150,8 +150,9 @@ def canonical(boundary: Boundary) -> Canonical:
     Descent amplifies rounding errors: thirty steps around a corner turn 1e-16 into 1e-3. The steps must be
     bitwise the same for a domain that is translated, rotated, scaled, mirrored, or has its sides relabelled.
     The edges are therefore transformed to a frame that they define, and rounded in this frame to 1e-9 of
-    their size. Of an O boundary the cut runs from 0 to 1, and it is mirrored if the mirror image comes first;
-    of a quad the corners give origin and unit, and the relabelling whose bytes come first is taken.
+    their size. In the frame of an O boundary the cut runs from 0 to 1. Of this boundary and its mirror image,
+    the one whose bytes come first is taken. In the frame of a quad the corners give origin and unit. Of its
+    relabellings, the one whose bytes come first is taken.
     """
     return _of_body(boundary) if boundary.periodic else _of_quad(boundary)
 

@@ -78,8 +78,8 @@ def factors(strips: Any, xp: Any = np) -> Any:
 
 
 def rolled(strips: Any, centres: Any = 0.0, xp: Any = np) -> Any:
-    """Return the O grids (batch, m + 1, n) whose `strips` Z, of the same shape, these are.
+    """Return the O grids (batch, m + 1, n) of `strips` Z of the same shape: the inverse of `unrolled`.
 
-    `centres` (batch, 1, 1), complex, are those of the logarithms. The inverse of `unrolled`.
+    `centres` (batch, 1, 1) are the points, as complex numbers, around which the grids wind.
     """
     return functions_of(xp).exp(times(-1j, strips)) + centres

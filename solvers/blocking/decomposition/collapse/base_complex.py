@@ -23,7 +23,11 @@ from meshonet.kernels._native import split_quads
 
 @dataclass(frozen=True, eq=False)
 class BaseComplex:
-    """Blocks of a quad mesh, the edges that bound them, and the chords."""
+    """Blocks of a quad mesh, the edges that bound them, and the chords.
+
+    A chord is a set of sides of blocks, each opposite the next one in a block; they all have the same number
+    of cells.
+    """
 
     mesh: QuadMesh
     blocks: tuple[Indices, ...]

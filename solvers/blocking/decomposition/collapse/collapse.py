@@ -40,11 +40,13 @@ PER_TRIAL, PER_OPTIMUM = 3, 20
 
 
 def simplify(mesh: QuadMesh, *, price: float, sizes: SizeMetric | None) -> BaseComplex:
-    """Return the blocks of an optimised quad mesh after collapsing chords, the narrowest first.
+    """Return the blocks of an optimised quad mesh after collapsing chords (rows of blocks).
+
+    The narrowest chords are collapsed first.
 
     If there are many chords, several are collapsed before the next optimisation. `sizes` are prescribed
-    lengths of edges. `price` is the increase of the mean deviation from 90 degrees that is accepted for one
-    block less.
+    lengths of edges. `price` is the increase of the mean deviation of angles from 90 degrees that is accepted
+    for one block less.
     """
 
     def wanted(mesh: QuadMesh) -> Floats | None:

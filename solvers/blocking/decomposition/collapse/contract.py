@@ -71,7 +71,7 @@ def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
 
 
 def is_conforming(mesh: QuadMesh, many: int = 0) -> bool:
-    """Return whether the quads are a mesh of the domain with 3 to 5, or up to `many`, at inner nodes."""
+    """Return whether the quads are a mesh of the domain with 3 to 5 (or up to `many`) at each inner node."""
     inside = mesh.valence[~mesh.wall_nodes]
     few, many = VALENCES[0], max(VALENCES[1], many)
     return conforms(mesh) and bool(((inside >= few) & (inside <= many)).all())

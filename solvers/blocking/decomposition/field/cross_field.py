@@ -35,7 +35,10 @@ more than 431, with ten times as much 26 more but better angles.
 
 @dataclass(frozen=True, eq=False)
 class CrossField:
-    """A cross field on a surface, and the number of cells that it implies at each vertex."""
+    """A cross field on a surface, and the number of cells that it implies at each vertex.
+
+    A cross consists of four directions at right angles; grid lines follow these directions.
+    """
 
     surface: Triangulation
     walls: WallDirections

@@ -44,9 +44,10 @@ class WallDirections:
 def wall_directions(surface: Triangulation) -> WallDirections:
     """Return directions along the walls of a surface.
 
-    At a corner with the angle alpha and k cells, either wall is rotated by half of k 90 degrees - alpha, less
-    and less away from the corner. The cross at the corner is then the same for both walls, and the number of
-    cells is a boundary condition. Elsewhere the direction is the mean of both edges.
+    At a corner with the angle alpha and k cells, the direction along each of the two walls is rotated by (90
+    k - alpha) / 2, in degrees, and less and less away from the corner. The cross at the corner is then the
+    same for both walls, and the number of cells is a boundary condition. Elsewhere the direction is the mean
+    of both edges.
     """
     triangle, edge = surface.walls
     start = surface.triangles[triangle, edge]

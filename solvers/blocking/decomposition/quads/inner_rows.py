@@ -32,9 +32,9 @@ def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wa
     """Return the mesh with a row of quads inserted on the left of a path of nodes.
 
     The path goes from wall to wall, or is `closed`; it may be a wall. The quads of the row are the last of
-    the mesh; each begins at the path and ends at the front. Where a closed path begins at a corner of one
-    quad, the row crosses itself, and its last quad is at this corner. New nodes are those of the front, or,
-    if it is a row `of_wall`, those of the path.
+    the mesh; each begins at the path and ends at the front, the other side of the row. Where a closed path
+    begins at a corner of one quad, the row crosses itself, and its last quad is at this corner. New nodes are
+    those of the front, or, if it is a row `of_wall`, those of the path.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
     new = list(range(n, n + count))

@@ -29,7 +29,7 @@ CANCELLED, AT_NODE, AT_RAY, AT_WALL, TOO_LONG = range(5)  # how rays end, as in 
 
 @dataclass(frozen=True, eq=False)
 class MotorcycleGraph:
-    """Nodes, and the trails between them.
+    """The nodes of a motorcycle graph, and the trails between them, which become grid lines.
 
     The directions in which lines leave a node are numbered counter-clockwise, one per right angle. At a wall
     they go from 0, along the wall, to `quarters`, back along the wall; inside they are modulo `quarters`.

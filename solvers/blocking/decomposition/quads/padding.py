@@ -66,7 +66,8 @@ def pad(mesh: QuadMesh, loops: Sequence[int]) -> QuadMesh:
 def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
     """Return the mesh with a row of quads along a stretch between two corners with one quad each.
 
-    Its quads are last, each from the wall to the front. If both corners are the same, the row is closed.
+    The quads of the row are the last of the mesh; each begins at the wall and ends at the front, the other
+    side of the row. If both corners are the same, the row is closed.
     """
     number, begin, end = span
     on, length = np.flatnonzero(mesh.places.loop == number), mesh.domain.loops[number].length
@@ -80,7 +81,7 @@ def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
 
 
 def along_wall(mesh: QuadMesh, first: int, last: int) -> list[int]:
-    """Return the nodes of a loop from one to another, or once around."""
+    """Return the nodes of a loop from node `first` to node `last`; if they are the same, once around."""
     after, chain = following(mesh), [first]
     while chain[-1] != last or len(chain) == 1:
         chain.append(int(after[chain[-1]]))

@@ -83,7 +83,11 @@ class _Walls:
         return np.stack([order, after], axis=1)
 
     def recover(self) -> None:
-        """Halve the edges that are not there on the true curve; short ones are made by flipping others."""
+        """Add wall edges that the triangulation lacks.
+
+        Long ones are halved, with the new node on the curve of the wall; short ones are made by flipping
+        edges.
+        """
         lengths = self.domain.lengths
         while True:
             edges = self.edges()

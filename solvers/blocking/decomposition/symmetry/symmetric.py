@@ -68,15 +68,18 @@ def symmetric_blocks(
     blocks, then those of sectors. With two mirrors at right angles, blocks that are symmetric to both are
     tried first, then blocks that are symmetric to one; blocks that are also symmetric to the two diagonal
     mirrors are preferred. If the given blocks are already symmetric, blocks of a part replace them only if
-    they are better and not more. If lengths of edges are prescribed, `unsized` returns the mesh of blocks for
-    edges of equal length, which is used if no other blocks are symmetric.
+    they are better and not more numerous. If lengths of edges are prescribed, `unsized` returns the mesh of
+    blocks for edges of equal length, which is used if no other blocks are symmetric.
     """
     mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
     pair = every[:1] if len(every) % 2 else every[:: max(len(every) // 2, 1)]
     most = score(blocks, False) + worth
 
     def best(ways: Sequence[Way], mirrors: Sequence[Mirror], enough: int = 0) -> BaseComplex | None:
-        """Return the best trial; the first, if there is one among the first few that are `enough`."""
+        """Return the blocks of the best of the `ways`; None if none is about as good as the given blocks.
+
+        If one of the first `enough` ways succeeds, the others are not tried; 0 tries all.
+        """
         least = None
         for number, way in enumerate(ways):
             if least is not None and 0 < enough <= number:
