@@ -101,7 +101,11 @@ class Conversion:
         return source != "-" and format_of(open_source(source), from_format).read_grids is None
 
     def extruder(self, output: str, to_format: str | None) -> Callable[[Path, Iterable[Grid]], None] | None:
-        """Return the function that writes grids made 3D, or None. Raises InputError: a planar format."""
+        """Return a function that extrudes or revolves planar grids and writes them to a file.
+
+        None if grids are neither extruded nor revolved. Raises InputError: the format stores only planar
+        grids.
+        """
         heights, turn = self.heights(), self.turn()
         if not heights and turn is None:
             return None

@@ -22,9 +22,11 @@ _IS_DATASET = re.compile(r"\.(?:h5|hdf5)(?:#[a-z0-9,:]+)?$", re.IGNORECASE)
 
 
 class Numbered(NamedTuple):
-    """An input, the number of its first member among the members of all inputs, and the step between members.
+    """An input with the numbers of its members among the members of all inputs.
 
-    If the number is None, members are counted; a step of 0 stands for a single member.
+    Members are the shapes or grids that an input contains. `first` is the number of the first one; None:
+    members are counted. `step` is the difference of the numbers of successive members; 0: there is a single
+    member.
     """
 
     text: str | InputError
@@ -126,7 +128,10 @@ class Inputs:
         return len(list(islice(self, _BEGINNING)))
 
     def count(self) -> int | None:
-        """Return the number of members of the shard; files count once, datasets by samples; None: a pipe."""
+        """Return the number of members of the shard, None if an input is a pipe.
+
+        A dataset counts as its number of samples, any other file as one.
+        """
         if any(word in ("-", "@-") for word in self.words):
             return None
         return -(-sum(count for _, _, count in self._counted()) // self.shard[1])

@@ -30,7 +30,10 @@ class Table:
 
     @contextmanager
     def located(self) -> Iterator[None]:
-        """Within the ``with`` block, set this table's place before places of errors that do not name it."""
+        """Within the ``with`` block, put the place of this table at the start of the places of errors.
+
+        An error whose place already begins with it is not changed.
+        """
         try:
             yield
         except InputError as error:
@@ -41,7 +44,10 @@ class Table:
 
     @contextmanager
     def in_file_of(self, key: str) -> Iterator[None]:
-        """Within the ``with`` block, name this key in errors of the file that it names."""
+        """Within the ``with`` block, add `key` to error messages.
+
+        The block reads the file that is the value of this key.
+        """
         try:
             yield
         except InputError as error:

@@ -224,7 +224,7 @@ def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tup
 
 
 def line_step(length: Floats, area: Floats, pixels: float) -> int:
-    """Return the step k between drawn lines with which they are 6 pixels apart in half of the coloured area.
+    """Return the step k between drawn lines: in half of the area they are then at least 6 pixels apart.
 
     k is one of 1, 2, 5, 10, 20, 50 ...; `length` and `area` are those of `line_gaps`; `pixels` is the number
     of pixels in a unit of length.

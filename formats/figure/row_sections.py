@@ -43,7 +43,10 @@ _AT_ONCE = 1 << 13
 
 @dataclass(frozen=True, eq=False)
 class RowSections:
-    """Sections of a grid about the axis of its periodic sides, otherwise of a full ring, otherwise x.
+    """Sections of the grid of a blade row, a volume around an axis.
+
+    The axis is that of the rotation between periodic sides; of a grid without periodic sides, that of the
+    full ring; otherwise x.
 
     Raises InputError: a grid that is not a volume with patches `hub` and `shroud`.
     """

@@ -45,9 +45,9 @@ def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
 
 
 def like_others(connection: Connection, motions: list[Motion]) -> Connection:
-    """Return a periodic connection with the nearly equal motion of `motions`.
+    """Return a periodic connection whose motion is replaced by a nearly equal one in `motions`.
 
-    If there is none, its motion is added.
+    If `motions` has none, the connection's motion is added to it.
 
     All periodic sides with the same motion, or its inverse, thus have bitwise the same motion, so that they
     agree where they meet.

@@ -66,7 +66,10 @@ class _Slice(NamedTuple):
 
 
 def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> list[IndexedNodes]:
-    """Return the nodes of all blocks of a file by the rule above; `places` name them in error messages.
+    """Return the nodes of all blocks of a file; `places` name the blocks in error messages.
+
+    All blocks together are taken for a planar grid if they are slices across one coordinate at the same
+    places. Otherwise a block with one plane of nodes is a surface patch, and any other block a volume.
 
     The coordinates x, y[, z] of a block are arrays (n1, n2, n3) of any number type and memory order. They are
     copied once. Raises InputError: a block without cells.

@@ -20,10 +20,10 @@ _ORDERS = {"<": "little", ">": "big"}
 
 
 def candidates(data: memoryview, wanted: Options = frozenset()) -> list[Candidate]:
-    """Return all layouts with exactly the length of the file, including planes only if they are `wanted`.
+    """Return all layouts with exactly the length of the file.
 
-    Fortran records of one plane each are recognised as planes even if these are not wanted. Raises
-    InputError: no layout fits.
+    Layouts whose arrays are stored plane by plane are included only if they are `wanted`, or if each Fortran
+    record contains one plane. Raises InputError: no layout fits.
     """
     fitting: list[Candidate] = []
     tried: list[tuple[int, str]] = []

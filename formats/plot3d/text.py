@@ -22,7 +22,9 @@ _MOST_REPEATED = 4
 
 
 def candidates(data: bytes, wanted: Options = frozenset()) -> list[Candidate]:
-    """Return all layouts with as many numbers as the file, including planes only if they are `wanted`.
+    """Return all layouts with as many numbers as the file.
+
+    Layouts whose arrays are stored plane by plane are included only if they are `wanted`.
 
     Raises InputError: a word that is not a number; no layout fits.
     """

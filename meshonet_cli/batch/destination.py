@@ -51,8 +51,8 @@ class Destination:
 
     `put` is a function that writes to a path, instead of the format's own function for this `kind`. A dataset
     is written in parts of `part_size` inputs; without it the size follows from the approximate number of
-    `nodes` per result. Results have blocks in `space` or none. Raises InputError: an unknown field or
-    extension; a format that cannot be written, or has no parts.
+    `nodes` per result. `space` is the kind of blocks in space of all results, None for planar ones. Raises
+    InputError: an unknown field or extension; a format that cannot be written, or has no parts.
     """
 
     def __init__(

@@ -100,7 +100,7 @@ def _entries(
 def assembly(
     inputs: Inputs, read: Callable[[str], Iterator[Shape]], sampling: Sampling, session: Session
 ) -> Iterator[Item[Shape]]:
-    """Yield the domain formed by the shapes of all inputs; after an error, which is reported, nothing."""
+    """Yield the domain formed by the shapes of all inputs; report an error, and then yield nothing."""
     from meshonet.geometry.shapes.assembly import assembled
 
     label = " + ".join(inputs.words)

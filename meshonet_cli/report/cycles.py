@@ -36,7 +36,9 @@ class Live:
 
 @contextlib.contextmanager
 def followed(session: Session, history: str | None) -> Iterator[Callable[[Report, str], None]]:
-    """Return a context that shows cycles on a terminal; its function writes those of reports to `history`.
+    """Return a context that shows cycles on a terminal, and writes them to the file `history`.
+
+    The context gives a function that must be called with the report of each grid and its output file.
 
     Raises InputError: a file that does not end in ``.csv``, or whose folder does not exist.
     """

@@ -45,7 +45,7 @@ def _grids(
 def reported(
     member: Item[Any], result: Result, criteria: Criteria | None, *, detailed: bool = True
 ) -> tuple[Grid, Report]:
-    """Return the grid of `member`, the command and the verdict in its provenance, and its report.
+    """Return the grid of `member`, with command and verdict in its provenance, and the report of the grid.
 
     A `detailed` report has angles and growth of grid lines in multi-block grids, which only JSON shows.
 

@@ -80,7 +80,10 @@ class Session:
             self.fail(label, source or label, error, repeated=True)
 
     def fail(self, label: str, source: str, error: Exception, *, repeated: bool = False) -> None:
-        """Report a failed member; an error that may be `repeated` for all is reported `SAME_ERRORS` times."""
+        """Report a failed member.
+
+        `repeated`: the same error may occur for all members; it is then reported at most `SAME_ERRORS` times.
+        """
         from meshonet_cli.terminal.summary import MemberRow
 
         self.failed += 1

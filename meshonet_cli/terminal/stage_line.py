@@ -19,7 +19,7 @@ HELD = 1.0  # seconds to wait for a terminal that is held, at the most
 
 
 class StageLine:
-    """Calls `draw` five times per second, from the second second until it is stopped; then calls `clear`."""
+    """Calls `draw` five times per second, from one second after its start until its end, then `clear`."""
 
     def __init__(self, draw: Callable[[], None], clear: Callable[[], None]) -> None:
         self._draw, self._clear = draw, clear
@@ -43,9 +43,10 @@ class StageLine:
             self._clear()
 
     def text(self) -> str:
-        """Return the line.
+        """Return the line: the elapsed time, the name of the stage, and its progress.
 
-        For stages without steps the line has a detail, which is shown alone in the first second.
+        For a stage without steps, `detail` stands in place of the progress. In the first second the line
+        consists of `detail` alone.
         """
         stage, now = self._stage, time.perf_counter()
         spent = now - self._begun

@@ -68,9 +68,9 @@ def histogram(values: Floats, scale: Scale) -> list[int]:
 def worst_places(
     values: Sequence[Floats], metric: Metric, most: int = 10
 ) -> Iterator[tuple[int, tuple[int, ...], float]]:
-    """Yield block, cell and value of the worst cells in descending order, without neighbours of earlier ones.
+    """Yield block, cell and value of the worst cells, beginning with the worst.
 
-    `values` are the cell values of each block.
+    Neighbours of a cell that has been yielded are left out. `values` are the cell values of each block.
     """
     every = np.concatenate([cells.ravel() for cells in values])
     badness = every if metric.worst == "min" else -every
