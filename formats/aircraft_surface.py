@@ -32,7 +32,7 @@ class _Patches:
     names: tuple[str, ...]
 
     def numbers(self, row: Table) -> list[int]:
-        """Return the numbers of the patches that a row chooses by numbers or names, all if it does not."""
+        """Return the numbers of the patches that the table `row` chooses by number or name; default: all."""
         chosen = row.data.get("patches")
         if chosen is None:
             return list(range(len(self.nodes)))

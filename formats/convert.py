@@ -88,7 +88,10 @@ class Conversion:
         return (shape.boundary(sampling) for shape in read_shapes(source, fmt))
 
     def of_boundaries(self, source: str, output: str, from_format: str | None, to_format: str | None) -> bool:
-        """Return whether boundaries are written: no change needs grids, and a format has no grids."""
+        """Return whether boundaries are written in place of grids.
+
+        They are if no change needs grids, and the input or the output has a format without grids.
+        """
         changed = self.swap or self.coarsen > 1 or self.copies != 1 or self.scale != 1.0
         if changed or self.heights() or self.turn():
             return False

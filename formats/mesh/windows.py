@@ -42,7 +42,8 @@ class Face(NamedTuple):
 class Pair(NamedTuple):
     """Two connected ranges of faces, and the name of the connection in the file.
 
-    For each index of the own block, `partner` is the donor's index along it.
+    `own` and `donor` are ranges in two blocks. For each of the three indices of the first block, `partner` is
+    the index of the donor's block that runs along the same lines.
     """
 
     own: FaceWindow

@@ -53,9 +53,9 @@ class Connection:
         return (self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range)
 
     def pairs(self, values: Sequence[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return views (n, 1) or (n, m, 1) of `values`, one array per block, at the side and at the donor.
+        """Return the `values` at the nodes of the side and of the donor, as two views (n, 1) or (n, m, 1).
 
-        Both views have the order of the side.
+        `values` has one array per block. Both views have the order of the side.
         """
 
         def face(block: int, side: Side) -> NDArray[Any]:

@@ -16,7 +16,7 @@ EQUAL = 1e-10  # in units of the wall's extent: nodes closer than this are mirro
 def farthest(wall: Complexes) -> tuple[int, int]:
     """Return the first and the last index of the nodes of `wall` (n,) that are farthest from node 0.
 
-    Distances count as equal to rounding.
+    Distances that differ only by rounding count as equal.
     """
     reach = modulus(wall - wall[0])
     ends = np.flatnonzero(reach > (1.0 - 1e-12) * reach.max())

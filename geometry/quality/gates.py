@@ -173,7 +173,7 @@ VERDICTS = ("pass", "warn", "fail", "error")
 
 
 def verdict_word(verdict: str) -> str:
-    """Return a verdict for users: the word of JSON, a failure in capitals.
+    """Return a verdict as it is shown to users: as in JSON, but a failure in capitals.
 
     >>> verdict_word("warn"), verdict_word("fail")
     ('warn', 'FAIL')

@@ -135,7 +135,10 @@ def most_of(extremes: Iterable[Extreme | None]) -> Extreme | None:
 
 
 def beyond_seam(grid: Grid) -> Floats:
-    """Return the nodes (ni + 1, nj, 2) of an O grid, with column 1 repeated at its end; others unchanged."""
+    """Return the nodes (ni + 1, nj, 2) of an O grid, whose column 1 is repeated at the end.
+
+    The nodes of other grids are returned unchanged.
+    """
     return np.concatenate([grid.nodes, grid.nodes[1:2]]) if grid.periodic else grid.nodes
 
 

@@ -147,9 +147,9 @@ class Channel:
         channel_nodes(self._tables, values, ids, space)
 
     def lengthen(self, begin: Floats, end: Floats, sizes: Floats) -> None:
-        """Move the ends of lines so that their lengths in space are `sizes` (...), in place.
+        """Move the points `end` (..., 3) in place to the distances `sizes` (...) from the points `begin`.
 
-        `begin` and `end` (..., 3) are s, theta, h of both ends.
+        Both are given by s, theta, h; the distances are those in space.
         """
         lengthen_cells(self._tables, begin.reshape(-1, 3), sizes.reshape(-1), end.reshape(-1, 3))
 

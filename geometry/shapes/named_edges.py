@@ -64,7 +64,9 @@ class Labelled:
 
 
 def runs(side: Side, names: Sequence[str], walls: Sequence[str] = ()) -> list[Patch]:
-    """Return the patches of a side whose cells have these `names`; a cell without one takes that of the side.
+    """Return the patches of a side whose cells have these `names`.
+
+    A cell without a name gets the name of the side.
 
     Patches with names in `walls` are walls unless the name suggests another kind.
 

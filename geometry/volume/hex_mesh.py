@@ -131,7 +131,10 @@ def second_layer(values: AnyArray, side: Side) -> AnyArray:
 def exchange(
     connections: Sequence[Connection], outside: FaceValues, inside: FaceValues
 ) -> None:  # fmt: skip
-    """Copy the values `inside` of each side of the connections to the layer `outside` of the other side."""
+    """Copy the values in the layer inside each side of the connections to the layer outside the other side.
+
+    The functions `inside` and `outside` return views of these layers, given a block and a side.
+    """
     for each in connections:
         own_out, donor_out = each.nodes(lambda block, side: outside(block, side)[..., None])
         own_in, donor_in = each.nodes(lambda block, side: inside(block, side)[..., None])

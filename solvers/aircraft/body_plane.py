@@ -46,8 +46,9 @@ class BodyEnd:
     ----------
     theta : (n,) angles of the lines that leave the pole.
     core : core that replaces the pole, in the plane with the polar coordinates s, theta.
-    at, step : s at which the rows around the core end, and the last step of s there.
-    cells : number of cells from there to the collar.
+    at : s at which the rows of cells around the core end.
+    step : the last step of s in these rows.
+    cells : number of cells from the rows around the core to the next collar.
     """
 
     theta: Floats

@@ -63,7 +63,11 @@ class Direction:
 
     @cached_property
     def transfer(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """Weights of interpolation, right (n,), and of restriction, before, at and after (coarse n,).
+        """Weights of interpolation and of restriction, four arrays.
+
+        The first (n,) is the weight of the coarse node to the right of each fine node, 0 at nodes that both
+        grids have. The others (coarse n,) are the weights of the fine nodes before, at and after each coarse
+        node.
 
         Interpolation is linear; restriction is its transpose, scaled by the dual lengths of nodes, so that a
         constant residual is preserved.

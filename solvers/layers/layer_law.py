@@ -19,9 +19,9 @@ def layer_arcs(
     """Return distances (k, cells + 1) from 0 to `length` (k,) of cells that start at the wall.
 
     The first `constant` cells have the height `first`, a number or (k,). The logarithm of the others is a
-    quadratic function of their index. It ends at about `last` (k,), or at the value for a constant ratio if
-    that is infinite. Neighbouring cells grow by at most `growth`, or by `steeper` more, in logarithms, than
-    with a constant ratio. They do not shrink.
+    quadratic function of their index. It ends at about `last` (k,), or, where `last` is infinite, at the
+    value for a constant ratio. Neighbouring cells grow by at most `growth`, or by `steeper` more, in
+    logarithms, than with a constant ratio. They do not shrink.
     """
     rows = cells - constant + 1  # the last constant cell and those that grow
     first = np.broadcast_to(np.asarray(first, dtype=np.float64), length.shape)

@@ -117,7 +117,10 @@ class Chords:
         return np.array([np.hypot(*np.diff(nodes[edge], axis=0).T).sum() for edge in self.edges])
 
     def arcs(self, edge: int) -> Floats:
-        """Return the arc lengths (n,) of the nodes of a wall edge, monotonic without a jump."""
+        """Return the arc lengths (n,) of the nodes of a wall edge.
+
+        They are monotonic: they do not jump at the first point of the loop.
+        """
         nodes, places = self.edges[edge], self.layout.mesh.places
         length = self.layout.mesh.domain.loops[places.loop[nodes[0]]].length
         step = np.diff(places.arc[nodes])

@@ -66,7 +66,10 @@ def arcs_of(steps: Floats) -> Floats:
 
 
 def with_first(steps: Floats, first: Floats) -> Floats:
-    """Return steps (k, m) with equal sums whose first ones are `first` (k,); factors change gradually."""
+    """Return `steps` (k, m), scaled so that the first step of each line is `first` (k,).
+
+    The factors change gradually along a line; the sum of its steps stays the same.
+    """
     t = np.linspace(0.0, 1.0, steps.shape[1])
     begin = steps * exp(log(first[:, None] / steps[:, :1]) * (1.0 - t) ** 2)
     total = steps.sum(axis=1)

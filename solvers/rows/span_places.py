@@ -83,7 +83,7 @@ class SpanPlaces:
 
 
 def at_corners(places: Floats, corners: Floats) -> Floats:
-    """Return places u (k,), the nearest one to each corner moved to the corner's u, one of `corners` (c,)."""
+    """Return `places` u (k,), in which the place nearest to each of the `corners` u (c,) is moved to it."""
     out = places.copy()
     out[corner_nodes(places, corners)] = corners
     return out

@@ -158,7 +158,10 @@ def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
 
 
 def thin_heights(mesh: QuadMesh) -> Bools:
-    """Return for each edge (e,) whether it leaves the boundary at a cell that is thin in its direction."""
+    """Return a mask (e,) of the edges that lead from the boundary across a thin cell.
+
+    Such a cell is `THIN`, and short in the direction of the edge.
+    """
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     ratio = mesh.aspects(mesh.edge_lengths)[cell]
     thin = np.where(side % 2 == 0, ratio < 1.0 / THIN, ratio > THIN)

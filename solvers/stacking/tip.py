@@ -54,7 +54,10 @@ class Cap:
     bulge: float = 1.0
 
     def cells(self, nodes: int) -> int:
-        """Return the number of cells of ring and core for `nodes` around a section; one is repeated."""
+        """Return the number of cells of ring and core, for `nodes` nodes around a section.
+
+        The repeated first node is counted among the `nodes`.
+        """
         return (nodes - 1) * self.rows + (nodes // 2 - 2 * self.short) * 2 * self.short
 
     def patches(self, loop: Floats) -> tuple[Floats, Floats]:

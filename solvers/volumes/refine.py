@@ -19,7 +19,9 @@ from meshonet.solvers.volumes.tfi import Laws, Spline, interpolate, uniform_laws
 
 
 def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws: Laws) -> Floats:
-    """Return nodes (3, ni, nj, nk) inside `faces` at the parameters `laws`, four equal ones per direction.
+    """Return nodes (3, ni, nj, nk) inside `faces` at the parameters `laws`.
+
+    The four laws of each direction must be equal.
 
     `coarse` (3, mi, mj, mk) are the nodes inside `coarse_faces`, with equal steps in the same parameters.
     """

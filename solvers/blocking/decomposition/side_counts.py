@@ -172,9 +172,9 @@ def _alike(chords: Chords) -> list[Row]:
 
 
 def lacking_side(layout: Layout) -> Indices | None:
-    """Return the nodes along a periodic side that has fewer cells than its partner for any counts.
+    """Return the nodes along a periodic side that has fewer cells than its partner, whatever the counts.
 
-    None if there is none.
+    None if there is no such side. Counts are the numbers of cells of the chords.
     """
     if not layout.mesh.domain.periodic:
         return None

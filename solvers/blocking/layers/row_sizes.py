@@ -96,7 +96,10 @@ class RowSizes:
         return edge + SPREAD * away
 
     def rows(self, scale: float, settings: LayerSettings) -> int:
-        """Return the approximate number of layers of a wall with some `settings`."""
+        """Return the approximate number of layers where the first-cell height is that of `settings`.
+
+        `scale` is a factor on the cell lengths along the wall.
+        """
         on = self.on & (self.first == settings.first)
         return settings.rows(float(self.thickness(scale, settings)[on if on.any() else self.on].max()))
 

@@ -48,7 +48,7 @@ class WallRows:
     back: Bools
 
     def of_chords(self, chords: Chords) -> Indices:
-        """Return the row (chords,) that the edges of each chord cross, -1 for none."""
+        """Return for each chord the number (chords,) of the row that its edges cross, -1 for none."""
         row = np.full(chords.count, -1, dtype=np.intp)
         row[chords.chord[chords.sides[:, 2]]] = self.across[:, 0]
         row[chords.chord[chords.sides[:, 0]]] = self.across[:, 1]

@@ -66,9 +66,10 @@ def _first_of_strip(name: str, shape: tuple[int, ...], shapes: dict[str, tuple[i
 class QuadUNet(NamedParameters, UNet[Tensor]):
     """The quad network, from features of a grid to displacements of its nodes.
 
-    `widths` are counts of sets of eight channels on each level, the finest first, each coarser by 2; `blocks`
-    counts of residual blocks on each level, before and after the coarser ones; `around` stands for O grids,
-    periodic along xi.
+    The network has several levels; each has half as many nodes per direction as the one before. `widths` are
+    the numbers of channels on each level, in sets of eight, the finest level first. `blocks` are the numbers
+    of residual blocks on each level, both on the way to coarser levels and on the way back. `around` says
+    that grids are O grids, periodic along xi.
     """
 
     def __init__(self, widths: Sequence[int], blocks: Sequence[int], around: bool = False) -> None:
@@ -84,8 +85,8 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
     def forward(self, features: Tensor) -> Tensor:
         """Return displacements (batch, heads, m, n), complex, for `features` (batch, m, n, FEATURES).
 
-        They are zero on the boundary. m is n, or around a body divisible by 2 for each level but the
-        coarsest.
+        They are zero on the boundary. In four-sided domains m equals n. Around bodies m must be divisible by
+        2 as many times as there are levels below the finest.
         """
         answer = self.through(features.movedim(-1, 1), self.counts)
         rim = torch.tensor(

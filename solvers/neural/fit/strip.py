@@ -68,6 +68,8 @@ class StripTask(Task):
     def validate(self) -> dict[str, float]:
         """Return quantiles, over the held-out strips, of the `distance` between predicted and exact R.
 
+        R is the difference of Winslow's solution and the harmonic base.
+
         Keys are ``loss`` (the median), ``p90`` (the 90th percentile) and ``worst`` (the maximum).
         """
         pairs = zip(self.answers(), self.held_out.residual, strict=True)
@@ -83,7 +85,10 @@ class StripTask(Task):
         return list(decode(out.numpy().astype(np.float64), self.basis, self.scale, size))
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
-        """Return quantiles of the distance to R over the held-out strips, with the network and without."""
+        """Return quantiles, over the held-out strips, of the distance to R, with the network and without.
+
+        R is the difference of Winslow's solution and the harmonic base.
+        """
         test, errors = self.held_out, dict[str, list[float]]()
         for wall, far, goal, answer in zip(test.wall, test.far, test.residual, self.answers(), strict=True):
             base = harmonic(wall, far, across().eta)

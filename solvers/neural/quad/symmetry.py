@@ -87,7 +87,10 @@ def table(size: int) -> Integers:
 
 
 def convolution(weight: Any, places: Any, xp: Any) -> Any:
-    """Return the kernel (8 out, 8 in, size, size) of `weight` (out, in, 8, size, size), by its `table`."""
+    """Return the kernel (8 out, 8 in, size, size) of `weight` (out, in, 8, size, size).
+
+    `places` is the result of `table`.
+    """
     out, into, _, size, _ = weight.shape
     spread = weight.reshape(out, into, -1)[:, :, places]
     return xp.moveaxis(spread, 2, 1).reshape(ORDER * out, ORDER * into, size, size)
@@ -99,6 +102,9 @@ def lift(weight: Any, seen: Any) -> Any:
 
 
 def projection(weight: Any, elements: Any, xp: Any) -> Any:
-    """Return the last layer's matrix (2 heads, 8 in) from `weight` (heads, 2, in): a mean over elements."""
+    """Return the last layer's matrix (2 heads, 8 in) from `weight` (heads, 2, in).
+
+    It is a mean over the elements of the symmetry group.
+    """
     back = weight[:, None, :, :, None] * xp.moveaxis(elements, 0, -1)[:, :, None]
     return back.sum(2).reshape(2 * len(weight), -1) / ORDER

@@ -28,9 +28,11 @@ ACCEPTED = 1e-4  # a slower one is still kept below this: the rest is in the hig
 
 @dataclass(frozen=True)
 class Strips:
-    """n strips: modes of F on the walls, `wall` and `far`, and `residual` = Winslow - harmonic.
+    """n strips, the conformal images of domains around bodies, as Fourier modes.
 
-    `wall` and `far` have the shape (n, 2 MODES + 1), `residual` has (n, 2 MODES + 1, LEVELS).
+    `wall` and `far` (n, 2 MODES + 1) are the modes of the position F on the two walls of each strip.
+    `residual` (n, 2 MODES + 1, LEVELS) are the modes of R, the difference of Winslow's solution and the
+    harmonic one.
     """
 
     wall: Complexes
@@ -87,7 +89,9 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
 class StripTargets:
     """Inputs (n, CHANNELS, COLUMNS) and (n, SCALARS); wanted outputs (n, 2 Q, COLUMNS) of unit mean square.
 
-    An output times `scale` gives the coefficients of R / size^2 in `basis` (Q, LEVELS - 2).
+    An output times `scale` gives the coefficients of R / size^2 in `basis` (Q, LEVELS - 2). R is the
+    difference of Winslow's solution and the harmonic one; size is a measure of the walls' deviation from
+    straight lines.
     """
 
     channels: Floats

@@ -50,6 +50,8 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 def decode(coefficients: Any, basis: Any, scale: float, size: Any, xp: Any = np) -> Any:
     """Return the modes (batch, 2 MODES + 1, LEVELS) of R from the network's outputs.
 
+    R is the difference of Winslow's solution and the harmonic base.
+
     `coefficients`: (batch, 2 Q, COLUMNS) real parts, then imaginary parts; `basis`: (Q, LEVELS - 2) functions
     of the inner Chebyshev points; `scale`: of the training targets; `size`: (batch,) from `encode`.
     """

@@ -24,7 +24,10 @@ Span = tuple[int, float, float]
 
 
 def wrong_count(mesh: QuadMesh) -> Bools:
-    """Return a mask (n,) of boundary nodes with a wrong number of quads, which is 2 except at corners."""
+    """Return a mask (n,) of boundary nodes with a wrong number of quads.
+
+    The right number is 2, except at corners of the domain.
+    """
     cells = mesh.places.cells
     return np.asarray(mesh.wall_nodes & (mesh.valence != np.where(cells > 0, cells, 2)))
 
