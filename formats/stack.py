@@ -23,6 +23,7 @@
     z = 3.0
     sweep = 20                 # sweep of the leading edge from the previous section in degrees; or x = 1.09
     dihedral = 5               # dihedral from the previous section in degrees; or y = 0.26
+    nodes = 21                 # along the span from the previous section on; default: as the whole span needs
     cant = 5                   # degrees about the chord line; or "panel": the mean dihedral of both panels
 
 With ``kind = "row"`` it is a row of blades (`meshonet.formats.rows.read`), with ``kind = "aircraft"`` a body

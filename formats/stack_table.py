@@ -9,7 +9,7 @@ from meshonet.formats.registry import is_designation, read_shapes
 from meshonet.formats.source import printable
 from meshonet.formats.toml_table import Table
 from meshonet.geometry.aircraft.fin import Fin
-from meshonet.geometry.sections.section import MOST_CANT, QUARTER, Cant, Section
+from meshonet.geometry.sections.section import MOST_CANT, MOST_NODES, QUARTER, Cant, Section
 from meshonet.geometry.sections.stack import BETWEEN, KINDS, TIPS, Stack
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.outline import Outline
@@ -46,6 +46,16 @@ def stack_options(data: Table, name: str, more: tuple[str, ...]) -> dict[str, An
     }
 
 
+def _nodes(row: Table) -> int | None:
+    """Return the number of nodes of the panel before a section. Raises InputError: no whole number from 2."""
+    if "nodes" not in row.data:
+        return None
+    count = row.number("nodes")
+    if count != int(count) or not 2 <= count <= MOST_NODES:
+        raise row.error("nodes", f"{count:g} nodes", f"use a whole number from 2 to {MOST_NODES}")
+    return int(count)
+
+
 def cant(data: Table, default: Cant) -> Cant:
     """Return the cant in a table: an angle in degrees, or ``panel``. Raises InputError: another value."""
     if "cant" not in data.data or data.data["cant"] == "panel":
@@ -60,7 +70,9 @@ def cant(data: Table, default: Cant) -> Cant:
 def _section(
     row: Table, about: tuple[float, float], turn: Cant, before: list[Section], folder: Path
 ) -> Section:
-    row.only("airfoil", "outline", "chord", "z", "x", "y", "twist", "about", "sweep", "dihedral", "cant")
+    row.only(
+        "airfoil", "outline", "chord", "z", "x", "y", "twist", "about", "sweep", "dihedral", "cant", "nodes"
+    )
     z = row.number("z")
     if before and not z > before[-1].z:
         raise row.error("z", f"{z:g} is not behind {before[-1].z:g}", "give sections in order of z")
@@ -73,6 +85,7 @@ def _section(
         row.number("twist", 0.0),
         row.pair("about", about),
         cant(row, turn),
+        _nodes(row),
     )
 
 

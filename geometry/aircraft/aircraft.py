@@ -97,6 +97,10 @@ def _refuse_no_wing(wing: Stack, at: str) -> None:
         if not isinstance(section.shape, Airfoil):
             problem, place = "a closed curve has no trailing edge", f"{at}.sections[{number}].outline"
             raise InputError(problem, "give an airfoil", place=place)
+    for number, section in enumerate(wing.sections):
+        if section.nodes is not None:
+            problem, place = "levels of an aircraft do not follow panels", f"{at}.sections[{number}].nodes"
+            raise InputError(problem, "leave nodes out", place=place)
     chords = [section.chord for section in wing.sections]
     if min(chords) < _TAPER * wing.chord:
         place = f"{at}.sections[{chords.index(min(chords))}].chord"

@@ -25,6 +25,7 @@ QUARTER = (0.25, 0.0)
 """Default centre of the twist, in chords from the leading edge."""
 Cant: TypeAlias = float | Literal["panel"]
 MOST_CANT = 90.0  # degrees
+MOST_NODES = 10_001  # along the span
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,11 +49,15 @@ class Section:
     cant : float or 'panel', optional
         Angle in degrees by which the section's plane is turned about the line parallel to x through the
         leading edge, positive like dihedral. ``panel``: as the panels beside the section (`Stack.cants`).
+    nodes : int, optional
+        Number of nodes along the span from the previous section to this one, both counted. None: it follows
+        from that of the stack.
 
     Raises
     ------
     InputError
-        A chord that is not positive; a value that is not finite; a cant beyond 90 degrees.
+        A chord that is not positive; a value that is not finite; a cant beyond 90 degrees; fewer than 2
+        nodes.
     """
 
     shape: Airfoil | Outline
@@ -63,6 +68,7 @@ class Section:
     twist: float = 0.0
     about: tuple[float, float] = QUARTER
     cant: Cant = 0.0
+    nodes: int | None = None
 
     def __post_init__(self) -> None:
         values = {name: getattr(self, name) for name in ("chord", "z", "x", "y", "twist")}
@@ -74,6 +80,8 @@ class Section:
         if self.cant != "panel" and not (isinstance(self.cant, int | float) and abs(self.cant) <= MOST_CANT):
             remedy = f"use -{MOST_CANT:g} to {MOST_CANT:g} degrees, or panel"
             raise InputError(f"cant is {self.cant!r}", remedy, place="cant")
+        if self.nodes is not None and not 2 <= self.nodes <= MOST_NODES:
+            raise InputError(f"{self.nodes} nodes", f"use 2 to {MOST_NODES}", place="nodes")
 
     @property
     def frame(self) -> tuple[Floats, float]:

@@ -82,6 +82,9 @@ class Stack:
             if not after.z > before.z:
                 problem = f"z is {after.z:g} behind {before.z:g}"
                 raise InputError(problem, "give sections in order of z", place=f"sections[{k + 1}].z")
+        if self.sections[0].nodes is not None:
+            problem, place = "there is no panel before the first section", "sections[0].nodes"
+            raise InputError(problem, "leave nodes out", place=place)
         self._check_cants()
 
     def _check_cants(self) -> None:
@@ -95,6 +98,17 @@ class Stack:
             if k in flat and section.cant not in (0.0, "panel"):
                 problem = f"{section.cant:g} degrees, and the section lies in a plane of symmetry"
                 raise InputError(problem, "leave it out", place=place)
+
+    @property
+    def panel_cells(self) -> tuple[int | None, ...]:
+        """Number of cells along the span of each panel, None where it is not given."""
+        return tuple(None if each.nodes is None else each.nodes - 1 for each in self.sections[1:])
+
+    @property
+    def span(self) -> int | None:
+        """Number of nodes along the span, if those of all panels are given."""
+        given = [cells for cells in self.panel_cells if cells is not None]
+        return sum(given) + 1 if len(given) == len(self.panel_cells) else None
 
     def with_tip(self, tip: Tip | None) -> Stack:
         """Return the same stack with another tip; None keeps its own.

@@ -28,7 +28,7 @@ from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.section_nodes import around, unit_nodes
-from meshonet.solvers.stacking.wing_surface import span_heights
+from meshonet.solvers.stacking.span_heights import span_heights
 from meshonet.solvers.sweeping import butterfly
 
 _FADE = 4.0
@@ -163,7 +163,7 @@ def _lofted(
     stack: Stack, planes: list[Grid], span: int, ends: tuple[End, End], weight: Floats | None = None
 ) -> Grid:
     """Return the volume between planar grids of the sections, which have unit chord and equal topology."""
-    z = span_heights(stack.z, span, None)
+    z = span_heights(stack.z, span, None, stack.panel_cells)
     nodes = []
     for k, block in enumerate(planes[0].blocks):
         ni, nj = block.counts

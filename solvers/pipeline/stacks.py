@@ -39,7 +39,7 @@ def stack_surface(stack: Stack, request: StackRequest | None = None) -> tuple[Gr
     """
     if stack.kind == "duct":
         raise InputError("a duct has no surface of its own", "leave {surface} out", parameter="surface")
-    request, more = _counted(stack, request or StackRequest())
+    request, more = _counted(stack, _with_panels(stack, request))
     shown = stack if stack.kind == "wing" else replace(stack, tip="open")
     grid, notes = wing_surface(shown, request.surface)
     return grid, (*notes, *more)
@@ -51,7 +51,7 @@ def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
     Raises InputError: parameters that do not suit the stack; NoValidGridError: folded cells, unless these are
     allowed.
     """
-    request = request or StackRequest()
+    request = _with_panels(stack, request)
     seconds: dict[str, float] = {}
     with limited_to(request.threads):
         counted, notes = _counted(stack, request)
@@ -93,6 +93,20 @@ def _rows(solution: Solution) -> int:
 
 def _cells(solution: Solution) -> int:
     return sum(block.cells for block in solution.grid.blocks)
+
+
+def _with_panels(stack: Stack, request: StackRequest | None) -> StackRequest:
+    """Return the request with the nodes along the span that all panels have, if these are given.
+
+    Raises InputError: the request has another number of nodes along the span.
+    """
+    request = request or StackRequest()
+    if stack.span is None:
+        return request
+    if request.span not in (None, stack.span):
+        problem = f"{request.span} nodes, and the panels have {stack.span} nodes along the span"
+        raise InputError(problem, "leave {span} out", parameter="span")
+    return replace(request, span=stack.span)
 
 
 def _counted(stack: Stack, request: StackRequest) -> tuple[StackRequest, tuple[str, ...]]:

@@ -13,9 +13,8 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.elementary import cos, power, product, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.stack import STEEP, Stack
-from meshonet.geometry.spacing.along_curve import on_corners
-from meshonet.geometry.spacing.tanh_law import TanhLaw
 from meshonet.solvers.stacking.section_nodes import BASE_CELLS, GAP, around, unit_nodes
+from meshonet.solvers.stacking.span_heights import span_heights
 from meshonet.solvers.stacking.tip import Cap
 
 DEFAULT_AROUND, DEFAULT_SPAN = 129, 49  # nodes
@@ -29,8 +28,6 @@ REACH = 0.05
 """Largest distance from the tip, in chords of the tip, over which such cells extend."""
 _NEAR = 1e-3
 """Part of the last panel over which the slope of grid lines at the tip is measured."""
-_ROOT_CELL = 1.4
-"""Length of the cell at the root relative to the mean cell along the span."""
 
 
 @dataclass(frozen=True)
@@ -145,10 +142,10 @@ def _lofted(stack: Stack, unit: Floats, ring: Floats | None, nodes: int) -> Floa
     """Return the nodes (n, nodes, 3) around the sections of a wing, whose tip has a ring (n, ., 3)."""
     if ring is None or stack.tip_spacing is not None:
         tip = None if stack.tip_spacing is None else stack.tip_spacing * stack.sections[-1].chord
-        main = stack.lofted(unit, span_heights(stack.z, nodes, tip)).transpose(1, 0, 2)
+        main = stack.lofted(unit, span_heights(stack.z, nodes, tip, stack.panel_cells)).transpose(1, 0, 2)
     else:
         last = _tip_cells(ring) / _slant(stack, unit)
-        z = span_heights(stack.z, nodes, float(last.min()))
+        z = span_heights(stack.z, nodes, float(last.min()), stack.panel_cells)
         panel = int(np.searchsorted(z, stack.z[-2]))
         heights = np.tile(z, (len(last), 1))
         heights[:, panel:] = _with_last(z[panel:], last, REACH * stack.sections[-1].chord)
@@ -181,21 +178,3 @@ def _with_last(z: Floats, last: Floats, reach: float) -> Floats:
     heights = z[0] + np.concatenate([np.zeros((len(last), 1)), np.cumsum(made, axis=1)], axis=1)
     heights[:, -1] = z[-1]
     return np.asarray(heights)
-
-
-def span_heights(sections: Floats, nodes: int, last: float | None) -> Floats:
-    """Return z (nodes,) from the first of the `sections` to the last, with a node at each of them.
-
-    Cells decrease towards the tip to the length `last`; if it is None, cells are nearly equal.
-
-    Raises InputError: more sections than nodes.
-    """
-    cells, span = nodes - 1, float(sections[-1] - sections[0])
-    q = np.linspace(0.0, 1.0, nodes)
-    if last is not None and last < span / cells:
-        q = TanhLaw.fitted(cells, _ROOT_CELL / cells, last / span)(q)
-    away = on_corners(q, (sections[1:-1] - sections[0]) / span)
-    heights = np.asarray(sections[0] + span * away)
-    inner = np.searchsorted(away, (sections[1:-1] - sections[0]) / span)
-    heights[inner], heights[-1] = sections[1:-1], sections[-1]
-    return heights

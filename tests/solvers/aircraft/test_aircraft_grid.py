@@ -289,3 +289,16 @@ def test_first_cells_thicker_than_the_tip_leave_no_thin_ones_in_it() -> None:
     ring = np.asarray(aircraft_grid(aircraft(), request)[0].blocks[7].nodes)[:, :, 0]
     steps = np.linalg.norm(np.diff(ring, axis=1), axis=-1)
     assert (steps / steps.sum(axis=1)[:, None]).min() > 0.02
+
+
+def test_the_tip_of_a_canted_wing_lies_in_the_plane_of_its_section() -> None:
+    jet = aircraft(y=-0.1)
+    assert isinstance(jet.wing, Stack)
+    root, end = jet.wing.sections[0], jet.wing.sections[-1]
+    steep = replace(end, z=end.z + 0.2, y=end.y + 0.2, x=end.x + 0.1, cant=45.0)
+    made = aircraft_grid(replace(jet, wing=replace(jet.wing, sections=(root, end, steep))), COARSE)[0]
+    assert sum(count_folded_solids(block.nodes, BEZIER) for block in made.blocks) == 0
+    normal = np.array([0.0, 1.0, 1.0]) / np.sqrt(2.0)
+    for nodes, _ in wall(made, "tip"):
+        away = (nodes - [steep.x, steep.y, steep.z]) @ normal
+        assert np.abs(away).max() < 1e-9

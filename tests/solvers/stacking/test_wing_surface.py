@@ -1,5 +1,7 @@
 """The surface of a wing: on its sections, closed but for the root, its cells convex and facing outwards."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,8 +11,11 @@ from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.circle import Circle
 from meshonet.geometry.surface.surface import surface_of
+from meshonet.solvers.pipeline.stacks import stack_surface
+from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.section_nodes import around, unit_nodes
-from meshonet.solvers.stacking.wing_surface import WingSurface, span_heights, wing_surface
+from meshonet.solvers.stacking.span_heights import span_heights
+from meshonet.solvers.stacking.wing_surface import WingSurface, wing_surface
 
 SETTINGS = WingSurface(around=81, span=17)
 
@@ -119,6 +124,39 @@ def test_heights_meet_all_sections_and_shrink_to_the_tip():
     assert z[-1] - z[-2] == pytest.approx(0.01, rel=0.1)
     even = span_heights(np.array([0.0, 1.0]), 11, None)
     assert even == pytest.approx(np.linspace(0.0, 1.0, 11))
+
+
+def test_panels_have_the_cells_given_to_them_and_the_others_share_the_rest():
+    sections = np.array([0.0, 5.0, 11.0, 11.5, 12.4])
+    z = span_heights(sections, 81, 1e-3, (24, 20, None, None))
+    at = np.searchsorted(z, sections)
+    assert z[at].tolist() == sections.tolist()
+    assert np.diff(at)[:2].tolist() == [24, 20]
+    assert len(z) == 81
+    steps = np.diff(z)
+    assert (steps > 0).all()
+    assert steps[-1] == pytest.approx(1e-3, rel=1e-6)
+    assert max((steps[1:] / steps[:-1]).max(), (steps[:-1] / steps[1:]).max()) < 1.5
+
+
+def test_nodes_of_all_panels_are_the_nodes_along_the_span():
+    sections = tuple(replace(each, nodes=n) for each, n in zip(stack().sections, (None, 9, 9), strict=True))
+    grid, _ = stack_surface(Stack(sections), StackRequest(around=81))
+    assert grid.blocks[0].counts[1] == 17
+    with pytest.raises(InputError, match="the panels have 17 nodes along the span; leave span out"):
+        stack_surface(Stack(sections), StackRequest(around=81, span=21))
+
+
+def test_a_panel_may_have_one_cell():
+    z = span_heights(np.array([0.0, 1.0, 1.2, 2.0]), 12, None, (None, 1, 3))
+    assert len(z) == 12
+    assert np.searchsorted(z, [1.0, 1.2, 2.0]).tolist() == [7, 8, 11]
+    assert (np.diff(z) > 0).all()
+
+
+def test_more_nodes_of_panels_than_along_the_span_are_refused():
+    with pytest.raises(InputError, match="21 nodes along the span, and panels with 31 of them"):
+        span_heights(np.array([0.0, 1.0, 2.0]), 21, None, (30, None))
 
 
 @pytest.mark.parametrize(

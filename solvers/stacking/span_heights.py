@@ -1,0 +1,98 @@
+"""Heights of nodes along the span of a wing, blade or duct, with a node at each of its sections."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.along_curve import on_corners
+from meshonet.geometry.spacing.tanh_law import TanhLaw
+from meshonet.solvers.rows.span_spacing import smooth_arcs
+
+_ROOT_CELL = 1.4
+"""Length of the cell at the root relative to the mean cell along the span."""
+_EVEN = 1e-6
+"""Smallest fraction by which the largest ratio of cells must fall if a cell is to change its panel."""
+
+
+def span_heights(
+    sections: Floats, nodes: int, last: float | None, panels: Sequence[int | None] = ()
+) -> Floats:
+    """Return z (nodes,) from the first of the `sections` to the last, with a node at each of them.
+
+    Cells decrease towards the tip to the length `last`; if it is None, cells are nearly equal. `panels` are
+    the numbers of cells between sections that are given; the others share the rest, so that neighbouring
+    cells differ little.
+
+    Raises InputError: more sections than nodes; numbers of cells that do not fit on the nodes.
+    """
+    cells, span = nodes - 1, float(sections[-1] - sections[0])
+    q = np.linspace(0.0, 1.0, nodes)
+    if last is not None and last < span / cells:
+        q = TanhLaw.fitted(cells, _ROOT_CELL / cells, last / span)(q)
+    away = on_corners(q, (sections[1:-1] - sections[0]) / span)
+    heights = np.asarray(sections[0] + span * away)
+    inner = np.searchsorted(away, (sections[1:-1] - sections[0]) / span)
+    heights[inner], heights[-1] = sections[1:-1], sections[-1]
+    if all(each is None for each in panels):
+        return heights
+    free = [k for k, each in enumerate(panels) if each is None]
+    split = _cells(np.diff([0, *inner, cells]), panels, free)
+    best, growth = _by_panel(sections, split, last), np.inf
+    while len(free) > 1:  # cells move to where neighbours differ most
+        moved = [_moved(split, a, b) for a in free for b in free if a != b and split[a] > 1]
+        made = [(_growth(heights := _by_panel(sections, each, last)), each, heights) for each in moved]
+        least = min(made, key=lambda each: each[0], default=(np.inf, split, best))
+        if not least[0] < (1.0 - _EVEN) * min(growth, _growth(best)):
+            break
+        growth, split, best = least
+    return best
+
+
+def _moved(cells: list[int], source: int, target: int) -> list[int]:
+    """Return numbers of cells, one fewer in a panel and one more in another."""
+    out = list(cells)
+    out[source], out[target] = out[source] - 1, out[target] + 1
+    return out
+
+
+def _growth(heights: Floats) -> float:
+    """Return the largest ratio of neighbouring cells."""
+    steps = np.diff(heights)
+    ratio = steps[1:] / steps[:-1]
+    return float(np.maximum(ratio, 1.0 / ratio).max())
+
+
+def _cells(own: Indices, panels: Sequence[int | None], free: Sequence[int]) -> list[int]:
+    """Return the numbers of cells of panels; those not given share the rest in proportion to their `own`."""
+    rest = int(own.sum()) - sum(each for each in panels if each is not None)
+    if rest < len(free) or (rest and not free):
+        given = int(own.sum()) - rest
+        problem = f"{int(own.sum()) + 1} nodes along the span, and panels with {given + 1} of them"
+        raise InputError(problem, f"use {given + len(free) + 1} or more", parameter="span")
+    out = [each or 0 for each in panels]
+    for k in free:  # the last one takes what rounding leaves
+        later = [j for j in free if j >= k]
+        share = rest * int(own[k]) / sum(int(own[j]) for j in later)
+        out[k] = min(max(round(share), 1), rest - len(later) + 1)
+        rest -= out[k]
+    return out
+
+
+def _by_panel(sections: Floats, cells: Sequence[int], last: float | None) -> Floats:
+    """Return heights with numbers of `cells` between sections; lengths of cells change smoothly at these."""
+    lengths = np.diff(sections)
+    means = lengths / np.array(cells)
+    ends = np.concatenate([means[:1], np.sqrt(means[1:] * means[:-1]), means[-1:]])
+    if last is not None:
+        ends[-1] = min(last, ends[-1])
+    heights = [sections[:1]]
+    for k, (first, end) in enumerate(pairwise(ends)):
+        if cells[k] > 2:
+            inner = smooth_arcs(lengths[k : k + 1], (first, end), cells[k])[0, 1:-1]
+        else:
+            inner = lengths[k] * np.array([first / (first + end)])[: cells[k] - 1]
+        heights.append(np.append(sections[k] + inner, sections[k + 1]))
+    return np.concatenate(heights)
