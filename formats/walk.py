@@ -49,7 +49,10 @@ def _readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:
 
 
 class Walk:
-    """One walk through inputs, with the counts of files found in folders, archives and lists, and picked."""
+    """One walk through inputs.
+
+    It counts the files found in folders, archives and lists, and those of them that are picked.
+    """
 
     def __init__(self, inputs: Inputs) -> None:
         self._inputs, self._patterns = inputs, list(map(str.lower, inputs.pick))

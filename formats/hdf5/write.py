@@ -193,7 +193,7 @@ def writing(path: Path, kind: Kind) -> Iterator[Writer]:
 def write_boundaries(path: Path, boundaries: Iterable[Boundary], failed: Sequence[Failed] = ()) -> None:
     """Write boundaries of the same size and topology, one at a time.
 
-    `failed`, which may grow while samples are made, are those that could not be made or are left out.
+    `failed` lists samples that could not be made or are left out; it may grow while samples are made.
     """
     _write(path, "meshonet-boundary", boundaries, failed)
 

@@ -162,7 +162,7 @@ def _next_kind(kinds: list[Kind], k: int, step: int) -> Kind:
 
 
 def left_out(lines: list[Line]) -> tuple[str, ...]:
-    """Return a note for each line next to a row that starts with a number but has no second one.
+    """Return a note for each line that starts with one number without a second one and is next to a row.
 
     HTML between rows also gets a note, because rows may be missing in a saved web page.
     """

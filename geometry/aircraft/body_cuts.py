@@ -46,7 +46,7 @@ class BodyCuts:
     x : (n,) positions of the planes, ascending, without nose and tail.
     points : for each plane (k, 2), y and z of the points of the cut from keel to crown.
     nose, tail : x and y of the two ends of the body.
-    notes : sentences about the caps that were added to an end without a point.
+    notes : sentences about the caps that were added to ends that are not points.
     """
 
     x: Floats

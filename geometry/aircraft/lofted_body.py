@@ -158,7 +158,10 @@ class LoftedBody(Body):
         return radius * flatness, radius * (2.0 - flatness), self._middle(x)
 
     def shape(self, s: Floats, theta: Floats) -> Floats:
-        """Return distances from the middle (n,) at arc lengths and angles (n,); see `BodySection.shape`."""
+        """Return the distances (n,) from the middle at arc lengths `s` (n,) and angles `theta` (n,).
+
+        They are measured as in `BodySection.shape`.
+        """
         arcs = self.arcs
         before = np.clip(np.searchsorted(arcs, s, side="right") - 1, 0, len(arcs) - 2)
         h = arcs[before + 1] - arcs[before]

@@ -31,9 +31,9 @@ def lattice_quads(blocks: Sequence[Indices]) -> Indices:
 
 
 def around_body(layout: Layout) -> Layout:
-    """Return the layout of one ring-shaped block with i around the hole and j away from it; others unchanged.
+    """Return the layout of one ring-shaped block with i around the hole and j away from it.
 
-    The block stays right-handed, so i runs clockwise.
+    The block stays right-handed, so i runs clockwise. Other layouts are returned unchanged.
     """
     if len(layout.blocks) != 1:
         return layout

@@ -85,7 +85,7 @@ def faces(grid: Grid) -> FaceMeasures:
 
 
 def worst_faces(grid: Grid, name: str) -> list[Floats]:
-    """Return for each block the largest value of the measure `name` of the faces of each cell.
+    """Return for each block and cell the largest value of the measure `name` of the faces of the cell.
 
     Arrays (ni-1, nj-1[, nk-1]). A face between two cells counts for the first of them, the cell that `faces`
     reports.
@@ -114,9 +114,9 @@ def _of_volume(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
 
 
 def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:
-    """Return the cells (block, i, j) with a face whose non-orthogonality exceeds `angle`, or skewness `skew`.
+    """Return the cells (block, i, j) with a face that exceeds one of two limits.
 
-    `angle` is in degrees.
+    `angle`, in degrees, is the limit of the face's non-orthogonality; `skew` is the limit of its skewness.
     """
     cells: list[tuple[int, int, int]] = []
     for (block, i, j), angles, skews in _of_blocks(grid):

@@ -53,7 +53,7 @@ class Hole:
     ----------
     section : (n, 2) s and theta of the nodes around the section.
     scale : (2,) lengths in space of units of s and theta at the section.
-    zeta : mean zeta of the section, which the level has beside it.
+    zeta : mean zeta of the section; it is also the zeta of the level next to the section.
     within : limits of s and theta for the collar.
     fin : whether this is the section of a fin. Its middle line is the crown, and only half of its collar is
         in the grid.

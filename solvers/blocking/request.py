@@ -46,8 +46,8 @@ class BlockRequest(FirstCell):
     periodic : pairs of sides of the outer boundary, by name, that are translated copies of each other.
     layout : blocks to take, of this domain or of one like it.
     count : numbers of cells along sides of the domain, by their names.
-    refine : how often all cells are halved. `cells`, `cell_size` and `res` say what the coarsest grid of the
-        family has, `first_cell` and `growth` what the finest has, which is the one that is made.
+    refine : how often all cells are halved. `cells`, `cell_size` and `res` apply to the coarsest grid of the
+        family; `first_cell` and `growth` apply to the finest grid, which is the result.
 
     Raises InputError: a value out of its range; parameters that need or exclude each other.
     """

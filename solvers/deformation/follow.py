@@ -215,7 +215,10 @@ class Follow:
         return affine(old[at], there[at], turns)
 
     def along_sides(self, move: Floats, there: Floats) -> Floats:
-        """Return `move` (n, d) without the components normal to straight or flat sliding sides, in place."""
+        """Remove from `move` (n, d), in place, components normal to straight or flat sliding sides.
+
+        The result is `move`.
+        """
         for piece in self.sources.sliding:
             normal = normal_of(self.table, piece, there)
             if normal is not None:
@@ -248,7 +251,10 @@ def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
 
 
 def sliding_notes(follow: Follow, to: Floats) -> tuple[str, ...]:
-    """Return notes about the fixed sides that touch moved walls, whose nodes go to `to` (n, d)."""
+    """Return notes about the fixed sides that touch moved walls.
+
+    `to` (n, d) are the new positions of the moved nodes.
+    """
     notes, table = [], follow.table
     for piece in follow.sources.sliding:
         if (to[piece.numbers] == table.nodes[piece.numbers]).all():

@@ -71,9 +71,10 @@ class GrowthLimit:
 
 
 def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part: Indices) -> Numbers:
-    """Return a step (m,) whose parts are reduced until each of several `values` (p,) decreases, or are 0.
+    """Return a step (m,) with parts that are reduced until the value that depends on each decreases.
 
-    `part` (m,) is the index of the value that depends on each unknown.
+    A part that would have to be reduced too much is 0. `values` returns all values (p,); `part` (m,) is the
+    index of the value that depends on each unknown.
     """
     start = values(at)
     share = np.ones(len(start))

@@ -78,7 +78,8 @@ IN_SPACE = OF_SURFACE | _row("energy")
 def counted(res: Counts | None, options: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields of `Sampling` for counts `res`.
 
-    A single number is the count along xi only if `options` contain a growth ratio, from which rows follow.
+    A single number is the count along xi and eta. If `options` contain a growth ratio, it is the count along
+    xi alone, because the number of rows follows from the growth ratio.
     """
     if isinstance(res, int):
         by_growth = options.get("growth") and any(map(options.get, _OFF_WALLS))

@@ -32,9 +32,9 @@ def refine(
 ) -> Layout:
     """Return the layout with `counts` (chords,) of cells along the edges of each of its `Chords`.
 
-    New nodes of each edge are at `places`, (cells + 1,) fractional indices of its old nodes; without `places`
-    at equal steps. The wall node nearest to a corner of the domain inside an edge is moved to it. Layers are
-    not preserved.
+    `places` has for each edge the positions (cells + 1,) of its new nodes, as fractional indices of the old
+    ones; without `places` they are at equal steps. If a corner of the domain is inside an edge, the new node
+    nearest to the corner is moved to it. Layers are not preserved.
     """
     chords = chords or Chords.of(layout)
     return _Refined(chords, counts, places).layout

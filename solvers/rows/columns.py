@@ -52,9 +52,10 @@ def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
 
 
 def resampled(values: Floats, steps: Floats, new: Floats) -> Floats:
-    """Return values (k, m, 2) along lines with `steps` (k, m - 1), interpolated at other steps.
+    """Return `values` (k, m, 2), given at nodes of lines, interpolated at other nodes of these lines.
 
-    The `new` steps (k, m - 1) have the same sums.
+    `steps` (k, m - 1) are the distances of the given nodes, `new` (k, m - 1) those of the other nodes; both
+    have the same sums.
     """
     arcs = arcs_of(steps)
     return sampled(values, arcs, arcs_of(new))

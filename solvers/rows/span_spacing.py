@@ -173,11 +173,17 @@ class LineArcs:
         return cls(lengths, SpanLines.through(ahead))
 
     def parts(self, spacing: Spacing) -> Floats:
-        """Return the parts (cells + 1, n) of the way, from 0 to 1, at which nodes are for a spacing."""
+        """Return the positions (cells + 1, n) of the nodes on the lines for a `spacing`.
+
+        They are parts of the way along a line, from 0 to 1.
+        """
         return self.parts_at(spacing.at(self.lengths))
 
     def parts_at(self, arcs: Floats) -> Floats:
-        """Return the parts (cells + 1, n) of the way, from 0 to 1, at relative arc lengths (cells + 1, n)."""
+        """Return the parts (cells + 1, n) of the way, 0 to 1, at the relative arc lengths `arcs`.
+
+        `arcs` has the shape (cells + 1, n).
+        """
         parts = np.clip(arcs + self.ahead.at(arcs), 0.0, 1.0)
         parts[0], parts[-1] = 0.0, 1.0
         return parts

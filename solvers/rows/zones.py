@@ -70,7 +70,7 @@ def _sections(zones: Sequence[Zone]) -> float:
 def zones_of(row: Row, first: float, growth: float, cells: int) -> list[Zone]:
     """Return the zones of a row with about `cells` cells, from hub to casing.
 
-    First cells in gaps have the height `first`, or less if a gap is too narrow for `GAP_ROWS` cells of it.
+    First cells in gaps have the height `first`, or less if a gap is too narrow for `GAP_ROWS` such cells.
     """
     channel = row.channel
     parts = PARTS * math.cbrt(cells / PARTS_CELLS)

@@ -63,10 +63,10 @@ class Ring:
         return np.asarray(norms(np.diff(self.levels, axis=1)).sum(axis=1))
 
     def columns(self, places: Floats) -> tuple[Floats, Floats]:
-        """Return the lines (k, m, 2) to arc lengths `places` (k,) of the front, and wall arc lengths (k,).
+        """Return lines (k, m, 2) from the wall to the front, and the arc lengths (k,) of their starts.
 
-        Between columns, cubic interpolation through four of them is used, which does not extend across a
-        corner.
+        The lines end at the arc lengths `places` (k,) of the front. They are interpolated between columns by
+        cubics through four columns, but not across a corner.
         """
         n = len(self.arcs)
         knots = np.append(self.front.curve.knots, self.front.length)

@@ -25,7 +25,10 @@ class WantedCounts:
         self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
 
     def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
-        """Return counts (chords,), multiples of `multiple`, near the geometric mean over the edges."""
+        """Return counts (chords,), multiples of `multiple`, near the target numbers of cells.
+
+        The target of a chord is the geometric mean of the targets of its edges.
+        """
         parts = [self.length / near.length(metric) for near in self.near]
         chords = self.chords
         wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)

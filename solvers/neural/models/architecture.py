@@ -38,7 +38,7 @@ class Architecture:
     def native(self) -> bool:
         """Whether the model can be evaluated only on the nodes of its training grids.
 
-        Splines give other grids.
+        Grids with other nodes are then interpolated by splines.
         """
         return False
 

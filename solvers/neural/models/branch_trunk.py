@@ -81,7 +81,10 @@ class DeepONet(Architecture):
 
 @dataclass(frozen=True)
 class MIONet(DeepONet):
-    """Two branches (of x and y) multiplied, half of whose features serve x, the other half y; one trunk."""
+    """Two branches, one for x and one for y of the sensors, whose features are multiplied; one trunk.
+
+    Half of the features serve the x of the nodes, the other half the y.
+    """
 
     def shapes(self, frame: Frame) -> Shapes:
         branches = _two_branches((self.sensors, *self.hidden, 2 * self.features))

@@ -71,7 +71,11 @@ def _layer_shapes(layers: int, mixing: tuple[int, ...], width: int) -> Shapes:
 
 @dataclass(frozen=True)
 class FNO2D(Architecture):
-    """Two-dimensional Fourier neural operator; its inputs at (xi, eta) are boundary nodes at xi and eta."""
+    """Two-dimensional Fourier neural operator.
+
+    Its inputs at (xi, eta) are the boundary nodes with this xi on south and north, and with this eta on west
+    and east.
+    """
 
     width: int = 12  # channels of the hidden state
     modes: int = 8  # that are mixed, in each direction (of eta positive and negative ones)

@@ -86,7 +86,10 @@ def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
 
 
 def nodes_after(n: int) -> int:
-    """Return the node count per direction of the steps after the network, for a grid of `n` nodes."""
+    """Return the number of nodes per direction with which the steps after the network are made.
+
+    `n` is the number of nodes of the grid along a direction.
+    """
     return min(max(n, LATENT), FINER)
 
 

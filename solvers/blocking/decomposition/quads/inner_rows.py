@@ -113,8 +113,9 @@ def _left_of(
 def corner_row(mesh: QuadMesh, corner: int, farthest: int) -> QuadMesh | None:
     """Return the mesh with a row of quads inserted around a corner of the domain at which one quad meets.
 
-    `corner` is the number of its node. The row is placed as far from the corner as all nodes up to there are
-    regular, but at most `farthest` quads away. Return None if irregular nodes are next to the corner.
+    `corner` is the number of its node. The row is placed as far from the corner as possible: at most
+    `farthest` quads away, and with regular nodes only between the corner and the row. Return None if
+    irregular nodes are next to the corner.
     """
     for size in range(farthest, 0, -1):
         lattice = _lattice(mesh, corner, size)

@@ -59,7 +59,10 @@ def _split(triangulation: Triangulation, triangle: Indices, edge: Indices) -> Tr
 
 
 def join_triangles(triangles: Indices) -> tuple[Indices, Indices]:
-    """Return the triangle (t, 3) across each edge, and the edge's number there, -1 at walls."""
+    """Return the triangle (t, 3) across each edge, and the number (t, 3) of the edge in that triangle.
+
+    Both are -1 at walls.
+    """
     start, stop = triangles.ravel(), triangles[:, NEXT].ravel()
     size = int(triangles.max()) + 1
     key, mate = start * size + stop, stop * size + start
