@@ -132,7 +132,10 @@ def _naming(name: str, only: set[int] | None = None) -> Iterator[None]:
 
 
 def final_name(part: Path) -> str:
-    """Return the name of the finished file for the temporary path `part`, or the name of a finished file."""
+    """Return the name that the file at the temporary path `part` gets when it is finished.
+
+    The name of any other file is returned unchanged.
+    """
     match = _PART.fullmatch(part.name)
     return match["final"] if match else part.name
 

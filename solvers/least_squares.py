@@ -103,7 +103,11 @@ class _Kind:
         )  # fmt: skip
 
     def terms(self, residuals: Residuals, size: int) -> tuple[Floats, Floats]:
-        """Return the products (e,), and sums (l m, n) of slopes times derivatives by each unknown."""
+        """Return the contributions of some residuals to the entries of the matrix and to the right-hand side.
+
+        The first (e,) are weighted products of derivatives. The second (l m, n) are sums, for each unknown,
+        of slopes times derivatives.
+        """
         count, k, m = self.shape
         columns = np.ascontiguousarray(residuals.derivatives.reshape(count, k, m).swapaxes(1, 2))
         weighted = residuals.weight.reshape(count, 1, k) * columns

@@ -150,7 +150,9 @@ def _parts(mappings: Any, index: Path, split: str) -> Iterator[Part]:
 
 
 def write_index(file: Path, index: Path, parts: Sequence[PartFacts]) -> None:
-    """Write the index of `parts` to `file`, which is later renamed to `index`; some parts have samples.
+    """Write the index of `parts` to `file`, which is later renamed to `index`.
+
+    At least one of the parts must have samples.
 
     Raises InputError: the parts differ in size or settings.
     """

@@ -87,7 +87,9 @@ def outer_parts(
 def periodic_pairs(
     grid: Grid, numbers: Sequence[Indices], cells: Sequence[Indices], taken: Iterable[str]
 ) -> list[PeriodicPair]:
-    """Return the pairs of periodic sides of blocks with the given node `numbers` and `cells` numbers.
+    """Return the pairs of periodic sides of a grid.
+
+    `numbers` are the node numbers of each block, `cells` its cell numbers.
 
     Connections with the same motion and the same names form one pair. Unnamed pairs are called periodic1 and
     periodic2 and so on, but never by a name in `taken`.

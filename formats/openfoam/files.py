@@ -49,7 +49,7 @@ def write_mesh(folder: Path, points: Floats, faces: Faces, *, binary: bool) -> N
 
 
 def write_zone(path: Path, name: str, cells: int, *, binary: bool) -> None:
-    """Write a list of zones with a single one, of all cells."""
+    """Write a list of cell zones with a single zone, which contains all `cells` cells."""
     with path.open("wb") as stream:
         stream.write(head("regIOobject", path.name, binary=binary).encode("ascii"))
         entries = "    type            cellZone;\n    cellLabels      List<label>"

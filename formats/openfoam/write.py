@@ -126,7 +126,9 @@ def patches_of(
     grid: Grid, parts: Mapping[str, NamedFaces], pairs: Sequence[PeriodicPair], points: Floats,
     periodic: str = "cyclic",
 ) -> list[CasePatch]:  # fmt: skip
-    """Return name, type and additional entries of the patch of each part; `periodic` sides have this type.
+    """Return name, type and additional entries of the patch of each part.
+
+    `periodic` is the type of patches on periodic sides.
 
     Nodes of periodic sides correspond, so that ``cyclic`` suffices, which copies values from face to face.
     ``cyclicAMI`` interpolates between any two sides.

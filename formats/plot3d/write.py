@@ -59,8 +59,8 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     """Write the blocks of `grids`; planar blocks without z, or with z = 0 if others are three-dimensional.
 
     `options` select the file's index for the third direction of volumes. Connections and boundary conditions
-    are written to a neutral map file next to the file, if there is one grid, or one of several has several
-    blocks.
+    are written to a neutral map file next to the file. With several grids this is done only if one of them
+    has several blocks.
 
     Raises InputError: no grid; several grids in a file without a count; a block that is too large for a
     Fortran record; 2D was requested for a three-dimensional grid.

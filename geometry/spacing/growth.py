@@ -76,10 +76,10 @@ def growing_steps(first: float, length: float, cells: int, constant: int = 1) ->
 
 
 def growth_rate(place: Floats, first: float, length: float, rate: float) -> float:
-    """Return g for which cells of sizes first exp(g place), with `place` (n,) rising from 0, fill `length`.
+    """Return the rate g such that cells of the sizes first · exp(g · place) fill `length`.
 
-    Newton's method starts from a `rate` that must not be below g; it converges because the sum of the sizes
-    is convex in g.
+    `place` (n,) rises from 0. Newton's method starts from a `rate` that must not be below g; it converges
+    because the sum of the sizes is convex in g.
     """
     for _ in range(100):
         sizes = first * exp(rate * place)

@@ -75,7 +75,10 @@ class SectionLoft:
 
 @dataclass(frozen=True, eq=False)
 class FinLoft(SectionLoft):
-    """Lines through the nodes `unit` (sections, n, 2) of half a fin, z >= 0, whose heights are y in space."""
+    """Lines along the span of a fin, through the nodes `unit` (sections, n, 2) of its half z >= 0.
+
+    The span is along y: heights of sections are y in space.
+    """
 
     remedy: str = "give a first section inside the body, with a smaller y, and a last one outside"
 

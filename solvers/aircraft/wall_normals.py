@@ -49,7 +49,7 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
 
 
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
-    """Return `points` (k, p, 3), with the lines of a collar turned at right angles to the span of its wing.
+    """Return `points` (k, p, 3), moved so that the lines of a collar are normal to the span of its wing.
 
     `ring` (n, m) are the column numbers of the collar, `first` is the height of its first cells.
     """

@@ -238,7 +238,7 @@ def _near(moved: Floats, fixed: Floats) -> float:
 
 
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
-    """Return the unit normal (d,) of a side that is straight or flat before and after.
+    """Return the unit normal (d,) of a side that is straight or flat before and after the deformation.
 
     None for other sides.
     """

@@ -48,10 +48,10 @@ class NodeTargets:
 
 
 def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> NodeTargets:
-    """Return the new positions of the nodes of `walls`, new shapes by wall name.
+    """Return the new positions of the nodes of walls.
 
-    A shape without a name belongs to the only wall. A grid or a boundary gives new shapes to all walls with
-    the names of its patches.
+    `walls` are the new shapes by the name of the wall; a shape without a name belongs to the only wall. A
+    grid or a boundary gives new shapes to all walls with the names of its patches.
 
     Raises InputError: a wall that the grid does not have; an unsuitable new shape.
     """

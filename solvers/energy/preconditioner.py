@@ -24,8 +24,8 @@ MODES = 512  # modes along a direction that are kept; finer ones are all divided
 class Descent:
     """Minimisation of the functional over planar nodes (ni, nj, 2), in place; boundary nodes are fixed.
 
-    Around a body (`periodic`) the last row is the first one and moves. `aspect` is a of the functional; None
-    computes it from `nodes`.
+    Around a body (`periodic`) the last row is the first one and moves. `aspect` is the ratio a of the
+    functional; None computes it from `nodes`.
     """
 
     def __init__(

@@ -60,8 +60,8 @@ def optimise(
     than `turning` radians are penalised. The minimisation ends after `iterations`, not including those of
     untangling, or if three consecutive iterations gain less than a hundredth of `tolerance` times the value.
     Cells without free nodes are ignored, but if one of them is folded the mesh is not valid. `weights` are w
-    and β of the functional if there are `targets` or if growth counts. `growth` is the weight of ratios of
-    consecutive edges, and the logarithm from which on these count.
+    and β of the functional if there are `targets` or if growth counts. `growth` has two values: the weight of
+    the ratios of consecutive edges, and the logarithm of a ratio above which it counts.
     """
     problem = problem_of(mesh, held, aspects, targets, turning)
     if problem is None:

@@ -63,7 +63,7 @@ class Measures:
     ----------
     arcs : (m,) positions along the curve, ascending.
     values : (k, m) increasing measures there, linear in between.
-    slack : (k,) factor of the limit, a logarithm, for each measure.
+    slack : (k,) for each measure, the factor by which the limit (a logarithm) is multiplied.
     """
 
     arcs: Floats
@@ -136,7 +136,10 @@ def evened_places(
 
 
 def evened_steps(steps: Floats, limit: float) -> Floats:
-    """Return steps (n,) around a closed curve, with the same sum, that differ by a limited ratio."""
+    """Return `steps` (n,) around a closed curve, changed so that the ratio of neighbours is limited.
+
+    Their sum stays the same. `limit` is the logarithm of the largest ratio.
+    """
     places = np.concatenate([[0.0], np.cumsum(steps)])
     ends = places[[0, -1]]
     fixed = np.arange(len(steps)) == 0

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
             ...
 
         def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
-            """Return a solution for each of the boundaries, which may start from a grid each.
+            """Return a solution for each of the boundaries; `start` may have an initial grid for each.
 
             Raises MeshonetError: one of them cannot be solved; the others are then best solved one by one.
             """

@@ -58,7 +58,10 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square tangent by which lines between `pairs` (p, 2) of places u (k,) lean."""
+        """Return the mean square of the tangent by which lines between `pairs` (p, 2) of places lean.
+
+        The places are `u` (k,).
+        """
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:

@@ -24,8 +24,8 @@ def exact_in_corners(
 
     Parameters
     ----------
-    nodes : in any coordinates.
-    begins : of the lines (..., 3), likewise.
+    nodes : (..., 3) nodes in any coordinates.
+    begins : (..., 3) starts of the two lines to each node, in the same coordinates.
     sizes : lengths of the two lines; the second is an array (...).
     in_space : maps coordinates to x, y, z.
     """

@@ -10,10 +10,11 @@ from meshonet.solvers.sparse import SparsePattern
 
 
 class HarmonicMoves:
-    """Harmonic displacements of the nodes of meshes of the same quads, with the same nodes prescribed.
+    """Harmonic displacements of the nodes of a mesh, of which some are prescribed.
 
-    Neighbours are weighted by the inverse square of their distance, so that small cells keep their form.
-    Nodes with a periodic partner move as the partner does.
+    They can be computed for all meshes with the same quads and the same prescribed nodes. Neighbours are
+    weighted by the inverse square of their distance, so that small cells keep their form. Nodes with a
+    periodic partner move as the partner does.
 
     Parameters
     ----------

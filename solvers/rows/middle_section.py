@@ -36,7 +36,9 @@ at which this ends.
 
 
 def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
-    """Return the coarse blocks of a section, `early` with nodes at corners of the blade from the start.
+    """Return the coarse blocks of a section.
+
+    If `early`, corners of the blade are nodes from the start.
 
     Raises InputError: no room for inlet or outlet. Raises NoValidGridError: cells are folded.
     """

@@ -163,7 +163,10 @@ class SectionPlane:
 
     @cached_property
     def across(self) -> tuple[Floats, Floats]:
-        """1 - u (n,) of the places opposite `ON_SIDE` (n,), and the slant (n,) there (see `ChannelLines`)."""
+        """1 - u (n,) of the places across the channel from `ON_SIDE` (n,), and the slant (n,) there.
+
+        See `ChannelLines`.
+        """
         front, pitch = self.cascade.ring.front, np.array([0.0, self.cascade.pitch[1]])
         one, other = (front.at(self.front_arcs(u)) for u in (ON_SIDE, 1.0 - ON_SIDE))
         away = ((other + pitch - one[:, None]) ** 2).sum(axis=-1)

@@ -33,8 +33,8 @@ class SpanPlaces:
     Parameters
     ----------
     ends : (k,) places u at the hub, and at the casing.
-    gaps : whether the blade ends in a gap at the hub, and at the casing; places there are opposite each
-        other.
+    gaps : whether the blade ends in a gap at the hub, and at the casing; at such an end, places on both sides
+        of the blade are opposite each other.
     """
 
     ends: tuple[Floats, Floats]

@@ -155,7 +155,8 @@ class LineArcs:
     Parameters
     ----------
     lengths : (n,) lengths of the lines.
-    ahead : difference between the part of the way and the relative arc length, as a function of the latter.
+    ahead : difference between the part of the way and the relative arc length, as a function of the relative
+        arc length.
     """
 
     lengths: Floats

@@ -36,7 +36,10 @@ _WIDEST_WEDGE = 50.0  # degrees; a C grid by default needs surfaces that meet at
 
 
 class CrossingError(InputError):
-    """Error if the polygon of the wall nodes crosses itself; too few nodes where the section is thin."""
+    """Error if the polygon of the wall nodes crosses itself.
+
+    There are then too few nodes where the section is thin.
+    """
 
 
 class Airfoil:

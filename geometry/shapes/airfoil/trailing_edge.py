@@ -120,10 +120,10 @@ def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:
 
 
 def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> CleanSection:
-    """Return a blunt section with a wedge added; it starts at the tip.
+    """Return a blunt section with a wedge added; the result starts at the tip of the wedge.
 
-    `tangents` are the unit directions (2,) in which the lower and the upper surface end at the corners of
-    the base. The wedge of a narrow base is finer than the points of a file; it is not cleaned like these.
+    `tangents` are the unit directions (2,) in which the lower and the upper surface end at the corners of the
+    base. The wedge of a narrow base can be finer than the points of a file; unlike these, it is not cleaned.
     """
     points, (lower, upper) = section.points, tangents
     gap = float(np.hypot(*(points[0] - points[-1])))

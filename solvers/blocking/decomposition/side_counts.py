@@ -71,9 +71,9 @@ def suited(
     """Return the counts (chords,) nearest to `counts`, at least `least`, that suit the sides of the domain.
 
     Counts are equal along periodic sides and, if `named`, their sums are the numbers given for names of
-    sides. Each cell is divided into `finer` cells later, when numbers are adjusted again: if it is not 1,
-    sums may differ from the given numbers by less than one. All counts are multiples of `multiple`, and so
-    must the given numbers be. The counts of the chords in `fixed` are prescribed.
+    sides. Each cell is divided into `finer` cells later, and numbers are then adjusted again; if `finer` is
+    not 1, sums may therefore differ from the given numbers by less than one. All counts are multiples of
+    `multiple`, and so must the given numbers be. The counts of the chords in `fixed` are prescribed.
 
     Raises InputError: given counts that contradict each other, or that are too small; SolverError: no counts
     are equal along periodic sides.

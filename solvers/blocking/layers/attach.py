@@ -77,7 +77,11 @@ def _places(rows: Rows, domain: Domain) -> Places:
 
 
 def beside(blocks: Sequence[Indices], position: Indices, count: int) -> list[Indices]:
-    """Return indices (n,) along the loop, ascending by one, of every side of a block on the loop."""
+    """Return for each side of a block that is on the loop the indices (n,) of its nodes along the loop.
+
+    The indices of a side ascend by one. `position` is the index of each node along the loop, below 0 for
+    other nodes; `count` is the number of nodes of the loop.
+    """
     along = []
     for block in blocks:
         for side in (block[:, 0], block[-1], block[::-1, -1], block[0, ::-1]):

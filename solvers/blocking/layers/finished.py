@@ -83,9 +83,10 @@ def _as_far(mesh: QuadMesh, before: QuadMesh, pairs: Indices) -> QuadMesh:
 
 
 def unfolded(layout: Layout, held: Bools) -> Layout:
-    """Return the layout with nodes near folded cells moved to unfold them; `held` (n,) nodes are fixed.
+    """Return the layout with nodes near folded cells moved to unfold them.
 
-    Cells keep their aspect ratios, so that layers stay where they are.
+    The nodes in the mask `held` (n,) are fixed. Cells keep their aspect ratios, so that layers stay where
+    they are.
     """
     mesh = layout.mesh
     bad = smallest_jacobians(mesh.nodes, mesh.quads) <= 0.0

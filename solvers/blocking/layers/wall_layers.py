@@ -52,10 +52,11 @@ _BISECTIONS = 14  # of a range of 240 to 1: the scale to 0.03 %
 class WallLayers:
     """Walls with their layers, and the remaining domain, which is decomposed into blocks.
 
-    The layers around a loop are either a ring, in `rings` by the number of the loop, which is the same in
-    `domain` and in the remaining domain `rest`; or they are rows of blocks of the layout: along `stretches`,
-    around the loops `sheets` and along their wakes, with `sizes` by the number of the loop. `near` replaces
-    an outer loop that is far away.
+    There are two kinds of layers. Those in `rings` go around a loop. Loops have the same numbers in `domain`
+    and in the remaining domain `rest`; `rings` is a dict with these numbers as keys. The other layers are
+    rows of blocks of the layout: along `stretches`, and around the loops `sheets` and along the wakes of
+    these; `sizes` has their cell sizes by the number of the loop. `near` replaces an outer loop that is far
+    away.
     """
 
     domain: Domain
@@ -234,7 +235,7 @@ class Counts:
 
     Parameters
     ----------
-    coarse : (chords,) counts of the first optimised layout: the final ones over `stride` and `times`.
+    coarse : (chords,) counts of the first optimised layout: the final counts divided by `stride` and `times`.
     stride : factor of these counts for the second optimisation; 1 if there is only one.
     times : factor of the counts after the last optimisation, from the optimised to the fine layout.
     scale : factor of the sizes along walls.

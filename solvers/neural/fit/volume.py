@@ -66,7 +66,10 @@ class VolumeTask(Task):
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the weighted parts of the loss over the geometries `rows`, then the logarithms."""
+        """Return the weighted parts of the loss over the geometries `rows`, then a term for the weights.
+
+        That term is half the sum of the logarithms of the inverse weights.
+        """
         rng = np.random.default_rng([self.seed, 1, step])
         inner = tensor(rng.uniform(-1.0, 1.0, (self.points[0], 3))).to(rows.device)
         draws = rng.random(self.points[1])

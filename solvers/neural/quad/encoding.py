@@ -59,8 +59,8 @@ def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
 
     `step`, of the shape of `z`, is the last Picard step (`picard.approach`). `around`: `z` are unrolled O
     grids (batch, m + 1, n), whose last column is the first plus one period: differences along xi are
-    periodic, equal steps are subtracted from places, and the result is (batch, m, n, ...). The order is that
-    of `symmetry.SEEN`.
+    periodic, equal steps are subtracted from places, and the result is (batch, m, n, ...). The features are
+    in the order of `symmetry.SEEN`.
     """
     n = z.shape[-1]
     if around:

@@ -90,11 +90,12 @@ STEPS, STILL = 50, 1e-14  # most Newton steps, and the step over the body's size
 
 
 def inside(wall: Complexes) -> complex:
-    """Return the point inside a simple closed curve (n,), first node not repeated, of least potential.
+    """Return the point of least potential inside a simple closed curve `wall` (n,).
 
-    Of a body whose centroid lies outside, the minimum of V(p) = ∮ |p - x|⁻⁴ ds, which tends to infinity at
-    the wall, is where the body is thickest. The point is translated, rotated and scaled with the body. If
-    minima are equal, the one nearest to the first node of the wall is taken.
+    The first node of the curve is not repeated. The potential is V(p) = ∮ |p - x|⁻⁴ ds, which tends to
+    infinity at the wall. Its minimum is where the body is thickest; it is needed for bodies whose centroid
+    lies outside of them. The point is translated, rotated and scaled with the body. If minima are equal, the
+    one nearest to the first node of the wall is taken.
     """
     size = float(np.abs(wall - wall[0]).max())
     curve = (wall - wall[0]) / size

@@ -68,7 +68,7 @@ class QuadOperator(Operator):
         """Return a grid inside each boundary; its boundary nodes are bitwise those of the boundary.
 
         Boundaries with equal node counts form batches; the seconds of a solution are those of its batch,
-        divided by its size.
+        divided by the number of boundaries in the batch.
         """
         self.check(boundaries)
         network = self.network(dtype)

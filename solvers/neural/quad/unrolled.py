@@ -23,7 +23,7 @@ TURN = 2.0 * np.pi  # once around, the period of a strip
 def middles(walls: Any, xp: Any = np) -> Any:
     """Return the centroids (batch,) of the areas inside closed curves (batch, n), first node not repeated.
 
-    `xp` is the module of the arrays, numpy or torch, here and in the functions below.
+    `xp` is the module of the arrays, numpy or torch.
     """
     off = walls - walls[:, :1]  # near the origin, against cancellation
     ahead = xp.roll(off, -1, 1)
