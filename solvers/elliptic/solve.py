@@ -30,6 +30,11 @@ CONTINUATION = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 SOLVED = 1e-4  # relative residual that counts as discretisation level when there is no better estimate
 
+SOLVED_BY_INTERPOLATION = 16.0
+"""Residual of transfinite interpolation, in units of its round-off, up to which it is the solution: in
+rectangles it reaches 7 units.
+"""
+
 
 class _DivergedError(Exception):
     """The residual is not finite, or it grew or stalled."""
@@ -109,7 +114,7 @@ def _attempt(
         start = levels.residual()
         nodes[...] = initial_nodes(boundary, initial)
     noise = _round_off(boundary)
-    if start <= noise:  # transfinite interpolation solves the equations: a rectangle, say
+    if start <= SOLVED_BY_INTERPOLATION * noise:  # a rectangle, say
         levels.interpolate_edges(0)
         return nodes, 0.0, 0
     goal = max((SOLVED if tol is None else tol) * start, noise)

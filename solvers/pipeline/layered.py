@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from meshonet.geometry.arrays import Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.layers.first_cells import Heights
 from meshonet.solvers.pipeline.coarse import Wrapper
 from meshonet.solvers.pipeline.fallback import guard
@@ -122,12 +122,16 @@ class Layered(Wrapper):
         from meshonet.solvers.layers.slide_nodes import slide_walls
 
         slid, controls = slide_walls(boundary)
-        method, full = self.method, self.full
         if self.name == "best":  # lines of an elliptic grid leave slid walls at right angles, others do not
-            method = full = method_named("winslow")
-        if controls is not None and isinstance(full, Each) and full.takes("controls"):
-            method = full.having(controls=controls)
-        solution = solved(method, slid, start)
+            try:
+                solution = solved(method_named("winslow", controls=controls), slid, start)
+            except SolverError:
+                solution = solved(self.method, slid, start)
+        else:
+            method = self.method
+            if controls is not None and isinstance(self.full, Each) and self.full.takes("controls"):
+                method = self.full.having(controls=controls)
+            solution = solved(method, slid, start)
         note = "wall nodes slid along south and north"
         return replace(solution, boundary=slid, notes=(*solution.notes, note))
 
