@@ -124,9 +124,10 @@ class Conversion:
 def plot3d_variant(
     words: str | None, output: str, from_format: str | None, to_format: str | None
 ) -> tuple[str | None, str | None]:
-    """Return the formats to read and to write; the options `words` are added to the one that is Plot3D.
+    """Return the formats to read and to write, one of them with the Plot3D options `words`.
 
-    If `output` is not a Plot3D file, the input is taken for one. Raises InputError: an unknown option.
+    The options are added to the format of `output` if it is a Plot3D file, otherwise to the format of the
+    input. Raises InputError: an unknown option.
     """
     if words is None:
         return from_format, to_format

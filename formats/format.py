@@ -72,7 +72,7 @@ class Format:
     suffix_options: Mapping[str, str] = field(default_factory=dict)
 
     def file_at(self, path: str) -> str:
-        """Return the file to write for a user's `path`: that inside a folder if the format fills one.
+        """Return the file to write for a user's `path`; if the format fills a folder, it is inside a folder.
 
         >>> case = Format("openfoam", (".foam",), "", fills_folder=True)
         >>> case.file_at("runs/first"), case.file_at("runs/first/case.foam")

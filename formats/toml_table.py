@@ -79,7 +79,7 @@ class Table:
         return self._number(key, self.data.get(key))
 
     def positive(self, key: str) -> float:
-        """Return a positive number that is not so small that products with it underflow."""
+        """Return a positive number, large enough for products with it not to underflow."""
         value = self.number(key)
         if not value > 0:
             raise self.error(key, f"{value:g} is not positive", "use more than 0")

@@ -116,7 +116,10 @@ def _lines(text: str) -> tuple[Line, ...]:
 
 
 def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
-    """Return whether four fifths of the rows of `head`, at least `least`, have one of these `counts`."""
+    """Return whether most rows of `head` have as many numbers as one of the `counts` says.
+
+    These must be four fifths of the rows, and at least `least` rows.
+    """
     try:
         lines = read_lines(decode(head))
     except InputError:

@@ -72,10 +72,10 @@ def solve(
     """Minimise the functional of `meshonet.solvers.energy.functional` over the nodes inside `boundary`.
 
     The nodes of the seam of an O grid are unknowns; a wake of a C grid is fixed. At the end no node moves by
-    more than `tol` times √cells mean cell sizes, which is about the size of the domain; None is 1e-4 with at
-    most `FEW` or `FEW_AROUND` iterations. `max_cycles` limits the iterations on the finest level. `initial`,
-    a grid with the same node counts, replaces nested iteration. If no initial grid could be untangled, the
-    result is folded and has a note.
+    more than `tol` times the size of the domain, which is estimated as √cells times the mean cell size. If
+    `tol` is None, it is 1e-4, and the number of iterations is at most `FEW`, or `FEW_AROUND` for O grids.
+    `max_cycles` limits the iterations on the finest level. `initial`, a grid with the same node counts,
+    replaces nested iteration. If no initial grid could be untangled, the result is folded and has a note.
 
     Raises InputError: `initial` with other node counts; `tol` or `max_cycles` not positive.
     """

@@ -87,7 +87,7 @@ def wall_sides(boundary: Boundary) -> list[Side]:
 
 
 def along_walls(boundary: Boundary, request: OneBlock) -> bool:
-    """Return whether xi runs along walls with layers of a four-sided boundary: south or north is one."""
+    """Return whether south or north of a four-sided boundary is a wall with layers; xi then runs along it."""
     names = request.by_wall or request.walls
     sides = [side for name in names for side in sides_called(boundary, name)] or wall_sides(boundary)
     return not {"south", "north"}.isdisjoint(sides)

@@ -44,7 +44,7 @@ class SpanPlaces:
     def of(
         cls, planes: Sequence[SectionPlane], places: Floats, pairs: Indices, gaps: tuple[bool, bool]
     ) -> SpanPlaces:
-        """Return places near `places` (k,), which are those of the middle section, with nodes at its corners.
+        """Return places near `places` (k,), those of the middle section, with nodes at corners of the blade.
 
         `planes` are all sections; `pairs` (p, 2) are nodes on the upper and the lower side that lines across
         the channel join; `gaps` as in the class.

@@ -21,7 +21,9 @@ ROWS = 200
 
 
 def with_layers(mesh: QuadMesh, given: QuadMesh) -> tuple[QuadMesh, Bools]:
-    """Return `mesh` with the layer heights of `given`, the same quads, and a mask (n,) of their nodes.
+    """Return `mesh` with the layer heights of `given`, and a mask (n,) of the nodes in layers.
+
+    Both meshes have the same quads.
 
     Layers are rows of cells at the boundary that are `THIN`. If wall nodes have moved, heights are those at
     the same arc length. Nodes in the layers of two walls do not move.

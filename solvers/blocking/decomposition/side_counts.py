@@ -129,7 +129,7 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return counts (chords,), scaled along sides with given numbers to nearly these numbers."""
+    """Return `counts` (chords,), scaled so that sides get nearly the numbers of cells given for them."""
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())

@@ -166,7 +166,7 @@ def march_ring(
 
 
 def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
-    """Return the largest thickness (n,) at the columns of the rings that would collide with another ring.
+    """Return for each ring that would collide with another one how thick (n,) it may be at its columns.
 
     Lines of a march spread around sharp edges, towards walls that are not in front of the point where they
     start.

@@ -57,9 +57,9 @@ class QuadTask(Task):
 
     In later steps the loss also contains the angles of the network's grids.
 
-    `training`, `held_out`: domains; `sizes`: of the network; `steps`: their number in the whole run;
-    `device`: to compute on; `weights`: of the parts of the loss, by name; `initial`: initial weights of the
-    network, by name.
+    `training`, `held_out`: domains; `sizes`: of the network; `steps`: number of training steps in the whole
+    run; `device`: to compute on; `weights`: of the parts of the loss, by name; `initial`: initial weights of
+    the network, by name.
     """
 
     parts: tuple[str, ...] = tuple(PARTS)

@@ -46,7 +46,10 @@ def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: G
 
 
 def angles(z: Grids) -> tuple[Floats, Floats]:
-    """Return maximum and mean (m,) of cells' largest angles, degrees, of grids (m, n, n); 360 if folded."""
+    """Return the maximum and the mean (m,) of the largest angles of cells, for grids `z` (m, n, n).
+
+    In degrees. A folded cell counts as 360.
+    """
     least, most = (np.degrees(value.numpy()) for value in extremes(torch.from_numpy(z)))
     folded = (least <= 0.0).any((1, 2)) | (most >= 180.0).any((1, 2))
     return np.where(folded, 360.0, most.max((1, 2))), np.where(folded, 360.0, most.mean((1, 2)))

@@ -81,7 +81,10 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 
 
 def table(size: int) -> Integers:
-    """Return the indices (8, 8, size²) of the entries of the kernels K[h, g] in one set w (8 size²,)."""
+    """Return for each entry of the kernels K[h, g] its index in one set of weights (8 size²,).
+
+    The result has the shape (8, 8, size²).
+    """
     count = size * size
     return np.asarray(RELATIVE[:, :, None] * count + TAPS[size].reshape(ORDER, 1, count))
 

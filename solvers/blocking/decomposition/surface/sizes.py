@@ -76,7 +76,7 @@ class _Samples:
 
 
 def usual_size(area: float, count: int) -> float:
-    """Return the edge length of equilateral triangles with `count` corners that fill an area."""
+    """Return the edge length of equilateral triangles that fill an `area`, with `count` vertices in all."""
     return float(np.sqrt(2.0 / np.sqrt(3.0) * area / count))
 
 

@@ -95,7 +95,11 @@ class Triangulation:
 
     @cached_property
     def edge_weights(self) -> Floats:
-        """(t, 3) integral of the product of the gradients at an edge's ends: minus half a cotangent."""
+        """(t, 3) for each edge of a triangle, minus half the cotangent of the angle opposite to it.
+
+        This is the integral over the triangle of the scalar product of two `gradients`, those of the two ends
+        of the edge.
+        """
         g = self.gradients
         return np.asarray(self.areas[:, None] * times(g, np.conj(g[:, NEXT])).real)
 
