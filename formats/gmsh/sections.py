@@ -109,7 +109,10 @@ def _blocks_of_nodes(stream: _Stream) -> NumberedNodes:
 def elements(
     section: bytes, version: str, binary: bool, order: str, tags: dict[tuple[int, int], int]
 ) -> Elements:
-    """Return the elements of a section ``$Elements``; `tags` has the group of (dimension, entity) of 4.1."""
+    """Return the elements of a section ``$Elements``.
+
+    In files of version 4.1, `tags` has the group of each entity, given by dimension and number.
+    """
     stream = _Stream(section, binary, order)
     if version == "4.1":
         blocks = _blocks_of_elements(stream, tags)

@@ -41,7 +41,7 @@ _ZONE = "passage"
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the only grid of `grids` into the folder of `path`, an empty file.
+    """Write the only grid of `grids` into the folder of `path`; `path` itself becomes an empty file.
 
     The planes of a planar grid, or of one layer of cells between symmetry planes, become a patch of type
     ``empty``. Cells at sides that collapse to a line or point are prisms and pyramids. An existing mesh is

@@ -55,9 +55,9 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     five times as much as the points beyond them. The two ends of an oblique base are both corners too.
 
     The round end of a thin body given by few points can turn by up to 155 degrees at one point, but is no
-    corner: with the distance from this point, the thickness of the body grows like the square root; from an
-    edge it grows linearly (`growth_exponent`). Closed polygons of at most `few` points are not sampled
-    curves; all their points may be corners.
+    corner: near this point, the thickness of the body grows like the square root of the distance from it;
+    near an edge it grows linearly (`growth_exponent`). Closed polygons of at most `few` points are not
+    sampled curves; all their points may be corners.
     """
     angle = np.abs(turning(points, closed=closed))
     if not angle.max() > KINK:

@@ -113,7 +113,7 @@ class GridMatcher:
         self._passed: list[Grid] = []
 
     def match(self, name: str) -> Grid:
-        """Return the partner of the next grid, which is called `name`.
+        """Return the partner of the next grid; `name` is the name of this grid.
 
         Raises InputError: the reference set has no grid of this name, or no further grid.
         """

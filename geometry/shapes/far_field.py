@@ -61,14 +61,14 @@ def o_boundary(
     turned: bool = True,
     notes: tuple[str, ...] = (),
 ) -> Boundary:
-    """Return the O boundary of a closed wall (ni, 2), clockwise, first node repeated, within a circle.
+    """Return the O boundary of a closed wall within a circle.
 
     `wall` (ni, 2) runs clockwise and repeats its first node at the end. Far-field nodes run clockwise at
     equal angles. The first of them is where the conformal map of the body takes `wall[0]`, so that the grid
-    is not sheared; behind a symmetric body this is straight downstream. If not `turned`, it is in the
-    direction of `wall[0]`: marching methods make a far field of their own. West and east are the straight cut
-    between the two first nodes. `curve`, `name`, `chord` and `notes` are passed to `Boundary`; a large
-    rotation of the far field is noted.
+    is not sheared; behind a symmetric body this is straight downstream. If not `turned`, the first node is in
+    the direction of `wall[0]`; this suffices for marching methods, which make a far field of their own. West
+    and east are the straight cut between the two first nodes. `curve`, `name`, `chord` and `notes` are passed
+    to `Boundary`; a large rotation of the far field is noted.
     """
     middle = np.asarray(centre, dtype=np.float64)
     start, note = math.atan2(wall[0, 1] - middle[1], wall[0, 0] - middle[0]), ""

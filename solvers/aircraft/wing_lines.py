@@ -34,7 +34,7 @@ _ROUNDS = 6
 
 @dataclass(frozen=True)
 class EvenAround(Around):
-    """Distribution of nodes around sections with the smallest growth that their number allows."""
+    """Distribution of nodes around sections, with the smallest growth ratio that their number allows."""
 
     def law(self, height: float, length: float) -> Callable[[Floats], Floats]:
         """Return the node distribution of a side from base to nose.

@@ -46,9 +46,9 @@ OPEN_ATTEMPTS = (
 def attempts_around_base(ratio: float, *, concave: bool) -> tuple[MarchSettings, ...]:
     """Return the settings for C grids around a base, whose corners may be `concave`; rows grow by `ratio`.
 
-    Lines from the corners of a base start as close as first cells are high, and from concave ones they come
-    closer. Without more evening they would stay so while rows become 10,000 times as high, the sooner the
-    faster rows grow.
+    Lines from the corners of a base start as close to each other as first cells are high; lines from concave
+    corners come even closer. Without more evening they would stay as close while rows become 10,000 times as
+    high; this happens the sooner, the faster rows grow.
     """
     even = max(0.05, 0.5 * (ratio - 1.0) - 0.05) + (0.05 if concave else 0.0)
     return (replace(OPEN_ATTEMPTS[0], even=even), *OPEN_ATTEMPTS[1:])

@@ -121,7 +121,8 @@ def evened_places(
 
     Places that are `fixed` (n,) do not change. `limit` is the logarithm of the ratio; if it cannot be kept,
     it is exceeded as little as possible. On a closed curve the last step leads to the first place. Where
-    places would move by more than `most` steps, the limit is less strict. `change` is μ.
+    places would move by more than `most` steps, the limit is less strict. `change` is the weight μ of
+    `GrowthLimit`.
     """
     line = _Line.of(places, fixed, measures, closed, links, change)
     new = places

@@ -14,7 +14,7 @@ from meshonet.kernels._native import closed_node
 
 
 def check_corners(faces: SixFaces) -> None:
-    """Raise InputError, with the node, if `faces` fold a cell for any interior nodes.
+    """Raise InputError, with the node, if `faces` fold a cell whatever the interior nodes are.
 
     At a node of an edge of the volume, the three edges of a cell that meet there lie in the two faces. If
     their Jacobian is not positive, the cell is folded.

@@ -85,7 +85,9 @@ class VolumeMarch:
 
 
 class Smoothing(NamedTuple):
-    """Parameters of ``kernels/surfaces/march.h`` in its order, without `size`, and two of the graph.
+    """The parameters of ``kernels/surfaces/march.h``, in its order, and two parameters of the graph.
+
+    The parameter `size` of that file is left out.
 
     `outer` is the factor by which the explicit smoothing within levels is larger far from the wall. Up to 6
     the levels around a sphere remain spheres; 16 makes better cells behind swept wings.

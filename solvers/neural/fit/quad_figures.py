@@ -48,7 +48,7 @@ def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: G
 def angles(z: Grids) -> tuple[Floats, Floats]:
     """Return the maximum and the mean (m,) of the largest angles of cells, for grids `z` (m, n, n).
 
-    In degrees. A folded cell counts as 360.
+    In degrees. Both are 360 for a grid with folded cells.
     """
     least, most = (np.degrees(value.numpy()) for value in extremes(torch.from_numpy(z)))
     folded = (least <= 0.0).any((1, 2)) | (most >= 180.0).any((1, 2))

@@ -112,7 +112,10 @@ class PODDeepONet(Architecture):
         return dense_shapes("branch", (2 * self.sensors, *self.hidden, self.features))
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return the mean grid (nodes, 2) and the modes (nodes, features, 2), 0 beyond the count of grids."""
+        """Return the mean grid (nodes, 2) and the modes (nodes, features, 2).
+
+        If there are fewer grids than features, the remaining modes are 0.
+        """
         n = len(targets)
         rows = targets.reshape(n, -1)
         mean = rows.mean(axis=0)

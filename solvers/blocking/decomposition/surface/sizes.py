@@ -165,7 +165,7 @@ def _own_size(samples: _Samples, largest: float) -> Floats:
 def place_nodes(domain: Domain, sizes: WallSizes) -> tuple[Indices, Floats]:
     """Return loop (b,) and arc length (b,) of nodes on the walls, at equal steps of ∫ ds / h in each piece.
 
-    Corners are nodes. A piece has at least 2 edges, a smooth loop at least 8.
+    h is the size of edges. Corners are nodes. A piece has at least 2 edges, a smooth loop at least 8.
     """
     loops, arcs = [], []
     for number, loop in enumerate(domain.loops):

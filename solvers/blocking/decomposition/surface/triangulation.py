@@ -125,7 +125,7 @@ def triangulate(
 ) -> Triangulation:
     """Return a triangulation of a domain with about `count` nodes, more if walls need short edges.
 
-    Nodes along the walls follow `sizes`; wall edges that are missing in the Delaunay triangulation are
+    Nodes along the walls follow `wall_sizes`; wall edges that are missing in the Delaunay triangulation are
     halved. Then circumcentres of triangles that are too large are inserted, and nodes are smoothed. `finer`
     points (m, 2) have sizes (m,) of their own around them. The same input and `seed` give bitwise the same
     result.
