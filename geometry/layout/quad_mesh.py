@@ -137,7 +137,7 @@ class QuadMesh:
     def aspects(self, lengths: Floats) -> Floats:
         """Return the aspect ratios (m,) of the quads, for edges of `lengths` (e,).
 
-        The geometric mean of the sides 1-2 and 3-0, divided by that of the sides 0-1 and 2-3.
+        A ratio is the geometric mean of the sides 1-2 and 3-0, divided by that of the sides 0-1 and 2-3.
         """
         sides = lengths[self.edge_of]
         return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))

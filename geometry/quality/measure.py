@@ -152,7 +152,7 @@ def _run(grid: Grid, kept: slice) -> CellRun:
 def angles(nodes: Floats) -> tuple[float, float]:
     """Return the maximum and the mean of the largest included angle of each cell, in degrees.
 
-    360 if folded.
+    Both are 360 if a cell of `nodes` (ni, nj, 2) is folded.
     """
     if count_folded(nodes):
         return 360.0, 360.0

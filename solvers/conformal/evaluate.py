@@ -169,7 +169,9 @@ FEWEST = 256  # columns
 
 
 def columns(modes: Complexes) -> Floats:
-    """Return f (Q, 2, width), whose windowed sums are those of `modes` (m, 2 K + 1), k = 0 .. K, -K .. -1.
+    """Return values f (Q, 2, width), whose windowed sums equal the sums of Fourier modes.
+
+    `modes` (m, 2 K + 1) are in the order k = 0 .. K, -K .. -1.
 
     An FFT over the nodes around a body is slow if their number has large prime factors, like 799 = 17 x 47.
     Here a sum of modes |k| < Q/4 costs one FFT of Q columns, Q a power of two. Each node is a weighted sum of

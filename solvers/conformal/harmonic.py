@@ -23,7 +23,7 @@ FAR = 37.0  # exp(-37) is the precision of a double: modes that have decayed so 
 
 
 def extend(boundary: Boundary) -> Floats:
-    """Return the nodes (ni, nj, 2) of the extension; boundary nodes are those of `boundary`.
+    """Return the nodes (ni, nj, 2) of the harmonic extension of a `boundary`, whose nodes are kept.
 
     >>> s, zero, one = np.linspace(0.0, 1.0, 5), np.zeros(5), np.ones(5)
     >>> square = Boundary(*(np.stack(edge, axis=1) for edge in [(s, zero), (s, one), (zero, s), (one, s)]))

@@ -97,8 +97,7 @@ def interpolation(eta: bytes) -> Floats:
 def modes(F: Any, xp: Any = np) -> Any:
     """Return Fourier coefficients (..., 2 MODES + 1) of F (..., n) for k = 0, 1 .. MODES, -MODES .. -1.
 
-    Modes that n samples do not resolve are zero. `xp` is the module of the array F, numpy or torch; the same
-    holds for the functions below.
+    Modes that n samples do not resolve are zero. `xp` is the module of the array F, numpy or torch.
     """
     n = F.shape[-1]
     c, kept = xp.fft.fft(F) / n, min(MODES, (n - 1) // 2)

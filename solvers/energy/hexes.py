@@ -63,7 +63,7 @@ class Slides:
         return Slides(place[some], self.projections[some])
 
     def kept(self, before: Floats, after: Floats, moves: Bools) -> Floats:
-        """Return nodes (n, 3) `after` a displacement, sliding ones projected to their planes or lines.
+        """Return the nodes `after` (n, 3) a displacement, with sliding nodes in their planes or lines.
 
         The planes and lines go through the nodes `before`.
         """

@@ -208,7 +208,7 @@ class Cascade:
 
 
 def scaled(metric: SizeMetric, scale: float) -> SizeMetric:
-    """Return cell sizes for cells `scale` times as long along the blade."""
+    """Return the sizes of a `metric` for cells that are `scale` times as long along the blade."""
     return replace(metric, along=scale * metric.along, largest=metric.largest * scale**0.5)
 
 

@@ -98,7 +98,10 @@ class GrowthLines:
         return np.asarray(log(modulus(after) / modulus(before)) + self.offset)
 
     def edges(self, z: Complexes) -> tuple[Complexes, Complexes]:
-        """Return the first and the second edge (k,) of pairs between nodes `z` (n,)."""
+        """Return the first and the second edge (k,) of each pair, for nodes at `z` (n,).
+
+        Nodes and edges are complex numbers.
+        """
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
 

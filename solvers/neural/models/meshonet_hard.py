@@ -55,7 +55,10 @@ class MeshONetHard(Architecture):
         return {**branch, **dense_shapes("trunk", (seen, *[self.width] * self.depth, self.features))}
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return mean and spread of the sensors, and size and modes (nodes, modes) of the differences."""
+        """Return the mean and the spread of the sensors, and the size and the modes of the `targets`.
+
+        Modes have the shape (nodes, modes).
+        """
         seen = np.array([sensors(boundary, self.sensors) for boundary in samples.boundaries()])
         spread = seen.std(axis=0)
         size = np.sqrt((targets**2).mean())
@@ -69,7 +72,10 @@ class MeshONetHard(Architecture):
         return {**fixed, "fixed/modes": _modes(targets, self.modes)} if self.modes else fixed
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return sines and cosines of `points`, with B in the last column; with `modes`, the points alone."""
+        """Return sines and cosines of `points`, and a function that is 0 on the boundary in the last column.
+
+        With `modes`, the result is the points alone.
+        """
         if self.modes:
             return points
         return xp.concatenate([self._lifted(xp, points), self._bubble(points)], -1)

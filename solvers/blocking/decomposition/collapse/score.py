@@ -31,7 +31,10 @@ SIZES = 8.0
 
 
 def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = None) -> float:
-    """Return the score of blocks with target edge lengths `wanted` (e,), or equal ones; lower is better."""
+    """Return the score of blocks; lower is better.
+
+    `wanted` (e,) are target lengths of edges, by default equal ones.
+    """
     mesh = blocks.mesh
     off = deviations(mesh)
     worst = off.max(axis=1)
