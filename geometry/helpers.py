@@ -6,12 +6,10 @@
         --what a job runs in turn is open in the same way--> nobody waits while there is something to do
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from threading import Condition, Thread
-from typing import Any
+from typing import Any, Self
 
 
 class _Jobs:
@@ -42,7 +40,7 @@ class Helpers:
 
     @classmethod
     @contextmanager
-    def at_hand(cls, most: int) -> Iterator[Helpers]:
+    def at_hand(cls, most: int) -> Iterator[Self]:
         """Provide helpers within the ``with`` block; at its end they are stopped."""
         helpers = cls(most)
         try:

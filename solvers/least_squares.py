@@ -1,10 +1,9 @@
 """Gauss-Newton steps for sums of squares of residuals that depend on few unknowns each."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -89,7 +88,7 @@ class _Kind:
     bins: Indices
 
     @classmethod
-    def of(cls, unknowns: Indices, size: int) -> _Kind:
+    def of(cls, unknowns: Indices, size: int) -> Self:
         """Return the kind with unknowns (..., k, m) of `size`."""
         k, m = unknowns.shape[-2:]
         own = np.ascontiguousarray(unknowns.reshape(math.prod(unknowns.shape[:-2]), k, m).swapaxes(1, 2))

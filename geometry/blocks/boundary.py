@@ -12,12 +12,10 @@
                 south (ni nodes)
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -144,7 +142,7 @@ class Boundary(Connected):
         """Return the closed outline (n, 2): south, east, north, west; the first node is not repeated."""
         return np.concatenate([self.south[:-1], self.east[:-1], self.north[:0:-1], self.west[:0:-1]])
 
-    def with_sensors(self, count: int) -> Boundary:
+    def with_sensors(self, count: int) -> Self:
         """Return the boundary with `count` sensors: nodes at equal steps of their index.
 
         In a quad boundary the sensors start at the south-west corner and follow the boundary
@@ -162,7 +160,7 @@ class Boundary(Connected):
         chosen = [ring[np.arange(n) * len(ring) // n] for ring, n in zip(rings, shares, strict=True)]
         return replace(self, sensors=np.concatenate(chosen))
 
-    def boundary(self, sampling: Sampling) -> Boundary:
+    def boundary(self, sampling: Sampling) -> Self:
         """Return this boundary resampled to the node counts of `sampling`; corners stay nodes.
 
         Raises InputError: `sampling` sets anything else, such as another topology, a spacing or a far field.

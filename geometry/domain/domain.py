@@ -1,9 +1,8 @@
 """A region of the plane: inside an outer loop, outside of holes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Self
 
 import numpy as np
 
@@ -58,7 +57,7 @@ class Domain:
     @classmethod
     def of_polygons(
         cls, polygons: Sequence[Floats], name: str = "", names: Sequence[str | Sequence[str]] = ()
-    ) -> Domain:
+    ) -> Self:
         """Return the domain inside the first polygon (n, 2) and outside the others, of either orientation.
 
         Parameters

@@ -1,8 +1,7 @@
 """A closed curve that bounds a domain, with its corners and boundary names."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +55,7 @@ class Loop:
     @classmethod
     def of_polygon(
         cls, points: Floats, corners: tuple[int, ...] | None = None, names: tuple[str, ...] = ("outer",)
-    ) -> Loop:
+    ) -> Self:
         """Return the loop along a polygon `points` (n, 2), with the domain on its left.
 
         `corners` are the indices of the corners; None: detected by the turning angle. `names` are as in

@@ -4,10 +4,9 @@ A place on it is u, in parts of the sides' lengths: 0 at the leading edge, over 
 0.5 at the trailing edge, and back to 1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from copy import copy
+from typing import Self
 
 import numpy as np
 
@@ -78,7 +77,7 @@ class BladeProfile:
         self.trailing = trailing if tips[1] is None else float(curve.knots[tips[1]])
         self._stops = _ENDS, np.array([0.0, self._sides[0], curve.length])
 
-    def cornered(self, counts: Sequence[int]) -> BladeProfile:
+    def cornered(self, counts: Sequence[int]) -> Self:
         """Return the profile with prescribed numbers of corners at its two edges.
 
         `counts` are the two numbers, of the leading and of the trailing edge, each 0, 1 or 2. The corners are
@@ -99,7 +98,7 @@ class BladeProfile:
         made._follow(Curve(curve.points, closed=True, corners=sorted(corners)), (tips[0], tips[1]))
         return made
 
-    def aligned(self, places: Floats) -> BladeProfile:
+    def aligned(self, places: Floats) -> Self:
         """Return the profile with the places of its corners changed to `places` u (c,).
 
         Each new place must be near the place of the corner. Between corners, u is proportional to the arc
@@ -122,7 +121,7 @@ class BladeProfile:
         length = self.curve.length
         return np.asarray(np.mod(arcs - edge + 0.5 * length, length) - 0.5 * length)
 
-    def reshaped(self, plane: Floats, heights: Floats) -> BladeProfile:
+    def reshaped(self, plane: Floats, heights: Floats) -> Self:
         """Return the profile with other points: m' and theta `plane` (n, 2), and `heights` (n,)."""
         made = copy(self)
         made.__dict__ = {k: v for k, v in vars(self).items() if k not in ("thickness", "_heights")}

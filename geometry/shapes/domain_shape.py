@@ -9,10 +9,9 @@ any other                                      several blocks, found by a decomp
 =============================================  =====================================================
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
@@ -70,7 +69,7 @@ class DomainShape:
         """Notes on what a reader skipped in the file."""
         return self.domain.notes
 
-    def noted(self, *notes: str) -> DomainShape:
+    def noted(self, *notes: str) -> Self:
         """Return the shape with `notes` added to its own."""
         return replace(self, domain=replace(self.domain, notes=(*self.notes, *notes)))
 

@@ -11,10 +11,9 @@ r"""C boundaries: the cut behind a sharp trailing edge, and the far field around
        '---------------------------+
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -102,7 +101,7 @@ class WakeLine:
     """Length of the wake along the axis."""
 
     @classmethod
-    def behind(cls, wall: Floats, axis: Floats, chord: float, length: float) -> WakeLine:
+    def behind(cls, wall: Floats, axis: Floats, chord: float, length: float) -> Self:
         """Return the wake behind a closed wall (n, 2) that begins and ends at its sharp trailing edge."""
         upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
         along = upper / np.hypot(*upper) + lower / np.hypot(*lower)

@@ -1,9 +1,8 @@
 """Vinokur's stretching between prescribed cell sizes at both ends."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -50,7 +49,7 @@ class TanhLaw:
         return low / (a + (1.0 - a) * low), a * high / (1.0 - (1.0 - a) * high)
 
     @classmethod
-    def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> TanhLaw:
+    def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> Self:
         """Return the law with first step `first` and last step `last` of `cells` cells.
 
         The steps are met to a relative error of 1e-6.

@@ -7,12 +7,10 @@
     lower side ------+ b      lines, with the nodes of a tip patch where that is open there too
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -50,7 +48,7 @@ class _OpenSide:
     inward: Floats
     axis: int | None
 
-    def reversed(self) -> _OpenSide:
+    def reversed(self) -> Self:
         return replace(self, line=self.line[::-1], inward=self.inward[::-1])
 
 

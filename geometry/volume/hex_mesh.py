@@ -12,12 +12,10 @@ A block is an array of node numbers, as in the plane in `meshonet.geometry.layou
 a line of a side that all coincide, as at the pole of a sphere, are one node.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,7 +100,7 @@ class HexMesh:
         exchange(self.connections, outside, inside)
         return wider
 
-    def with_nodes(self, nodes: Floats) -> HexMesh:
+    def with_nodes(self, nodes: Floats) -> Self:
         """Return the mesh with other coordinates (n, 3)."""
         return replace(self, nodes=nodes)
 

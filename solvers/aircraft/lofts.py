@@ -1,10 +1,8 @@
 """Lines along the span of a wing, from inside a body to the tip: through its sections, or on its surface."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, Self
 
 import numpy as np
 
@@ -83,7 +81,7 @@ class FinLoft(SectionLoft):
     remedy: str = "give a first section inside the body, with a smaller y, and a last one outside"
 
     @classmethod
-    def of(cls, fin: Fin, unit: Floats) -> FinLoft:
+    def of(cls, fin: Fin, unit: Floats) -> Self:
         """Return the lines from nose to trailing edge, given nodes (sections, n, 2) around sections."""
         half = (unit.shape[1] - 1) // 2
         upper, lower = unit[:, half::-1], unit[:, half:]
@@ -114,7 +112,7 @@ class SurfaceLoft:
     remedy: str = "give patches of the wing that end on the body or inside of it"
 
     @classmethod
-    def of(cls, wing: SurfaceWing, body: Body, plan: Around) -> SurfaceLoft:
+    def of(cls, wing: SurfaceWing, body: Body, plan: Around) -> Self:
         """Return the lines of a wing on a body, distributed as in a `plan` with two cells on the base.
 
         Lines that end on the body are continued straight into it, as far as necessary.

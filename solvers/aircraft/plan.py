@@ -1,10 +1,9 @@
 """Plan of an aircraft grid before its nodes are made: lines of wings, sections on key levels, counts."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -74,7 +73,7 @@ class AircraftPlan:
     halves: int
 
     @classmethod
-    def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> AircraftPlan:
+    def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> Self:
         """Return the plan for `around` nodes around each wing.
 
         If the request has no growth ratio, the first of `GROWTHS` is used.

@@ -1,9 +1,8 @@
 """The lines along the span of a wing on a body, from its root on the body to its tip."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -74,7 +73,7 @@ class WingLines:
     @classmethod
     def of(
         cls, wing: Stack | SurfaceWing, name: str, body: Body, nodes: int, base: float | None = None
-    ) -> WingLines:
+    ) -> Self:
         """Return `nodes` lines of a wing, with trailing edges opened to a thickness of `base` chords.
 
         Raises InputError: too few nodes; a wing that does not begin inside the body or does not leave it.

@@ -8,14 +8,12 @@ points of each panel. The points of a row are::
     levels 1 .. begin - 1 | panels' points | levels end .. nj - 2
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import repeat
-from typing import TypeAlias
+from typing import Self, TypeAlias
 
 import numpy as np
 
@@ -118,7 +116,7 @@ class _HighModes:
     height: float
 
     @classmethod
-    def of(cls, F: Complexes, height: float) -> _HighModes:
+    def of(cls, F: Complexes, height: float) -> Self:
         n = len(F)
         c, highest = np.fft.fft(F, norm="forward"), max(n // 2, MODES)
         ahead, behind = c[MODES + 1 : highest + 1], c[max(n - highest, 0) : max(n - MODES, 0)].copy()

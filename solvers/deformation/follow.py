@@ -5,9 +5,8 @@ rotation, the others with none. On straight sides (flat ones of volumes) that to
 slide along the side; then they too are sources, with the displacement they found.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -140,7 +139,7 @@ class Field:
     """(d, m) coordinates of the nodes that the field displaces."""
 
     @classmethod
-    def of(cls, nodes: Floats, sources: Indices, areas: Floats, near: float, points: Indices) -> Field:
+    def of(cls, nodes: Floats, sources: Indices, areas: Floats, near: float, points: Indices) -> Self:
         """Return the field on `nodes` (n, d) with `areas` (n,), by the indices of sources and points."""
         places = np.ascontiguousarray(nodes[sources].T)
         where = np.ascontiguousarray(nodes[points].T)
@@ -176,7 +175,7 @@ class Follow:
     """Node indices of inner nodes."""
 
     @classmethod
-    def of(cls, table: NodeTable, moved: Bools) -> Follow:
+    def of(cls, table: NodeTable, moved: Bools) -> Self:
         """Return the map for the nodes of `table`, of which `moved` (n,) have prescribed positions."""
         nodes, sources = table.nodes, sources_of(table, moved)
         near = _near(nodes[moved], nodes[sources.fixed])

@@ -8,9 +8,8 @@
     ____|____ w
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -30,7 +29,7 @@ class Turning:
     """(m, 2) weights of each edge in the angles of its two end nodes; the weights at a node add up to 1."""
 
     @classmethod
-    def of(cls, nodes: Floats, edges: Indices) -> Turning:
+    def of(cls, nodes: Floats, edges: Indices) -> Self:
         """Return the weights of `edges` (m, 2) between `nodes` (n, 2)."""
         nearness = 1.0 / np.maximum(norms(nodes[edges[:, 1]] - nodes[edges[:, 0]]), 1e-300)
         total = np.bincount(edges.ravel(), np.repeat(nearness, 2), len(nodes))

@@ -4,11 +4,10 @@ In the plane the domain is on the left of a piece, so that pieces around a body 
 pieces are rectangles (m, n) of nodes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
@@ -44,7 +43,7 @@ class NodeTable:
     """For each block, the indices (ni, nj) or (ni, nj, nk) of its nodes in `nodes`."""
 
     @classmethod
-    def of(cls, grid: Grid) -> NodeTable:
+    def of(cls, grid: Grid) -> Self:
         """Return the table of a planar grid or of a volume.
 
         Raises InputError: a surface.

@@ -57,7 +57,7 @@ class OptimumDerivative:
             raise InputError(problem, "use variational or winslow", parameter="method")
         self._method, self._weights = method, weights or _weights(grid)
         nodes = np.array(np.moveaxis(grid.nodes, -1, 0), order="C")
-        self._inner = _inner_numbers(nodes)
+        self._inner = np.arange(nodes.size).reshape(nodes.shape)[:, 1:-1, 1:-1].ravel()
         self._aspect = aspect_of(grid.nodes)
         self._systems = _Systems(self._inner, nodes.size, symmetric=method == "variational")
         self._approach(nodes)
@@ -156,10 +156,6 @@ def _weights(grid: Grid) -> Weights:
     default = WEIGHTS[grid.topology]
     facts = grid.provenance if grid.provenance.get("method") == "variational" else {}
     return Weights(facts.get("shape", default.shape), facts.get("smoothness", default.smoothness))
-
-
-def _inner_numbers(nodes: Floats) -> Indices:
-    return np.arange(nodes.size).reshape(nodes.shape)[:, 1:-1, 1:-1].ravel()
 
 
 def aspect_slope(nodes: Floats) -> Floats:

@@ -10,9 +10,8 @@ Steger and Sorenson, J. Comput. Phys. 33 (1979) 405-410; feedback of angle and h
 Numerical Grid Generation in Computational Fluid Mechanics (1988) 137-146.
 """
 
-from __future__ import annotations
-
 import math
+from typing import Self
 
 import numpy as np
 
@@ -81,7 +80,7 @@ class ControlledEdge:
             return Controls(Factors(along, fade[None]), Factors(across, fade[None]))
         return Controls(Factors(fade[None], across), Factors(fade[None], along))
 
-    def resample(self, coarse: ControlledEdge) -> None:
+    def resample(self, coarse: Self) -> None:
         """Set the sources to those of `coarse`, the same edge with other node counts, interpolated."""
         n, m = self.sources.shape[1], coarse.sources.shape[1]
         place, few = np.linspace(0.0, 1.0, n), np.linspace(0.0, 1.0, m)

@@ -1,9 +1,8 @@
 """Compares a smoothed planar multi-block grid with the given one, and candidates with each other."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
+from typing import Self
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.blocks import block_figures
@@ -29,7 +28,7 @@ class PlaneMeasures:
     """Mean deviation of corner angles from 90 degrees."""
     score: float
 
-    def no_worse(self, than: PlaneMeasures) -> bool:
+    def no_worse(self, than: Self) -> bool:
         """Return whether no measure is larger."""
         if than.folded or self.folded:
             return self.folded < than.folded

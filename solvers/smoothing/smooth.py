@@ -112,17 +112,11 @@ def held_back(grid: Grid, given: Layout, layout: Layout, before: PlaneMeasures) 
         quads = given.mesh.quads
         for share in _SHARES:
             part[bad] *= share if number < _GENTLE else 0.0
-            bad = _dilated(bad, quads)
+            bad[quads[bad[quads].any(axis=1)].ravel()] = True  # and the nodes around them
         part[part < _SMALL] = 0.0
         if not part.any():
             break
     return None
-
-
-def _dilated(nodes: np.ndarray[tuple[int], np.dtype[np.bool_]], quads: np.ndarray) -> np.ndarray:
-    wider = nodes.copy()
-    wider[quads[nodes[quads].any(axis=1)].ravel()] = True
-    return wider
 
 
 def part_of_the_way(given: Layout, layout: Layout, part: Floats) -> Layout:

@@ -1,8 +1,7 @@
 """Compares a smoothed volume grid with the given one."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
+from typing import Self
 
 from meshonet.geometry.arrays import Bools
 from meshonet.geometry.blocks.block import Block
@@ -28,7 +27,7 @@ class VolumeMeasures:
     least: float
     """Smallest scaled Jacobian of a corner."""
 
-    def no_worse(self, than: VolumeMeasures) -> bool:
+    def no_worse(self, than: Self) -> bool:
         """Return whether no measure is worse."""
         if than.folded or self.folded:
             return self.folded < than.folded

@@ -4,10 +4,9 @@ As in `meshonet.solvers.smoothing.layers`, nodes of thin cells are moved along t
 the side, to the sum of their given heights. They are held there while the rest is optimised again.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -41,7 +40,7 @@ class VolumeLayers:
     rows: Indices
     heights: Floats
 
-    def only_first(self) -> VolumeLayers:
+    def only_first(self) -> Self:
         """Return layers with one row."""
         return replace(self, rows=np.minimum(self.rows, 1))
 

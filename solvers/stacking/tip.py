@@ -148,7 +148,9 @@ class Cap:
     def _inner(self, plane: Floats, nose_factor: float, edge_factor: float) -> tuple[Floats, Floats, Floats]:
         """Return the long sides (k, 2) of the core from the trailing edge on, and half the thickness (k,)."""
         m = self.short
-        camber, half = _sides(plane)
+        k = len(plane) // 2 + 1
+        upper, lower = plane[:k], plane[::-1][:k]
+        camber, half = 0.5 * (upper + lower), 0.5 * (upper - lower)
         nose, edge = camber[-1], camber[0]
         axis = edge - nose
         length = float(np.hypot(*axis))
@@ -198,13 +200,6 @@ def least_sine(nodes: Floats) -> float:
             sine = np.copysign(norms(normal), normal[..., 2]) / (norms(a) * norms(b))
             least = min(least, float(sine.min()))
     return least
-
-
-def _sides(plane: Floats) -> tuple[Floats, Floats]:
-    """Return the camber line (k, 2) from trailing edge to nose, and vectors from it to the upper side."""
-    k = len(plane) // 2 + 1
-    upper, lower = plane[:k], plane[::-1][:k]
-    return 0.5 * (upper + lower), 0.5 * (upper - lower)
 
 
 def _edge(core: Floats, k: int = 0) -> Floats:

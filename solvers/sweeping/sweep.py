@@ -82,7 +82,9 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
     settings = settings or Sweep()
     check_planes(section, settings.planes)
     section = walled(section)
-    _check_closed(path, settings)
+    if path.closed and (settings.scale != 1.0 or settings.twist % 360.0):
+        problem = "the path is closed and the section does not come back to itself"
+        raise InputError(problem, "leave {scale} out, and give whole turns of {twist}")
     s = np.linspace(0.0, path.length, settings.planes or _planes(section, path))
     looked = np.linspace(0.0, path.length, max(_LOOKED_AT, len(s)))
     outline = np.concatenate([section.face(p.block, p.side)[p.start : p.stop + 1] for p in section.patches])
@@ -129,12 +131,6 @@ def _axes(path: Path, s: Floats, settings: Sweep, steps: int = STEPS) -> tuple[F
 
 def _sizes(path: Path, s: Floats, settings: Sweep) -> Floats:
     return np.asarray(1.0 + (settings.scale - 1.0) * s / path.length)
-
-
-def _check_closed(path: Path, settings: Sweep) -> None:
-    if path.closed and (settings.scale != 1.0 or settings.twist % 360.0):
-        problem = "the path is closed and the section does not come back to itself"
-        raise InputError(problem, "leave {scale} out, and give whole turns of {twist}")
 
 
 def _planes(section: Grid, path: Path) -> int:

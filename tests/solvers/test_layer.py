@@ -27,8 +27,8 @@ from meshonet.solvers.pipeline.coarse import solve_coarse
 
 torch = pytest.importorskip("torch")
 from meshonet import layer  # noqa: E402 - it imports torch
-from meshonet.solvers.neural.differentiable.block_cholesky import BlockCholesky  # noqa: E402
 from meshonet.solvers.neural.differentiable.functional import Functional, aspect_of  # noqa: E402
+from meshonet.solvers.neural.differentiable.variational import BlockCholesky  # noqa: E402
 
 LIFTED = partial(layer.winslow, coarse=9), partial(layer.variational, coarse=9)
 QUADS = (layer.transfinite, layer.winslow, layer.variational, layer.QuadGrids(), *LIFTED)

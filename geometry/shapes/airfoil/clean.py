@@ -3,10 +3,9 @@
 Points are not moved, except that the two ends of a negligible trailing-edge gap are replaced by their mean.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -51,7 +50,7 @@ class CleanSection:
     swapped: tuple[int, ...] = ()
     """Indices of the given points that were in the wrong order among their neighbours."""
 
-    def moved_apart(self) -> CleanSection:
+    def moved_apart(self) -> Self:
         """Return the section with nearly touching surfaces moved apart (`separate_surfaces`)."""
         from meshonet.geometry.shapes.airfoil.separate_surfaces import moved_apart
 

@@ -19,7 +19,7 @@ ARCHITECTURES: dict[str, str] = {
     "fno1d": "meshonet.solvers.neural.models.fourier:FNO1D",
     "fno2d": "meshonet.solvers.neural.models.fourier:FNO2D",
     "wno": "meshonet.solvers.neural.models.wavelet:WNO",
-    "kno": "meshonet.solvers.neural.models.koopman:KNO",
+    "kno": "meshonet.solvers.neural.models.fourier:KNO",
     "lno": "meshonet.solvers.neural.models.laplace:LNO",
     "mionet": "meshonet.solvers.neural.models.branch_trunk:MIONet",
     "mgnet": "meshonet.solvers.neural.models.mgnet:MGNet",
