@@ -172,7 +172,7 @@ def periodic_slopes(chord: Floats, h: Floats) -> Floats:
 def limited(
     points: Floats, start: Floats, stop: Floats, *, closed: bool, corners: Indices
 ) -> tuple[Floats, Floats]:
-    """Return the slopes (intervals, 2) at the start and at the end of each interval, limited.
+    """Return the slopes (intervals, 2) `start` and `stop` of each interval, limited to avoid overshoots.
 
     Each tangent is kept near the angle between the chords before and after its point. `corners` are indices
     of `points` (n, 2) at which the tangent may jump. At a corner the chord of the next interval says nothing:

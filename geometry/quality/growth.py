@@ -85,7 +85,7 @@ class Tally:
         along: str | None,
         values: Sequence[Floats | Singles],
     ) -> None:
-        """Add `count` values by their greatest, at node or cell `at`, and their sum `total`."""
+        """Add `count` values, of which the greatest, its node or cell `at` and the sum `total` are known."""
         if high > self._max:
             self._max, self._at, self._along = high, at, along
         self._total += total

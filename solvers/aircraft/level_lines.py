@@ -24,9 +24,10 @@ there in s.
 def lines_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats], cells: int
 ) -> Floats:
-    """Return nodes (n, cells + 1, 3) on lines between places `begin` and `end` (n, 3), s, theta, zeta.
+    """Return nodes (n, cells + 1, 3) on the lines between the places `begin` and `end` (n, 3).
 
-    Cell lengths in space change evenly; at both ends cells have the lengths `sizes` (n,) in s.
+    Nodes and places are s, theta, zeta. Cell lengths in space change evenly along a line; at both ends cells
+    have the lengths `sizes` (n,) in s.
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
     nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))

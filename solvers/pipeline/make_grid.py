@@ -232,7 +232,7 @@ def _with_history(solve: Callable[[], Solution]) -> tuple[Solution, tuple[Histor
 
 
 def _of_many(shape: BaseWake | DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:
-    """Return the multi-block grid around a base or of a domain, measured."""
+    """Return the multi-block grid around a base or of a domain, with its quality."""
     from meshonet.geometry.shapes.airfoil.base_wake import BaseWake
 
     if isinstance(shape, BaseWake):
@@ -241,7 +241,7 @@ def _of_many(shape: BaseWake | DomainShape, request: GridRequest, seconds: dict[
 
 
 def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:
-    """Return the multi-block grid of a domain, measured."""
+    """Return the multi-block grid of a domain, with its quality."""
     from meshonet.solvers.pipeline.blocks import block_request, smoothed, smooths
 
     reached("grid")
@@ -260,7 +260,7 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
 
 
 def _of_base(lines: BaseWake, request: GridRequest, seconds: dict[str, float]) -> Result:
-    """Return the C grid around a section with a blunt base, measured."""
+    """Return the C grid around a section with a blunt base, with its quality."""
     from meshonet.solvers.hyperbolic.around_base import around_base
 
     reached("grid")
@@ -281,7 +281,7 @@ def _of_base(lines: BaseWake, request: GridRequest, seconds: dict[str, float]) -
 
 
 def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, float]) -> Result:
-    """Return the volume grid of a three-dimensional shape, measured."""
+    """Return the volume grid of a three-dimensional shape, with its quality."""
     from meshonet.solvers.pipeline.volumes import make_volume
 
     reached("grid")

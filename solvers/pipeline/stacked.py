@@ -55,7 +55,7 @@ def stacked_surface(what: Stack | Aircraft, **parameters: Any) -> tuple[Grid, tu
 
 
 def make_stacked(what: Sections, **parameters: Any) -> Result:
-    """Return the volume grid of a stack, a row or an aircraft, measured.
+    """Return the volume grid of a stack, a row or an aircraft, with its quality.
 
     Parameters are the fields of `StackRequest`, `RowRequest` or `AircraftRequest`.
 
@@ -79,7 +79,7 @@ _REACH = 0.8
 
 
 def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) -> Result:
-    """Return the grid around an aircraft or its half, measured.
+    """Return the grid around an aircraft or its half, with its quality.
 
     Raises InputError: a wing that does not begin in the body, does not leave it or reaches the far field.
     Raises NoValidGridError: cells are folded, unless folded cells are allowed.
@@ -140,7 +140,7 @@ _ROW_REMEDY = "use more {cells}, or a larger {first_cell}"  # where cells fold
 
 
 def make_row(row: Row, request: RowRequest | None = None) -> Result:
-    """Return the grid of a row's passage, measured.
+    """Return the grid of a row's passage, with its quality.
 
     Raises InputError: parameters that do not suit the row. Raises NoValidGridError: cells are folded, unless
     folded cells are allowed.

@@ -46,7 +46,7 @@ def stack_surface(stack: Stack, request: StackRequest | None = None) -> tuple[Gr
 
 
 def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
-    """Return the volume grid around or inside a stack, measured.
+    """Return the volume grid around or inside a stack, with its quality.
 
     Raises InputError: parameters that do not suit the stack; NoValidGridError: folded cells, unless these are
     allowed.

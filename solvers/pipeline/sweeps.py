@@ -47,7 +47,7 @@ def make_sweep(
     shape: Shape | Grid, path: Path | Revolution, request: GridRequest, settings: Sweep | None = None,
     around: int | None = None,
 ) -> Result:  # fmt: skip
-    """Return the volume grid of a cross-section swept along a path or about an axis, measured.
+    """Return the volume grid of a cross-section swept along a path or about an axis, with its quality.
 
     `request` and `around` describe the planar grid of the section (`section_grid`).
 

@@ -72,7 +72,7 @@ class WallCells:
 
 
 def planned_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
-    """Return arc lengths (ni,) whose cells have the sizes of a plan."""
+    """Return the arc lengths (ni,) of wall nodes; cell sizes at the edges follow from `sampling`."""
     plan = _plan(body, ni - 1, sampling)
     if sampling.spacing == "curvature":
         from meshonet.geometry.spacing.size_field import arcs_by_curvature

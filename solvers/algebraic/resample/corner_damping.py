@@ -30,9 +30,9 @@ it is 0.
 
 
 def openings(z: Any, xp: Any) -> Any:
-    """Return the damping (.., 2, 2), 0 to 1, at the four corners of planar grids `z` (.., m, n), complex.
+    """Return the damping (.., 2, 2), 0 to 1, at the four corners of planar grids.
 
-    `xp` is numpy or torch.
+    `z` (.., m, n) are the nodes as complex numbers, arrays of the module `xp`, numpy or torch.
     """
     west_east = xp.stack([z[..., 0, :], z[..., -1, :]], -2)
     beside = xp.stack([z[..., 1, :], z[..., -2, :]], -2)

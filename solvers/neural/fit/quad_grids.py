@@ -48,7 +48,7 @@ class Quads:
 
 
 def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
-    """Return the domains that datasets of Winslow's and of variational grids have in common, normalised.
+    """Return the normalised domains that datasets of Winslow's and of variational grids have in common.
 
     The method of a dataset is that of its first grid; several datasets may have one method. Raises
     InputError: no grids; grids by one of the methods only, or by others; as `quads`.
@@ -66,7 +66,7 @@ def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
 
 
 def quads(variational: Samples, winslow: Samples) -> Quads:
-    """Return the domains whose grids are in both datasets, normalised.
+    """Return the normalised domains whose grids are in both datasets.
 
     Raises InputError: grids that are not quads of `LATENT` nodes along xi and eta, nor O grids of `AROUND`
     along xi; no domain in common.

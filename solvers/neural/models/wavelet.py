@@ -70,7 +70,9 @@ class WNO(AlongXi):
 
 @cache
 def wavelets(n: int, levels: int) -> Floats:
-    """Return the periodic scaling functions and wavelets of the last level (2 n / 2^levels, n), orthonormal.
+    """Return the orthonormal periodic scaling functions and wavelets of the last level.
+
+    The result has the shape (2 n / 2^levels, n).
 
     `n` is a multiple of 2^levels.
     """

@@ -34,8 +34,9 @@ def frame(z: Any, xp: Any) -> tuple[Any, Any]:
     """Return the centre (batch,) of grids `z` (batch, n, n), complex, and the factor (batch,) to unit size.
 
     ``(z - middle) * factor`` has area 1. Its x direction is that of the sum of two vectors: the mean vector
-    from west to east, and the mean vector from south to north rotated by a quarter turn. The eight
-    relabellings of a domain have the same frame, relabelled. The frame depends on boundary nodes only.
+    from west to east, and the mean vector from south to north rotated by a quarter turn. If the sides of a
+    domain are relabelled, in one of eight ways, the frame is relabelled in the same way. The frame depends on
+    boundary nodes only.
     """
     south, north, west, east = z[:, :, 0], z[:, :, -1], z[:, 0], z[:, -1]
     outline = xp.concatenate(
@@ -55,7 +56,7 @@ def planes_of(z: Complexes) -> Floats:
 
 
 def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
-    """Return the network's inputs (batch, n, n, FEATURES) for normalised grids `z` (batch, n, n), complex.
+    """Return the network's inputs (batch, n, n, FEATURES) for normalised complex grids `z` (batch, n, n).
 
     `step`, of the shape of `z`, is the last Picard step (`picard.approach`). `around`: `z` are unrolled O
     grids (batch, m + 1, n), whose last column is the first plus one period: differences along xi are

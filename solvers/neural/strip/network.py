@@ -52,7 +52,10 @@ class StripNetwork:
 
 
 def shapes(inputs: int, outputs: int, width: int, modes: Sequence[int]) -> dict[str, tuple[int, ...]]:
-    """Return the names and shapes of a network's weights; `modes` of each layer, then of the last."""
+    """Return the names and shapes of a network's weights.
+
+    `modes` are the numbers of Fourier modes of the hidden layers, followed by that of the output layer.
+    """
     dense = {"lift": (2 * width, inputs, 1), "project": (outputs, width, 1)}
     mixing = {"spectral_out": (modes[-1], width, outputs, 2)}
     for n, count in enumerate(modes[:-1]):
