@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass, replace
 
+_BEND = 0.2  # smoothing that grows with the height, beside concave corners; with 0.3 cells fold there
 RISING = 0.75  # part of the levels over which the dissipation rises
 
 
@@ -46,9 +47,16 @@ OPEN_ATTEMPTS = (
 def attempts_around_base(ratio: float, *, concave: bool) -> tuple[MarchSettings, ...]:
     """Return the settings for C grids around a base, whose corners may be `concave`; rows grow by `ratio`.
 
-    Lines from the corners of a base start as close to each other as first cells are high; lines from concave
-    corners come even closer. Without more evening they would stay as close while rows become 10,000 times as
-    high; this happens the sooner, the faster rows grow.
+    Lines from the corners of a base start as close as first cells are high. Without more evening they would
+    stay so while rows become 10,000 times as high, the sooner the faster rows grow. From concave corners they
+    come closer, and neighbouring cells along a row would differ by up to 1.7 without more smoothing there.
     """
-    even = max(0.05, 0.5 * (ratio - 1.0) - 0.05) + (0.05 if concave else 0.0)
-    return (replace(OPEN_ATTEMPTS[0], even=even), *OPEN_ATTEMPTS[1:])
+    even = max(0.05, 0.5 * (ratio - 1.0) - 0.05)
+    first = replace(OPEN_ATTEMPTS[0], even=even)
+    if concave:
+        return (
+            replace(first, even=even + 0.02, bend=_BEND),
+            replace(first, even=even + 0.05),
+            *OPEN_ATTEMPTS[1:],
+        )
+    return (first, *OPEN_ATTEMPTS[1:])

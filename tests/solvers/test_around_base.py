@@ -215,7 +215,7 @@ def test_flanks_rounded_towards_the_base_leave_even_cells(
     report = quality_report(result.grid)
     assert result.quality.folded == 0
     assert report.quality["max_angle"].max < 135.0
-    for figure, most in (("wall_growth", 1.15), ("growth", 1.7)):
+    for figure, most in (("wall_growth", 1.15), ("growth", 1.4)):
         value = report.figures(figure)
         assert value is not None
         assert value.value <= most
