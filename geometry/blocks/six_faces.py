@@ -122,7 +122,9 @@ class SixFaces:
         return Grid((block,), patches, (), self.name, provenance or {})
 
     def resampled(self, counts: tuple[int, int, int]) -> SixFaces:
-        """Return the faces with other node counts, by cubic splines, with the same node distributions.
+        """Return the faces with other node counts, interpolated by cubic splines.
+
+        The node distributions stay the same.
 
         Raises InputError: fewer than 2 nodes along a direction.
         """

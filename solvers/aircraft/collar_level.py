@@ -92,7 +92,8 @@ class CollarPlan:
 
     Parameters
     ----------
-    edge, nose : nodes from the middles of trailing edge and nose to the corners of a collar's rectangle.
+    edge, nose : numbers of nodes from the middle of the trailing edge, and from that of the nose, to the
+        nodes whose lines end at the corners of a collar's rectangle.
     rows : cells across a collar.
     low, top : numbers of cells from the keel to a collar, and from the collar to the crown. Between a wing
         and the fin above it both are the same.

@@ -51,7 +51,9 @@ def smooths(shape: DomainShape, request: GridRequest) -> bool:
 
 
 def smoothed(grid: Grid, request: GridRequest) -> Solution:
-    """Return a given multi-block grid smoothed, then `request.refine` times refined and smoothed again.
+    """Return a multi-block grid after smoothing, and after `request.refine` refinements, if any.
+
+    Each refinement is followed by another smoothing.
 
     Raises InputError: see `smooth`; with refinement, also a connection that covers only a part of a side.
     """

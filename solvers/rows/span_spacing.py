@@ -191,7 +191,9 @@ class LineArcs:
 
 
 def line_parts(samples: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return the parts (cells + 1, n) of the way along lines, from 0 to 1, of the nodes of `two_sided`.
+    """Return the positions (cells + 1, n) on lines of the nodes of `two_sided`.
+
+    They are parts of the way along a line, from 0 to 1.
 
     `samples` (SAMPLES, n, 3) are positions on the lines at the parts ``key_heights(SAMPLES)`` of the way.
     """

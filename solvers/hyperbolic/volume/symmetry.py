@@ -112,7 +112,10 @@ def _named(nodes: Floats, sides: Indices, axis: int, slack: float) -> tuple[Plan
 
 
 def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> Floats:
-    """Return the nodes (n, 3) of a surface, with open edges `inside` planes moved exactly into them."""
+    """Return the nodes (n, 3) of a surface, with open edges moved exactly into planes of symmetry.
+
+    `inside` (p, k) is a mask of the edges in each of the `planes`.
+    """
     nodes, edges = surface.nodes.copy(), surface.open_edges
     for plane, flags in zip(planes, inside, strict=True):
         nodes[edges[flags], plane.axis] = plane.value

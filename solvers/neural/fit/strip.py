@@ -136,7 +136,10 @@ def run(
 
 
 def distance(answer: Complexes, goal: Complexes) -> float:
-    """Return the root mean square of |answer - goal| over the strip, in radians, from modes (.., LEVELS)."""
+    """Return the root mean square of |answer - goal| over the strip, in radians.
+
+    Both are given by their modes (.., LEVELS).
+    """
     return float(np.sqrt((np.abs(answer - goal) ** 2).sum(axis=0).mean()))
 
 
