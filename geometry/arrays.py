@@ -46,7 +46,15 @@ def norms(vectors: Floats) -> Floats:
     """Return the lengths (...) of vectors (..., 2 or 3)."""
     if vectors.shape[-1] == 2:
         return np.hypot(vectors[..., 0], vectors[..., 1])
-    return np.sqrt((vectors**2).sum(axis=-1))
+    return np.sqrt(dots(vectors, vectors))
+
+
+def dots(one: Floats, other: Floats) -> Floats:
+    """Return the scalar products (...) of vectors (..., 2 or 3), faster than sums over such short rows."""
+    total = one[..., 0] * other[..., 0]
+    for k in range(1, one.shape[-1]):
+        total += one[..., k] * other[..., k]
+    return np.asarray(total)
 
 
 def turned_left(vectors: Floats) -> Floats:

@@ -9,7 +9,7 @@ from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.algebraic.resample.spline import sampled
 
-_NEWTON = 12
+_NEWTON, _SETTLED = 12, 1e-12  # steps at the most, and a step after which others would be rounding
 _STRAIGHT, _MARCHED = 0.5, 1.5
 """Distances from a corner, in thicknesses of the layers, up to which columns are straight, and from which on
 they are as marched.
@@ -77,8 +77,11 @@ def with_first(steps: Floats, first: Floats) -> Floats:
     bend = np.zeros(len(steps))
     for _ in range(_NEWTON):
         sizes = begin * exp(bend[:, None] * (t * (1.0 - t)))
-        slope = (sizes * (t * (1.0 - t))).sum(axis=1)
-        bend -= (sizes.sum(axis=1) - total) / slope
+        step = (sizes.sum(axis=1) - total) / (sizes * (t * (1.0 - t))).sum(axis=1)
+        bend -= step
+        if np.abs(step).max() < _SETTLED:
+            break
+    sizes = begin * exp(bend[:, None] * (t * (1.0 - t)))
     sizes[:, 1:] *= ((total - first) / sizes[:, 1:].sum(axis=1))[:, None]
     sizes[:, 0] = first
     return np.asarray(sizes)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, dots, norms
 
 _ROUNDS = 60
 """Largest number of rounds in which first cells of nodes next to two walls are made exact."""
@@ -20,7 +20,7 @@ def exact_in_corners(
     """Return nodes (..., 3) moved so that lines to them from two nodes are `sizes` long.
 
     In each round a node moves along both lines, as far as would make both lengths exact if the map to space
-    were linear.
+    were linear. Rounds end when they make lengths no more exact: what is left is rounding.
 
     Parameters
     ----------
@@ -29,15 +29,17 @@ def exact_in_corners(
     sizes : lengths of the two lines; the second is an array (...).
     in_space : maps coordinates to x, y, z.
     """
-    starts = [in_space(begin) for begin in begins]
+    starts, before = [in_space(begin) for begin in begins], np.inf
     for _ in range(_ROUNDS):
         at = in_space(nodes)
         one, other = (at - start for start in starts)
         lengths = norms(one), norms(other)
         off = sizes[0] - lengths[0], sizes[1] - lengths[1]
-        if max(np.abs(off[0]).max() / sizes[0], (np.abs(off[1]) / sizes[1]).max()) < _CLOSE:
+        largest = float(max(np.abs(off[0]).max() / sizes[0], (np.abs(off[1]) / sizes[1]).max()))
+        if largest < _CLOSE or largest >= before:
             break
-        cosine = (one * other).sum(axis=-1) / (lengths[0] * lengths[1])
+        before = largest
+        cosine = dots(one, other) / (lengths[0] * lengths[1])
         rest = 1.0 - cosine * cosine
         ways = (off[0] - cosine * off[1]) / rest, (off[1] - cosine * off[0]) / rest
         moves = [

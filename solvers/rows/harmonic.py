@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats
+from meshonet.geometry.arrays import Bools, Floats, dots
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.sparse import SparsePattern
 
@@ -40,7 +40,7 @@ class HarmonicMoves:
         moves = np.where(self.prescribed[:, None], moves, 0.0)
         (a, b), count = self.edges, len(moves)
         off = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
-        weight = 1.0 / (off**2).sum(axis=1)
+        weight = 1.0 / dots(off, off)
         diagonal = (np.bincount(a, weight, count) + np.bincount(b, weight, count))[self.free]
         factor = self.pattern.factor(np.concatenate([diagonal, -weight[self.inner]]))
         right = np.zeros((count, 2))

@@ -119,16 +119,33 @@ class KeySection:
     places: Floats
 
 
+@dataclass(frozen=True, eq=False)
+class Beginning:
+    """The middle section, and what the others need to follow from it.
+
+    Parameters
+    ----------
+    plan : data that all sections share.
+    columns : columns of the layers of each section; None of the middle one.
+    middle : the middle section.
+    following : those that make the sections towards the hub, and towards the casing.
+    """
+
+    plan: SectionPlan
+    columns: Sequence[LayerColumns | None]
+    middle: KeySection
+    following: tuple[NextSections, NextSections]
+
+
 def planned(
     planes: Sequence[SectionPlane], coarse: Layout | None, cells: int, longest: Mapping[int, float],
     wake: tuple[float, float], gaps: tuple[bool, bool],
-) -> tuple[SectionPlan, list[LayerColumns | None], KeySection]:  # fmt: skip
-    """Return the plan of all sections, the columns of each, and the middle section, with about `cells` cells.
+) -> Beginning:  # fmt: skip
+    """Return the plan of all sections, and the middle one, with about `cells` cells.
 
-    Columns are None if they are not known yet. `coarse` is the `coarse_section` in the middle, if it is
-    known; `longest` are the largest lengths of the rows to inlet and outlet, by the number of their loop;
-    `wake` is that of `SectionPlan`; `gaps` tells whether the blade ends in a gap at the hub and at the
-    casing.
+    `coarse` is the `coarse_section` in the middle, if it is known; `longest` are the largest lengths of the
+    rows to inlet and outlet, by the number of their loop; `wake` is that of `SectionPlan`; `gaps` tells
+    whether the blade ends in a gap at the hub and at the casing.
     """
     plane = planes[len(planes) // 2]
     whole = middle_section(planes, cells, longest, coarse)
@@ -152,22 +169,22 @@ def planned(
         return _begun(plan, planes, section)
 
 
-def _begun(
-    plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySection
-) -> tuple[SectionPlan, list[LayerColumns | None], KeySection]:
-    """Return a plan, columns of the others by it, and the middle section with nodes at its places."""
+def _begun(plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySection) -> Beginning:
+    """Return the beginning by a plan, the middle section with nodes at the plan's places."""
     others = [plane for plane in planes if plane is not section.plane]
     columns = [partial(LayerColumns.of, plane, plan.places.at(plane.height)) for plane in others]
-    placed, *made = run_in_threads([partial(_placed, plan, section), *columns])
-    return plan, [*made[: len(made) // 2], None, *made[len(made) // 2 :]], placed
+    following = [partial(NextSections, plan, section)] * 2
+    placed, below, above, *made = run_in_threads([partial(_placed, plan, section), *following, *columns])
+    half = len(made) // 2
+    return Beginning(plan, (*made[:half], None, *made[half:]), placed, (below, above))
 
 
 class NextSections:
-    """Makes sections one after the other, each from its neighbour's."""
+    """Makes sections one after the other, each from its neighbour's, with the blocks of `section`."""
 
-    def __init__(self, plan: SectionPlan) -> None:
+    def __init__(self, plan: SectionPlan, section: KeySection) -> None:
         self.plan = plan
-        self._problem: Problem | None = None
+        self._problem = _problem(plan, section.plane, section.layout.mesh)
 
     def of(self, before: KeySection, plane: SectionPlane, columns: LayerColumns | None = None) -> KeySection:
         """Return the section of a plane from the section `before` it; `columns` are computed unless given.
@@ -177,10 +194,7 @@ class NextSections:
         plan = self.plan
         columns = columns or LayerColumns.of(plane, plan.places.at(plane.height))
         layout, places = _carried(plan, before, plane, columns)
-        if self._problem is None:
-            self._problem = _problem(plan, plane, layout.mesh)
-        else:
-            self._problem.take(layout.mesh)
+        self._problem.take(layout.mesh)
         return KeySection(plane, _optimum(plan, plane, layout, self._problem, FROM_NEIGHBOUR), places)
 
 

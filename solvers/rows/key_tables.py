@@ -14,7 +14,7 @@ from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.rows.frame import UNITS
 from meshonet.geometry.rows.row import Row
-from meshonet.geometry.threads import in_threads, run_in_threads
+from meshonet.geometry.threads import run_in_threads
 from meshonet.solvers.blocking.cascade.cascade import SHORTEST
 from meshonet.solvers.blocking.cascade.passage import INLET, NEAR, OUTLET
 from meshonet.solvers.rows.behind import even_behind
@@ -50,21 +50,23 @@ def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
     """
     planes, coarse = _planes(row, first, growth)
     gaps = row.hub_gap > 0.0, row.tip_gap > 0.0
-    plan, columns, middle = planned(planes, coarse, cells, _longest(planes), _wake(row, planes), gaps)
+    begun = planned(planes, coarse, cells, _longest(planes), _wake(row, planes), gaps)
     half = KEYS // 2
 
-    def chain(others: Sequence[int]) -> list[KeySection]:
-        sections, following = [middle], NextSections(plan)
+    def chain(following: NextSections, others: Sequence[int]) -> list[KeySection]:
+        sections = [begun.middle]
         for k in others:
-            section = _reached(following, sections[-1], planes[k], plane_at, _HALVINGS, columns[k])
+            section = _reached(following, sections[-1], planes[k], plane_at, _HALVINGS, begun.columns[k])
             sections.append(section)
         return sections[1:]
 
     def plane_at(height: float) -> SectionPlane:
         return SectionPlane.of(row, height, first, growth)
 
-    below, above = in_threads(chain, (range(half - 1, -1, -1), range(half + 1, KEYS)))
-    return KeyTables(plan, even_behind((*below[::-1], middle, *above), plan.columns))
+    ways = range(half - 1, -1, -1), range(half + 1, KEYS)
+    below, above = run_in_threads(list(map(partial, (chain, chain), begun.following, ways)))
+    sections = even_behind((*below[::-1], begun.middle, *above), begun.plan.columns)
+    return KeyTables(begun.plan, sections)
 
 
 def _planes(row: Row, first: float, growth: float) -> tuple[list[SectionPlane], Layout | None]:

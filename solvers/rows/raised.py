@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, norms, smooth_step
+from meshonet.geometry.arrays import Floats, Indices, dots, norms, smooth_step
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.rows.exact_cells import exact_in_corners
 from meshonet.solvers.rows.span_lines import SpanLines
@@ -160,10 +160,10 @@ def _moves(row: Row, walls: Floats, first_nodes: Floats) -> tuple[Floats, Floats
     along /= length[:, None]
     normal = np.cross(after - before, along)
     normal /= norms(normal)[:, None]
-    straight = (off * normal).sum(axis=1)
+    straight = dots(off, normal)
     aside = off - straight[:, None] * normal
-    half = (aside * along).sum(axis=1)
-    more = (aside * aside).sum(axis=1) - (LEAN * straight) ** 2
+    half = dots(aside, along)
+    more = dots(aside, aside) - (LEAN * straight) ** 2
     root = np.sqrt(np.maximum(half * half - more, 0.0))
     move = np.where(more > 0.0, np.where(half > 0.0, root, -root) - half, 0.0)
     return length / _STEP, move[:, None] * along

@@ -169,7 +169,8 @@ class SectionPlane:
         """
         front, pitch = self.cascade.ring.front, np.array([0.0, self.cascade.pitch[1]])
         one, other = (front.at(self.front_arcs(u)) for u in (ON_SIDE, 1.0 - ON_SIDE))
-        away = ((other + pitch - one[:, None]) ** 2).sum(axis=-1)
+        off = ((other + pitch).T[:, None] - one.T[:, :, None]) ** 2
+        away = off[0] + off[1]
         k = away.argmin(axis=1)
         inside = (k >= _EDGE) & (k < len(ON_SIDE) - _EDGE)
         k, row = np.clip(k, 1, len(ON_SIDE) - 2), np.arange(len(ON_SIDE))
