@@ -242,13 +242,22 @@ class QuadDescent:
         limit: float = ...,
     ) -> float: ...
 
-# sparse: `pattern` is the symbolic factorisation: order, parent, start, row, fill
-SparsePattern: TypeAlias = tuple[Reals, Reals, Indices, Reals, Indices]
+# sparse: `pattern` is the symbolic factorisation: order, parent, start, row, fill, block
+SparsePattern: TypeAlias = tuple[Reals, Reals, Indices, Reals, Indices, int]
 
-def sparse_analyse(n: int, rows: Indices, columns: Indices) -> tuple[SparsePattern, Indices]: ...
+def sparse_analyse(n: int, rows: Indices, columns: Indices, block: int) -> tuple[SparsePattern, Indices]: ...
 def sparse_factor(pattern: SparsePattern, values: Floats) -> tuple[tuple[Reals, Floats, Floats], int]: ...
 def sparse_solve(pattern: SparsePattern, factor: tuple[Reals, Floats, Floats], x: Floats) -> None: ...
 def sparse_multiply(pattern: SparsePattern, values: Floats, x: Floats, product: Floats) -> None: ...
+def normal_terms(
+    unknowns: Indices,
+    places: Indices,
+    derivatives: Floats,
+    weight: Floats,
+    slope: Floats,
+    values: Floats,
+    right: Floats,
+) -> None: ...
 
 # blocking: a surface is (vertices, neighbours, number of the edge in each neighbour), (t, 3) each
 Surface: TypeAlias = tuple[Indices, Indices, Indices]

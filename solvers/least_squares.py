@@ -1,14 +1,13 @@
 """Gauss-Newton steps for sums of squares of residuals that depend on few unknowns each."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices
-from meshonet.solvers.sparse import SparsePattern
+from meshonet.kernels._native import normal_terms
+from meshonet.solvers.sparse import SparseMatrix, SparsePattern
 
 
 @dataclass(frozen=True)
@@ -17,9 +16,9 @@ class Residuals:
 
     Parameters
     ----------
-    derivatives : (..., k, m) derivatives of each residual with respect to its m unknowns.
-    weight : (..., k) second derivatives of the sum with respect to the residuals.
-    slope : (..., k) first derivatives of the sum with respect to the residuals.
+    derivatives : (k, m) derivatives of each residual with respect to its m unknowns.
+    weight : (k,) second derivatives of the sum with respect to the residuals.
+    slope : (k,) first derivatives of the sum with respect to the residuals.
     """
 
     derivatives: Floats
@@ -32,9 +31,9 @@ class NormalEquations:
 
     Parameters
     ----------
-    size : number of unknowns, n.
-    kinds : for each kind of residuals the indices (..., k, m) of the unknowns, -1 for values that are held
-        fixed. Those along the first axes are added one after the other.
+    size : number of unknowns, n, or of pairs of them.
+    kinds : for each kind of residuals the indices (k, m) of the unknowns, -1 for values that are held fixed.
+    block : 2 if indices are of pairs of unknowns, 0 and 1, 2 and 3, ...; then derivatives are (k, 2 m).
 
     >>> equations = NormalEquations(1, [np.array([[0], [0]])])
     >>> two = Residuals(np.array([[1.0], [1.0]]), np.ones(2), np.array([-1.0, -3.0]))
@@ -42,75 +41,35 @@ class NormalEquations:
     [2.0]
     """
 
-    def __init__(self, size: int, kinds: Sequence[Indices]) -> None:
-        self._size = size
-        self._kinds = [_Kind.of(unknowns, size) for unknowns in kinds]
-        diagonal = np.arange(size)
+    def __init__(self, size: int, kinds: Sequence[Indices], block: int = 1) -> None:
+        self._shape = size, block
+        ends = [unknowns.T[np.array(np.triu_indices(unknowns.shape[1]))] for unknowns in kinds]
+        known = [(pairs >= 0).all(axis=0) for pairs in ends]
         rows, columns = (
-            np.concatenate([diagonal, *(kind.entries[end] for kind in self._kinds)]) for end in (0, 1)
+            np.concatenate([np.arange(size), *(p[end][own] for p, own in zip(ends, known, strict=True))])
+            for end in (0, 1)
         )
-        self.pattern = SparsePattern(size, rows, columns)
+        self.pattern = SparsePattern(size, rows, columns, block)
+        places, self._diagonal = self.pattern.places, self.pattern.slot[:size]
+        entries = 2 * self.pattern.slot + (places[rows] < places[columns])
+        self._kinds, done = [], size
+        for unknowns, own in zip(kinds, known, strict=True):
+            entry, count = np.full(own.shape, -1, dtype=np.intp), int(own.sum())
+            entry[own] = entries[done : done + count]
+            self._kinds.append((unknowns, entry))
+            done += count
 
     def step(self, residuals: Sequence[Residuals], diagonal: Floats, slope: Floats) -> Floats:
-        """Return the changes (n,) of the unknowns.
+        """Return the changes of the unknowns, (n,) or (2 n,).
 
-        `diagonal` (n,) and `slope` (n,) are second and first derivatives of the terms that depend on a single
-        unknown. Raises SolverError: the equations are singular.
+        `diagonal` and `slope`, like them, are second and first derivatives of the terms that depend on a
+        single unknown. Raises SolverError: the equations are singular.
         """
-        values, right = [diagonal], -slope
-        for kind, each in zip(self._kinds, residuals, strict=True):
-            own, sums = kind.terms(each, self._size)
-            values.append(own)
-            for part in sums:
-                right -= part
-        return self.pattern.factor(np.concatenate(values)).solve(right)
-
-
-@dataclass(frozen=True, eq=False)
-class _Kind:
-    """Which products of derivatives are added where.
-
-    Parameters
-    ----------
-    shape : (l, k, m): l times k residuals of m unknowns each.
-    pairs : (2, p) pairs of the unknowns of a residual.
-    entries : (2, e) rows and columns of the matrix to which products are added.
-    products : (e,) which of (l, p, k) these are.
-    moving : (f,) which of derivatives (l, m, k) are by unknowns.
-    bins : (f,) where these are added, in sums (l m, n).
-    """
-
-    shape: tuple[int, int, int]
-    pairs: Indices
-    entries: Indices
-    products: Indices
-    moving: Indices
-    bins: Indices
-
-    @classmethod
-    def of(cls, unknowns: Indices, size: int) -> Self:
-        """Return the kind with unknowns (..., k, m) of `size`."""
-        k, m = unknowns.shape[-2:]
-        own = np.ascontiguousarray(unknowns.reshape(math.prod(unknowns.shape[:-2]), k, m).swapaxes(1, 2))
-        pairs = np.array(np.triu_indices(m))
-        ends = own[:, pairs]
-        products = np.flatnonzero((ends >= 0).all(axis=1))
-        moving = np.flatnonzero(own >= 0)
-        return cls(
-            (len(own), k, m), pairs, ends.swapaxes(0, 1).reshape(2, -1)[:, products], products, moving,
-            own.ravel()[moving] + size * (moving // max(k, 1)),
-        )  # fmt: skip
-
-    def terms(self, residuals: Residuals, size: int) -> tuple[Floats, Floats]:
-        """Return the contributions of some residuals to the entries of the matrix and to the right-hand side.
-
-        The first (e,) are weighted products of derivatives. The second (l m, n) are sums, for each unknown,
-        of slopes times derivatives.
-        """
-        count, k, m = self.shape
-        columns = np.ascontiguousarray(residuals.derivatives.reshape(count, k, m).swapaxes(1, 2))
-        weighted = residuals.weight.reshape(count, 1, k) * columns
-        products = weighted[:, self.pairs[0]] * columns[:, self.pairs[1]]
-        sloped = (residuals.slope.reshape(count, 1, k) * columns).ravel()[self.moving]
-        sums = np.bincount(self.bins, sloped, count * m * size)
-        return products.ravel()[self.products], np.asarray(sums, dtype=np.float64).reshape(-1, size)
+        size, block = self._shape
+        values, right = np.zeros(self.pattern.entries * block**2), -slope.reshape(size, block)
+        for k in range(block):
+            values.reshape(-1, block, block)[self._diagonal, k, k] = diagonal[k::block]
+        for (unknowns, entry), each in zip(self._kinds, residuals, strict=True):
+            derivatives = each.derivatives.reshape(*unknowns.shape, block)
+            normal_terms(unknowns, entry, derivatives, each.weight, each.slope, values, right)
+        return SparseMatrix(self.pattern, values).factor().solve(right.ravel())

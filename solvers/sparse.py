@@ -23,22 +23,32 @@ class SparsePattern:
     size : number of rows, n.
     rows, columns : (m,) position of each entry. (i, j) includes (j, i), so only one of the two may be given.
         Entries at the same position are added.
+    block : number of unknowns in a row, 1 or 2. Entries of 2 are matrices (2, 2), of 2 n unknowns.
 
     Attributes
     ----------
     arrays : the pattern in the form of the kernels.
     slot : (m,) number of the distinct entry to which each entry is added.
+    entries : number of distinct entries.
 
     >>> pattern = SparsePattern(2, np.array([0, 0, 1]), np.array([0, 1, 1]))
     >>> pattern.factor(np.array([2.0, 1.0, 2.0])).solve(np.array([3.0, 3.0])).tolist()
     [1.0, 1.0]
     """
 
-    def __init__(self, size: int, rows: Indices, columns: Indices) -> None:
-        self.size = size
+    def __init__(self, size: int, rows: Indices, columns: Indices, block: int = 1) -> None:
+        self.size = size * block
         rows, columns = (np.ascontiguousarray(i, dtype=np.intp) for i in (rows, columns))
-        self.arrays, self.slot = sparse_analyse(size, rows, columns)
-        self._entries = int(self.arrays[2][-1])
+        self.arrays, self.slot = sparse_analyse(size, rows, columns, block)
+        self.entries = int(self.arrays[2][-1])
+
+    @property
+    def places(self) -> Indices:
+        """When each row (n,) is eliminated. An entry has the rows of the later of its two."""
+        order = self.arrays[0]
+        places = np.empty(len(order), dtype=np.intp)
+        places[order] = np.arange(len(order))
+        return places
 
     @property
     def fill(self) -> int:
@@ -46,8 +56,8 @@ class SparsePattern:
         return int(self.arrays[4][-1])
 
     def matrix(self, values: Floats) -> SparseMatrix:
-        """Return the matrix with these values (m,) of the entries."""
-        summed = np.bincount(self.slot, np.asarray(values, dtype=np.float64), self._entries)
+        """Return the matrix with these values (m,) of the entries, in rows of one unknown."""
+        summed = np.bincount(self.slot, np.asarray(values, dtype=np.float64), self.entries)
         return SparseMatrix(self, np.asarray(summed, dtype=np.float64))
 
     def singular(self, row: int) -> SolverError:

@@ -133,6 +133,8 @@ def even_line(tuple measures, bint closed, tuple terms, tuple steps, tuple patte
         raise ValueError(f"{m} points and {n} places")
     cdef SparsePattern equations
     pattern_of(pattern, &equations)
+    if equations.block != 1:
+        raise ValueError("a matrix of blocks")
     cdef const ptrdiff_t *number = reads_places(unknown, (n,), equations.n, -1)
     cdef const ptrdiff_t *slots = reads_places(slot, slot.shape, equations.start[equations.n])
     cdef Measures own = Measures(m, k, closed, reads(measures[0], (m,)), reads(measures[1], (k, m)),

@@ -79,7 +79,7 @@ static int analyse(QuadDescent *d)
         s->pattern.parent = s->pattern.order + n + 1, s->pattern.fill = s->pattern.start + n + 1;
         s->pattern.n = (int)n;
         s->entries = assemble(d, rows, rows + most, NULL, NULL, NULL);
-        failed = sparse_analyse((int)n, s->entries, rows, rows + most, &s->pattern, s->slot) < 0;
+        failed = sparse_analyse((int)n, s->entries, rows, rows + most, 1, &s->pattern, s->slot) < 0;
     }
     if (!failed) {
         const size_t distinct = (size_t)s->pattern.start[n], fill = (size_t)s->pattern.fill[n];

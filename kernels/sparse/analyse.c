@@ -155,8 +155,8 @@ static void count_fill(const SparsePattern *a, int *seen, int *count)
         a->fill[k + 1] = a->fill[k] + count[k];
 }
 
-int sparse_analyse(int n, ptrdiff_t m, const ptrdiff_t *rows, const ptrdiff_t *columns, SparsePattern *a,
-                   ptrdiff_t *slot)
+int sparse_analyse(int n, ptrdiff_t m, const ptrdiff_t *rows, const ptrdiff_t *columns, int block,
+                   SparsePattern *a, ptrdiff_t *slot)
 {
     int *scratch = malloc(((size_t)n * 6 + 1) * sizeof *scratch), failed = -1;
     if (!scratch)
@@ -165,6 +165,7 @@ int sparse_analyse(int n, ptrdiff_t m, const ptrdiff_t *rows, const ptrdiff_t *c
     int *v = scratch + 5 * n;
     Graph graph = {0};
     a->n = n;
+    a->block = block;
     if (!make_graph(n, m, rows, columns, place, &graph) && !minimum_degree(n, graph.start, graph.list, v)) {
         for (int k = 0; k < n; k++)
             place[v[k]] = k;

@@ -32,8 +32,9 @@ class HarmonicMoves:
         self.edges = self.own[mesh.edges].T
         a, b = self.edges
         self.inner = ~self.prescribed[a] & ~self.prescribed[b]
-        diagonal, inner = np.arange(len(self.free)), (number[ends[self.inner]] for ends in (a, b))
-        self.pattern = SparsePattern(len(self.free), *(np.concatenate([diagonal, each]) for each in inner))
+        diagonal = np.arange(len(self.free))
+        rows, columns = (np.concatenate([diagonal, number[ends[self.inner]]]) for ends in (a, b))
+        self.pattern = SparsePattern(len(self.free), rows, columns)
 
     def of(self, mesh: QuadMesh, moves: Floats) -> Floats:
         """Return displacements (n, 2): `moves` (n, 2) where prescribed, elsewhere weighted means."""

@@ -6,7 +6,8 @@ import scipy.sparse
 import scipy.sparse.linalg
 
 from meshonet.geometry.errors import SolverError
-from meshonet.solvers.sparse import SparsePattern
+from meshonet.solvers.least_squares import NormalEquations, Residuals
+from meshonet.solvers.sparse import SparseMatrix, SparsePattern
 
 
 def laplacian(n: int, m: int) -> scipy.sparse.coo_matrix:
@@ -72,6 +73,51 @@ def test_entries_at_one_place_add_up_on_either_side_of_the_diagonal():
     rows, columns = np.array([0, 1, 0, 1, 0]), np.array([0, 0, 1, 1, 0])
     factor = SparsePattern(2, rows, columns).factor(np.array([1.0, 0.5, 0.5, 3.0, 1.0]))
     assert np.allclose(factor.solve(np.array([1.0, 2.0])), np.linalg.solve([[2, 1], [1, 3]], [1, 2]))
+
+
+@pytest.mark.parametrize("sides", [(), (1,), (2,), (5,)])
+def test_blocks_of_two_unknowns_are_eliminated_together(sides):
+    """Blocks of any order and both triangles: the same matrix, spread out, is solved by NumPy."""
+    rng = np.random.default_rng(3)
+    n, m = 60, 150
+    rows, columns = np.concatenate([np.tile(np.arange(n), (2, 1)), rng.integers(0, n, (2, m))], axis=1)
+    pattern = SparsePattern(n, rows, columns, block=2)
+    values = np.zeros((pattern.entries, 2, 2))
+    dense = np.zeros((n, 2, n, 2))
+    given = rng.normal(size=(n + m, 2, 2))
+    for row, column, slot, block in zip(rows, columns, pattern.slot, given, strict=True):
+        block = block + block.T + 40.0 * np.eye(2) if row == column else block
+        late, early = (row, column) if pattern.places[row] >= pattern.places[column] else (column, row)
+        values[slot] += block
+        dense[late, :, early, :] += block
+        if row != column:
+            dense[early, :, late, :] += block.T
+    matrix = SparseMatrix(pattern, values.ravel())
+    x = rng.normal(size=(2 * n, *sides))
+    right = np.tensordot(dense.reshape(2 * n, 2 * n), x, axes=1)
+    assert np.allclose(matrix.times(x), right)
+    assert np.allclose(matrix.factor().solve(right), x, atol=1e-12)
+
+
+@pytest.mark.parametrize("block", [1, 2])
+def test_a_step_of_gauss_newton_solves_the_normal_equations(block):
+    """Against NumPy's dense product of derivatives; some unknowns are held, some residuals have one twice."""
+    rng = np.random.default_rng(block)
+    n, k, m = 20, 90, 3
+    unknowns = rng.integers(-1, n, (k, m))
+    derivatives, weight, slope = rng.normal(size=(k, m * block)), rng.uniform(0.5, 1.5, k), rng.normal(size=k)
+    twice = unknowns[:, 1] == unknowns[:, 0]
+    derivatives.reshape(k, m, block)[twice, 1] = 0.0
+    twice = (unknowns[:, 2] == unknowns[:, 0]) | (unknowns[:, 2] == unknowns[:, 1])
+    derivatives.reshape(k, m, block)[twice, 2] = 0.0
+    diagonal, pull = rng.uniform(0.5, 1.0, n * block), rng.normal(size=n * block)
+    jacobian = np.zeros((k, n + 1, block))
+    for j in range(m):
+        jacobian[np.arange(k), unknowns[:, j]] += derivatives.reshape(k, m, block)[:, j]
+    jacobian = jacobian[:, :n].reshape(k, n * block)
+    step = NormalEquations(n, [unknowns], block).step([Residuals(derivatives, weight, slope)], diagonal, pull)
+    matrix = jacobian.T @ (weight[:, None] * jacobian) + np.diag(diagonal)
+    assert np.allclose(step, np.linalg.solve(matrix, -pull - jacobian.T @ slope), atol=1e-12)
 
 
 def test_the_order_keeps_factors_about_as_sparse_as_superlu_does():

@@ -173,12 +173,11 @@ class _Patch:
         length = modulus(z[mesh.edges[:, 1]] - z[mesh.edges[:, 0]])
         for end in mesh.edges.T:
             np.minimum.at(shortest, end, length)
-        unknown = np.full((len(z), 2), -1, dtype=np.intp)
-        unknown[nodes] = np.arange(2 * len(nodes)).reshape(-1, 2)
+        unknown = np.full(len(z), -1, dtype=np.intp)
+        unknown[nodes] = np.arange(len(nodes))
         unknown[pairs[:, 1]] = unknown[pairs[:, 0]]
         tangents = tangents.copy()
         tangents[pairs[:, 1]] = tangents[pairs[:, 0]]
-        kinds = [unknown[of].reshape(len(of), 6) for of in (lines.nodes, corners)]
         return cls(
             nodes, lines, corners,
             GrowthLimit.at(lines.growth(z), lines.limit - MARGIN),
@@ -189,7 +188,8 @@ class _Patch:
             ),
             z[nodes], MOVE / shortest[nodes] ** 2,
             np.where(tangents == 0, 1.0, tangents), np.where(tangents[nodes] == 0, 1.0, RAIL),
-            NormalEquations(2 * len(nodes), kinds), pairs, _parts(free, (lines.nodes, quads)),
+            NormalEquations(len(nodes), [unknown[lines.nodes], unknown[corners]], 2), pairs,
+            _parts(free, (lines.nodes, quads)),
         )  # fmt: skip
 
     def evened(self, z: Complexes, weight: float) -> tuple[Complexes, float]:
