@@ -109,7 +109,7 @@ BLOCKING_HEAD = """# Files of blocking
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for a file in `solvers/blocking`. Each row is the first paragraph of the file's docstring.
+Look here for a file in `solvers/blocking` or `solvers/cascade`. Each row is the first paragraph of the file's docstring.
 [Stages](stages.md) describes the order in which the functions are called.
 """
 
@@ -136,10 +136,10 @@ def main() -> None:
 
 def blocking_page() -> str:
     """Return development/blocking.md: files and the first lines of their docstrings, folder by folder."""
-    room = DOCS.parent / "solvers" / "blocking"
+    rooms = [DOCS.parent / "solvers" / name for name in ("blocking", "cascade")]
     lines = [BLOCKING_HEAD]
-    for folder in sorted({path.parent for path in room.rglob("*.py")}):
-        name = folder.relative_to(room.parents[1]).as_posix()
+    for folder in sorted({path.parent for room in rooms for path in room.rglob("*.py")}):
+        name = folder.relative_to(DOCS.parent).as_posix()
         lines += [f"## `{name}/`\n", f"{said_of(folder / '__init__.py')}\n"]
         files = sorted(path for path in folder.glob("*.py") if path.name != "__init__.py")
         if files:

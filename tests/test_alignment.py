@@ -29,7 +29,7 @@ def placed(values: Floats, offset: int) -> Floats:
 
 def solved(x: Floats, out: Floats) -> None:
     out[...] = x
-    _native.sparse_solve(CHAIN._arrays, FACTOR.arrays, out)
+    _native.sparse_solve(CHAIN.arrays, FACTOR.arrays, out)
 
 
 def function(name: str) -> Callable[..., object]:

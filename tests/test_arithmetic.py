@@ -26,7 +26,7 @@ POWERS = (
     "geometry/conformal/lift.py",
     "solvers/algebraic/resample/spline.py",
     "solvers/blocking/block_grid.py",
-    "solvers/blocking/cascade/passage_flow.py",
+    "solvers/cascade/passage_flow.py",
     "solvers/blocking/decomposition/surface/triangulation.py",
     "solvers/energy/quad_problem.py",
     "solvers/hyperbolic/default_spacing.py",

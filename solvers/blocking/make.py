@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -44,19 +44,29 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     Raises InputError: loops that cross or touch, unknown names of walls, a layout of another domain;
     SolverError: the decomposition fails; NoValidGridError: folded cells.
     """
-    begun = perf_counter()
-    timings: Timings = {}
-    domain = _checked(shape.domain, request)
-    layout = _given(shape, domain, request)
-    height = request.heights(shape.unit)
-    if request.pitch is not None:
-        fine = _passage(domain, request, request.height(shape.unit), timings)
-    elif height is None:
+
+    def fine(domain: Domain, timings: Timings) -> Layout:
+        layout, height = _given(shape, domain, request), request.heights(shape.unit)
+        if height is not None:
+            return _with_layers(domain, request, height, layout, timings)
         cells, size = _wanted(domain, request)
         layout = layout or decompose(domain, timings=timings)
-        fine = fine_layout(layout, cells=cells, cell_size=size, halved=request.refine, timings=timings)
-    else:
-        fine = _with_layers(domain, request, height, layout, timings)
+        return fine_layout(layout, cells=cells, cell_size=size, halved=request.refine, timings=timings)
+
+    return grid_of(shape, request, fine)
+
+
+def grid_of(
+    shape: DomainShape, request: BlockRequest, fine_of: Callable[[Domain, Timings], Layout]
+) -> Solution:
+    """Return the grid of the fine layout that a function makes of a domain, once that is checked.
+
+    Raises InputError: see `make_blocks`.
+    """
+    begun = perf_counter()
+    timings: Timings = {}
+    domain, height = _checked(shape.domain, request), request.heights(shape.unit)
+    fine = fine_of(domain, timings)
     grid = to_grid(around_body(fine), walls=request.layered).with_provenance(method=METHOD, cells=fine.cells)
     said = (
         request.height_note(f"on a length of {shape.unit:.6g}", shape.unit),
@@ -140,7 +150,7 @@ def _with_layers(
 
     numbers, stretches = layered_walls(domain, request.layered)
     size = _wanted(domain, request)[1]
-    settings = _settings(request, height)
+    settings = settings_of(request, height)
     cells = 0 if size else (request.cells or request.default_cells) * request.multiple**2
     size = (size or 0.0) / request.multiple
     return layered(
@@ -149,7 +159,7 @@ def _with_layers(
     )  # fmt: skip
 
 
-def _settings(request: BlockRequest, height: AtWalls) -> LayerSettings:
+def settings_of(request: BlockRequest, height: AtWalls) -> LayerSettings:
     """Return the layers of a request whose first cells have a height, or one for each wall."""
     from meshonet.solvers.layers.layer_settings import LayerSettings
 
@@ -172,36 +182,10 @@ def _outside_layers(domain: Domain, request: BlockRequest, height: AtWalls, layo
             problem = f"{{{name}}} for the blocks outside of layers, which have no cells yet"
             raise InputError(problem, f"give {{{name}}} when the grid is made, beside {{layout}}")
     loops, stretches = layered_walls(domain, request.layered)
-    walls = WallLayers.of(domain, loops, _settings(request, height), stretches)
+    walls = WallLayers.of(domain, loops, settings_of(request, height), stretches)
     if layout is None:
         return found_outside(walls.rest, walls.fronts)
     return taken_outside(layout, walls.rest, walls.fronts)
-
-
-def _passage(domain: Domain, request: BlockRequest, height: float | None, timings: Timings) -> Layout:
-    """Return the passage of a cascade, whose blade is the only hole of a domain."""
-    from meshonet.solvers.blocking.cascade.cascade import Cascade
-    from meshonet.solvers.blocking.cascade.cascade_layout import cascade_layout
-
-    if request.layout is not None:
-        problem = "{layout} beside {pitch}"
-        raise InputError(problem, "drop {layout}: the blocks of a cascade are always the same")
-    if request.count:
-        raise InputError(
-            "{count} beside {pitch}", "give {cells}: the counts of a cascade follow from its sizes"
-        )
-    settings, size = None, request.cell_size
-    if height is not None:
-        settings = _settings(request, height)
-        if size is not None or request.res is not None:
-            raise InputError("a size of cells beside layers", "give {cells}: sizes follow from the layers")
-    inlet, outlet = (1.0 if each is None else each for each in (request.inlet, request.outlet))
-    assert request.pitch is not None  # noqa: S101 - the caller looked
-    cascade = Cascade(domain.loops[1], request.pitch, inlet, outlet, settings, domain.name)
-    if request.res is not None:
-        size = cascade.extent / request.res
-    cells = request.cells or request.usual_cells
-    return cascade_layout(cascade, cells=cells, cell_size=size, timings=timings)
 
 
 def _checked(domain: Domain, request: BlockRequest) -> Domain:

@@ -251,10 +251,13 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
         seconds |= {"load": time.perf_counter() - begun - solution.seconds["grid"], **solution.seconds}
         solution = replace(solution, notes=(*shape.notes, *solution.notes))
         return judged(solution, seconds, request, remedy="find other blocks with {cells}, or {allow_invalid}")
-    from meshonet.solvers.blocking.make import make_blocks
+    if request.pitch is None:
+        from meshonet.solvers.blocking.make import make_blocks as make
+    else:
+        from meshonet.solvers.cascade.make import make_passage as make
 
     loaded = time.perf_counter()
-    solution = make_blocks(shape, block_request(request))
+    solution = make(shape, block_request(request))
     seconds |= {"load": loaded - begun, **solution.seconds}
     return judged(solution, seconds, request, remedy="use more {cells}")
 

@@ -15,8 +15,8 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.rows.frame import UNITS
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import run_in_threads
-from meshonet.solvers.blocking.cascade.cascade import SHORTEST
-from meshonet.solvers.blocking.cascade.passage import INLET, NEAR, OUTLET
+from meshonet.solvers.cascade.cascade import SHORTEST
+from meshonet.solvers.cascade.passage import INLET, NEAR, OUTLET
 from meshonet.solvers.rows.behind import even_behind
 from meshonet.solvers.rows.key_sections import KeySection, LayerColumns, NextSections, SectionPlan, planned
 from meshonet.solvers.rows.middle_section import coarse_section

@@ -11,9 +11,9 @@ from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.solvers.blocking.cascade.cascade import scaled
-from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, attached_cells, counts_of
-from meshonet.solvers.blocking.cascade.passage_template import template
+from meshonet.solvers.cascade.cascade import scaled
+from meshonet.solvers.cascade.cascade_layout import FIRST, WEIGHTS, attached_cells, counts_of
+from meshonet.solvers.cascade.passage_template import template
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.layers.layer_law import layer_arcs
 from meshonet.solvers.layers.layer_settings import JOIN

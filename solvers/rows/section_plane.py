@@ -21,7 +21,7 @@ from meshonet.geometry.elementary import modulus
 from meshonet.geometry.rows.blade import BladeSurface, clustered
 from meshonet.geometry.rows.channel import MeridionalMap
 from meshonet.geometry.rows.row import Row
-from meshonet.solvers.blocking.cascade.cascade import Cascade
+from meshonet.solvers.cascade.cascade import Cascade
 from meshonet.solvers.layers.layer_settings import LayerSettings
 
 _AROUND = 400

@@ -10,11 +10,11 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
-from meshonet.solvers.blocking.cascade.cascade_layout import row_steps, straight_rows
-from meshonet.solvers.blocking.cascade.passage import BLADE, extended
-from meshonet.solvers.blocking.cascade.passage_template import cut_of
 from meshonet.solvers.blocking.layers.attach import Rows
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
+from meshonet.solvers.cascade.cascade_layout import row_steps, straight_rows
+from meshonet.solvers.cascade.passage import BLADE, extended
+from meshonet.solvers.cascade.passage_template import cut_of
 from meshonet.solvers.rows.section_plane import SectionPlane
 
 _BISECTIONS = 60

@@ -10,11 +10,11 @@ from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.blocks import block_figures
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.naca import naca
-from meshonet.solvers.blocking.cascade.cascade import Cascade
-from meshonet.solvers.blocking.cascade.cascade_layout import cascade_layout
-from meshonet.solvers.blocking.cascade.passage import Passage
-from meshonet.solvers.blocking.cascade.passage_flow import PassageFlow
 from meshonet.solvers.blocking.decomposition.collapse.score import deviations
+from meshonet.solvers.cascade.cascade import Cascade
+from meshonet.solvers.cascade.cascade_layout import cascade_layout
+from meshonet.solvers.cascade.passage import Passage
+from meshonet.solvers.cascade.passage_flow import PassageFlow
 from meshonet.solvers.layers.layer_settings import LayerSettings
 
 CELLS = 4000

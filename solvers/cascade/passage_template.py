@@ -24,8 +24,8 @@ from meshonet.geometry.elementary import arccosh, cosh, exp, modulus
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.solvers.blocking.cascade.passage import BLADE, INLET, OUTLET, Passage
-from meshonet.solvers.blocking.cascade.passage_flow import PassageFlow
+from meshonet.solvers.cascade.passage import BLADE, INLET, OUTLET, Passage
+from meshonet.solvers.cascade.passage_flow import PassageFlow
 
 CELLS = 6
 """Number of cells across the ring, and smallest number along each side of a block."""

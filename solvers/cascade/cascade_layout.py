@@ -19,8 +19,12 @@ from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.elementary import log
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
-from meshonet.solvers.blocking.cascade.cascade import COARSEST, Cascade, scaled
-from meshonet.solvers.blocking.cascade.passage import (
+from meshonet.solvers.blocking.layers.attach import Rows
+from meshonet.solvers.blocking.layers.finished import evened
+from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
+from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
+from meshonet.solvers.cascade.cascade import COARSEST, Cascade, scaled
+from meshonet.solvers.cascade.passage import (
     BLADE,
     INLET,
     OUTLET,
@@ -28,11 +32,7 @@ from meshonet.solvers.blocking.cascade.passage import (
     extended,
     turned_round,
 )
-from meshonet.solvers.blocking.cascade.passage_template import cut_of, template
-from meshonet.solvers.blocking.layers.attach import Rows
-from meshonet.solvers.blocking.layers.finished import evened
-from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
-from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
+from meshonet.solvers.cascade.passage_template import cut_of, template
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.layers.even_line import EVEN, FEW_STEPS, evened_loops

@@ -16,10 +16,10 @@ from meshonet.geometry.elementary import times
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.reach import MOST_CELLS, check_reach
 from meshonet.geometry.shapes.assembly import far_loop
-from meshonet.solvers.blocking.cascade.passage import BLADE, NEAR, Passage
 from meshonet.solvers.blocking.layers.layer_rows import ring_metric
 from meshonet.solvers.blocking.layers.rings import COLUMNS, THICKNESS, Ring, march_ring
 from meshonet.solvers.blocking.request import CELLS
+from meshonet.solvers.cascade.passage import BLADE, NEAR, Passage
 from meshonet.solvers.layers.even_line import Measures
 from meshonet.solvers.layers.layer_settings import LayerSettings
 from meshonet.solvers.refinement.size_metric import SizeMetric
