@@ -109,7 +109,8 @@ BLOCKING_HEAD = """# Files of blocking
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for a file in `solvers/blocking` or `solvers/cascade`. Each row is the first paragraph of the file's docstring.
+Look here for a file in `solvers/blocking` or `solvers/cascade`. Each row is the first paragraph of the file's
+docstring.
 [Stages](stages.md) describes the order in which the functions are called.
 """
 
