@@ -140,7 +140,10 @@ class Field:
 
     @classmethod
     def of(cls, nodes: Floats, sources: Indices, areas: Floats, near: float, points: Indices) -> Self:
-        """Return the field on `nodes` (n, d) with `areas` (n,), by the indices of sources and points."""
+        """Return the field that `sources` cause at `points`, both indices of `nodes` (n, d).
+
+        `areas` (n,) are the lengths or areas of the nodes.
+        """
         places = np.ascontiguousarray(nodes[sources].T)
         where = np.ascontiguousarray(nodes[points].T)
         return cls(sources, places, np.ascontiguousarray(areas[sources]), near, where)

@@ -177,7 +177,10 @@ def aspect_slope(nodes: Floats) -> Floats:
 
 
 def winslow_residual(nodes: Floats) -> Floats:
-    """Return the residual of Winslow's equations at inner nodes of (2, ni, nj), by central differences."""
+    """Return the residual of Winslow's equations at the inner ones of `nodes` (2, ni, nj).
+
+    Derivatives are central differences.
+    """
     residual, middle = np.zeros_like(nodes), nodes[:, 1:-1, 1:-1]
     west, east = nodes[:, :-2, 1:-1], nodes[:, 2:, 1:-1]
     south, north = nodes[:, 1:-1, :-2], nodes[:, 1:-1, 2:]

@@ -163,7 +163,7 @@ class VolumeMultigrid:
 
 
 def transfer(n: int, m: int) -> Transfer:
-    """Return the transfer between n equally spaced nodes and m fewer ones."""
+    """Return the transfer between n equally spaced nodes and m equally spaced nodes, where m < n."""
     at = np.arange(n) * ((m - 1) / (n - 1))
     first = np.minimum(at.astype(np.intp), m - 2)
     weights = np.stack([1.0 - (at - first), at - first], axis=1)

@@ -97,7 +97,9 @@ class Spline:
 def interpolate(
     faces: SixFaces, laws: Laws, spline: Spline | None = None, out: Floats | None = None
 ) -> Floats:
-    """Return planar nodes (ni, nj, nk, 3): the Boolean sum of the three directions at `laws`, plus `spline`.
+    """Return the Boolean sum of the three directions at `laws`, plus the `spline`.
+
+    The result is an array of nodes (ni, nj, nk, 3) in planar layout.
 
     `out` (3, ni, nj, nk) is used for the result if given; allocating memory costs as much as computing the
     nodes. Gordon and Hall, Int. J. Numer. Methods Eng. 7 (1973) 461-477.
