@@ -174,15 +174,11 @@ def step_words(steps: list[int]) -> str:
     """Return the ascending `steps` of the drawn lines of blocks as text; empty if all lines are drawn.
 
     >>> step_words([1, 5]), step_words([2]), step_words([1])
-    ('from all lines to every 5th line, depending on the block', 'every 2nd line', '')
+    ('not all lines are drawn', 'every 2nd line', '')
     """
     if steps[-1] == 1:
         return ""
-    last = f"every {_ordinal(steps[-1])}line"
-    if len(steps) == 1:
-        return last
-    first = "all lines" if steps[0] == 1 else f"every {_ordinal(steps[0])}line"
-    return f"from {first} to {last}, depending on the block"
+    return f"every {_ordinal(steps[0])}line" if len(steps) == 1 else "not all lines are drawn"
 
 
 def note(ax: Axes, text: str) -> None:

@@ -45,8 +45,8 @@ def sweep(
     )] = None,
     around: Annotated[int | None, _sampling(
         "--around", metavar="N",
-        help="Number of cells around a circle, a multiple of four. [default: derived from --cells, and at "
-        "least 88; the area is then accurate to 0.1 %]",
+        help="Number of cells around a circle, a multiple of four. [default: 88, or derived from --cells and "
+        "at least 84; the area is then accurate to 0.1 %]",
     )] = None,
     planes: Annotated[int | None, _volume(
         "--planes", metavar="K",

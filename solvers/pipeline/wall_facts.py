@@ -40,6 +40,8 @@ def growth_note(grid: Grid, limit: float, run: Lines | None = None) -> tuple[str
     beside = ""
     if leaving and leaving.max < largest.max:
         beside = f"; along grid lines from walls it is {leaving.max:.3f}"
+        if leaving.max > limit * (1.0 + _SAME):
+            beside += f", at {named(leaving.at)}"
     return (f"the largest growth ratio is {largest.max:.3f}, {where}{beside}",)
 
 

@@ -16,6 +16,8 @@ AROUND = 88
 """Cells around a circle with which its area is accurate to 0.1 %: 1 - sin(x)/x with x = 2 pi / 88 is 0.08
 %.
 """
+_LEAST = 84
+"""Fewest cells around, a multiple of four, with which it is accurate to 0.1 %; their quarters cannot be halved."""
 # quarter turns: east, north, west, south
 _TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1, 0)))
 
@@ -30,7 +32,7 @@ class Disc:
     cells : approximate number of cells; None: as few as `around` permits.
     first_cell : first-cell height at the wall; None: about that of the cells in the middle.
     growth : largest ratio of neighbouring cells; None is 1.2.
-    around : cells along the circle, a multiple of four; None: as many as `cells` requires, at least `AROUND`.
+    around : cells along the circle, a multiple of four; None: as many as `cells` requires, at least 84, or `AROUND`.
 
     Raises InputError: a value that is not positive; a first cell wider than the ring; no multiple of four;
     both `cells` and `around`.
@@ -76,25 +78,28 @@ class Disc:
         """Number of cells on each quarter."""
         if self.around is not None:
             return self.around // 4
-        low, high = AROUND // 4, math.isqrt(self.cells or 0)
+        if self.cells is None:
+            return AROUND // 4
+        low, high = _LEAST // 4, math.isqrt(self.cells)
         while high - low > 1:
             middle = (low + high) // 2
-            low, high = (middle, high) if self.count(middle) < (self.cells or 0) else (low, middle)
+            low, high = (middle, high) if self.count(middle) < self.cells else (low, middle)
         nearest = [side for side in (low, high) if side >= low]
-        return min(nearest, key=lambda side: abs(self.count(side) - (self.cells or 0)))
+        wanted = self.cells
+        return min(nearest, key=lambda side: abs(self.count(side) - wanted))
 
     @property
     def note(self) -> str:
         """Note that there are more cells than requested, with the reason."""
         wanted = self.cells
-        if wanted is None or self.side > AROUND // 4 or self.count(self.side) <= 1.1 * wanted:
+        if wanted is None or self.side > _LEAST // 4 or self.count(self.side) <= 1.1 * wanted:
             return ""
         disc = replace(self, cells=None)
-        side = min(range(2, AROUND // 4), key=lambda side: abs(disc.count(side) - wanted))
+        side = min(range(2, _LEAST // 4), key=lambda side: abs(disc.count(side) - wanted))
         angle = 0.5 * math.pi / side
         part = math.sin(angle) / angle
         return (
-            f"a circle has {self.count(self.side)} cells or more instead of {wanted}: {AROUND} around "
+            f"a circle has {self.count(self.side)} cells or more instead of {wanted}: {_LEAST} around "
             f"keep its area within 0.1 %. {{around}} {4 * side} makes {disc.count(side)} cells, and an area "
             f"{100 * (1 - part):.2g} % too small; the area is kept with a radius of "
             f"{self.radius / math.sqrt(part):.10g}"
