@@ -1,7 +1,5 @@
 """Refines a layout to the requested number of cells and optimises its nodes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

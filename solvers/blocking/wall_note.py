@@ -1,7 +1,5 @@
 """Notes for the report about walls with layers, measured on the grid: first cells, growth, sharp edges."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import replace
 

@@ -17,7 +17,7 @@ AROUND = 88
 %.
 """
 _LEAST = 84
-"""Fewest cells around, a multiple of four, with which it is accurate to 0.1 %; their quarters cannot be halved."""
+"""Fewest cells around with which it is accurate to 0.1 %; its quarters cannot be halved."""
 # quarter turns: east, north, west, south
 _TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1, 0)))
 
@@ -32,7 +32,8 @@ class Disc:
     cells : approximate number of cells; None: as few as `around` permits.
     first_cell : first-cell height at the wall; None: about that of the cells in the middle.
     growth : largest ratio of neighbouring cells; None is 1.2.
-    around : cells along the circle, a multiple of four; None: as many as `cells` requires, at least 84, or `AROUND`.
+    around : cells along the circle, a multiple of four; None: as many as `cells` requires, at least 84;
+        without `cells`, `AROUND`.
 
     Raises InputError: a value that is not positive; a first cell wider than the ring; no multiple of four;
     both `cells` and `around`.

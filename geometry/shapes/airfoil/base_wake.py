@@ -174,8 +174,10 @@ def _base(
         problem = f"{nodes} nodes on the base, {width:.3g} wide, grow by {needed:.3g} from first cells of"
         least = _whole(fewest, every[-1:]) + 1
         if needed > (growth or LARGEST):
-            without = "" if growth is None or needed > LARGEST else f"; without {{growth}}, {nodes} have a note"
-            raise InputError(f"{problem} {first:.3g}", f"use {least} or more{without}", parameter="base_nodes")
+            more = f"use {least} or more"
+            if growth is not None and needed <= LARGEST:
+                more += f"; without {{growth}}, {nodes} have a note"
+            raise InputError(f"{problem} {first:.3g}", more, parameter="base_nodes")
         if needed > (growth or GROWTH):
             notes = (Advice(f"{problem} {first:.3g}; {{base_nodes}} {least} or more keep to {GROWTH:g}"),)
     t = end_fractions(np.array([min(first / width, 1.0 / cells)]), cells)[0]

@@ -8,8 +8,6 @@ Runs all stages, if necessary on another triangulation.
            -> blocks -> chords collapsed while the score falls -> layout
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import reduce
 

@@ -7,8 +7,6 @@ loops, then by a harmonic displacement that removes the rest (Helenbrook, Int. J
 1007-1021, the first of two).
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

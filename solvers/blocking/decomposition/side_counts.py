@@ -3,8 +3,6 @@
 Sides with certain names have given numbers of cells, and two periodic sides have equal numbers.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from itertools import combinations, pairwise
 from types import MappingProxyType

@@ -1,7 +1,5 @@
 """Attaches blocks to a loop of a layout: layers at a wall, or rows out to a distant far field."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

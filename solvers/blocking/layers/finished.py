@@ -1,7 +1,5 @@
 """Last steps of grids with layers: limitation of growth ratios, repair of folded cells."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -8,8 +8,6 @@ At a periodic side the second edge begins at the other node of the pair. Elsewhe
 another limit applies.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Self
 

@@ -1,7 +1,5 @@
 """Layers in a ring: cell sizes that its front requires, and rows below the nodes of the front."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

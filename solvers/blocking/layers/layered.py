@@ -8,8 +8,6 @@
     rings --columns at the nodes of the fronts---+--> whole
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from contextlib import suppress

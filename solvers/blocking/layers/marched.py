@@ -1,7 +1,5 @@
 """Marches the levels of layers from the columns of a wall, with a prescribed thickness for each column."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The blocks of the domain outside of layers: decomposed, or transferred from a similar domain."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Layers in the rows of a layout: their number, and their nodes along the lines from walls."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -8,8 +8,6 @@ The front is a smooth loop that replaces the wall when the rest of the domain is
 is a map from position along the front and height to the plane, so that it gives a column of nodes anywhere.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -9,8 +9,6 @@ r"""A row of quads along a wall with a sharp edge, and along both sides of the g
     ---------------- front --------------'
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.domain.loop import Loop

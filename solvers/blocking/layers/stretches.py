@@ -1,7 +1,5 @@
 """Walls with layers: whole loops, and stretches of loops between convex corners."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Starting points of the columns of layers on a wall, dense at corners and where the wall turns."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -9,8 +9,6 @@
         +---+---+--- wall                         wall  -----+---+---+
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

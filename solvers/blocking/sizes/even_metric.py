@@ -4,8 +4,6 @@ Along each edge the integral of 1/size is divided into equal parts. The results 
 are then averaged repeatedly, so that lines across blocks are initially nearly straight.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices

@@ -1,7 +1,5 @@
 """Cell sizes that resolve the curvature, the corners and the gaps of the walls of a domain."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import turned_left

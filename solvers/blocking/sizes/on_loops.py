@@ -1,7 +1,5 @@
 """Moves nodes of a mesh back to the loops of its domain."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Bools

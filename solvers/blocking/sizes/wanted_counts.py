@@ -1,7 +1,5 @@
 """Numbers of cells along the chords of a layout for given cell sizes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Indices

@@ -8,8 +8,6 @@ Borden, Benzley, Shepherd, "Hexahedral sheet extraction", 11th International Mes
 Daniels, Silva, Shepherd, Cohen, "Quadrilateral mesh simplification", ACM Trans. Graph. 27 (2008).
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection
 
 import numpy as np

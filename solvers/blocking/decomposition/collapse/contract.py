@@ -4,8 +4,6 @@ Merged nodes are moved to a corner among them, else to the middle of their inter
 mean.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Indices, distinct

@@ -10,8 +10,6 @@
     + `SIZES` times the mean square of the logarithm of cell lengths relative to target lengths
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, percentiles_of

@@ -4,8 +4,6 @@ A cross with the angle theta is represented by the complex number u = exp(4 i th
 all four of its directions.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

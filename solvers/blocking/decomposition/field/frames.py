@@ -1,7 +1,5 @@
 """Frames of a cross field that agree across all edges except a cut, the cut, and the size of the frames."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

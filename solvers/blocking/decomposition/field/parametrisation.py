@@ -1,7 +1,5 @@
 """Coordinates whose gradients are closest to the frames, constant along walls and matched across the cut."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, Indices

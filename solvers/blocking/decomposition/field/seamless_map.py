@@ -1,7 +1,5 @@
 """A map of a triangulated domain whose coordinate lines follow the cross field and the walls."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -10,8 +10,6 @@ singular points (Bethuel, Brezis, Helein, Ginzburg-Landau Vortices, 1994). A poi
 is a length of the domain and r the radius of its core. With smaller cores, fewer points remain.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

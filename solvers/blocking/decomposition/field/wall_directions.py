@@ -1,7 +1,5 @@
 """Directions of the cross field along walls, rotated near corners for an integer number of cells there."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

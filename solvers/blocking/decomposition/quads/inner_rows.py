@@ -7,8 +7,6 @@
     path  ---+-----+-----+---
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

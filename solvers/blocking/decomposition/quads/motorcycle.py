@@ -6,8 +6,6 @@ intersection, the graph is finite even if coordinate lines are not (Eppstein, Go
 Graph. Forum 27 (2008) 1477-1486; on seamless maps Myles, Pietroni, Zorin, ACM Trans. Graph. 33 (2014) 135).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -8,8 +8,6 @@ Mitchell, Tautges, "Pillowing doublets: refining a mesh to ensure that faces sha
 International Meshing Roundtable (1995).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

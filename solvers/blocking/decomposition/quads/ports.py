@@ -1,7 +1,5 @@
 """The directions in which lines leave the singular vertices and corners of a seamless map."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A conforming quad mesh on the rectangles of a seamless map."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -5,8 +5,6 @@ face is a rectangle of the map with opposite sides of equal length: a T-mesh (My
 Trans. Graph. 33 (2014) 135; Campen, Bommes, Kobbelt, ACM Trans. Graph. 34 (2015) 192).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """The Laplacian on a triangulated surface with linear elements, and given values at some vertices."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Complexes, Floats

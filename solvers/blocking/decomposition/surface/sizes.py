@@ -1,7 +1,5 @@
 """Target edge lengths of a triangulation: short at narrow gaps, curved walls and short sides."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

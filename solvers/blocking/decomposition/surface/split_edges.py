@@ -1,7 +1,5 @@
 """Splits interior edges between two walls, which leave a map no freedom."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

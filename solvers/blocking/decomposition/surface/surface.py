@@ -3,8 +3,6 @@
 Corner c = 3 f + i is corner i of triangle f; edge i of a triangle goes from its corner i to the next.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

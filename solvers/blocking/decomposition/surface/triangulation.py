@@ -1,7 +1,5 @@
 """Triangulation of a domain with prescribed sizes at walls, on which the cross field is solved."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Quad meshes that are symmetric about mirrors: mirror images of nodes, and nodes made symmetric exactly."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

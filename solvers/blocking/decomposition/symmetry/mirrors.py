@@ -5,8 +5,6 @@ arc length s is the point at c - s, where c is a constant of the loop. The image
 known exactly for any curve.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

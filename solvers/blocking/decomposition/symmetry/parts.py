@@ -6,8 +6,6 @@ turned copies of it fit together. Rays become grid lines of the mesh. A loop tha
 right angles or at half a corner; the number of cells there follows from the angle in each part.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise

@@ -7,8 +7,6 @@ length are also tried. For three or more mirrors, except at right angles, the bl
 about the centre.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
