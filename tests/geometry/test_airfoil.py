@@ -1,3 +1,6 @@
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -186,3 +189,16 @@ def test_an_opened_base_leaves_the_nose_as_it_is(ratio):
     wall = opened.boundary(Sampling(301, 11, "o", spacing="curvature")).south
     steps = np.hypot(*np.diff(wall, axis=0).T)
     assert np.maximum(steps[1:] / steps[:-1], steps[:-1] / steps[1:]).max() < 1.2
+
+
+def test_a_base_that_takes_most_wall_nodes_has_a_note() -> None:
+    """Its corners are rounded, so that cells beside them are tiny."""
+    upper, _ = surfaces(0.4, base=0.2)
+    rounding = [[1.0, 0.1], [0.9997, 0.1005], [0.998, 0.104]]
+    upper = np.concatenate([upper[upper[:, 0] < 0.99], rounding[::-1]])
+    section = Airfoil(np.concatenate([upper[::-1], (upper * [1, -1])[1:]]))
+    crowded = Sampling(129, 65, "o", "curvature")
+    (note,) = (n for n in section.boundary(crowded).notes if "wall nodes lie on the base" in n)
+    spacing = float(re.search(r"use \{te_spacing\} (\S+) or more nodes", note)[1])  # type: ignore[index]
+    notes = section.boundary(replace(crowded, te_spacing=spacing)).notes
+    assert not [n for n in notes if "wall nodes lie on the base" in n]

@@ -32,6 +32,7 @@ six.
 """
 _FLAT = 0.1  # curvature times chord below which its sign is ignored
 OBLIQUE = 30.0  # least angle in degrees between a base and the normal of the chord to be called oblique
+BESIDE = 0.01  # chords along the surfaces that count as next to the base
 MOST_BASE = 0.25  # chords; a longer last segment of a surface is no base
 UNLIKE = 1.5
 """Largest ratio of the two wall cells at a corner of the base without a note."""
@@ -160,15 +161,28 @@ def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
 
 
 def base_note(wall: Floats, corner: Floats, base: float, chord: float) -> tuple[str, ...]:
-    """Return a note if wall cell sizes jump at the lower corner of a base; the upper corner mirrors it.
+    """Return a note if a base takes most nodes, or if cell sizes jump at its lower corner.
+
+    The upper corner mirrors the lower one.
 
     `wall` (n, 2) runs from the middle of the base, which has length `base` and ends at `corner` (2,).
     """
+    steps = norms(np.diff(wall, axis=0))
+    arcs = np.cumsum(steps)
+    beside = 0.5 * base + BESIDE * chord
+    crowd = int(((arcs < beside) | (arcs > arcs[-1] - beside)).sum())
+    if 2 * crowd > len(arcs):
+        usual = 0.25 * arcs[-1] / len(arcs) / chord
+        return (
+            f"{crowd} of {len(wall)} wall nodes lie on the base or within {BESIDE:g} chords of it, and the "
+            f"longest cell elsewhere has {steps.max() / chord:.2g} chords: use {{te_spacing}} {usual:.1g} or "
+            "more nodes",
+        )
     k = int(np.argmin(np.hypot(*(wall[: len(wall) // 2] - corner).T)))
     if k == 0:
         return ()
-    on, beside = norms(np.diff(wall[k - 1 : k + 2], axis=0)).tolist()
-    ratio = beside / on
+    on, off = steps[k - 1 : k + 1].tolist()
+    ratio = off / on
     if 1.0 / UNLIKE <= ratio <= UNLIKE:
         return ()
     times, word = (ratio, "smaller") if ratio > 1.0 else (1.0 / ratio, "larger")
