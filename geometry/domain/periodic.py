@@ -97,7 +97,8 @@ def _without_kinks(loop: Loop, names: set[str]) -> Loop:
         if labels[k] != labels[k - 1] or labels[k] not in names or loop.corner_cells[k] != 2
     ]
     corners = tuple(loop.corners[k] for k in kept)
-    return replace(loop, corners=corners, names=tuple(labels[k] for k in kept))
+    cells = tuple(loop.cells[k] for k in kept if loop.cells)
+    return replace(loop, corners=corners, names=tuple(labels[k] for k in kept), cells=cells)
 
 
 def _matched(loop: Loop, names: tuple[str, str], extent: float) -> list[Periodic]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.kinks import with_kinks
 from meshonet.geometry.domain.periodic import with_periodic_sides
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.lattice import around_body
@@ -194,7 +195,7 @@ def _checked(domain: Domain, request: BlockRequest) -> Domain:
     for name in request.count:
         if name not in known:
             raise InputError(f"there is no side {name!r}", "use " + ", ".join(known), parameter="count")
-    domain = replace(domain, counts=request.count)
+    domain = replace(with_kinks(domain) if request.at_walls else domain, counts=request.count)
     option = "walls" if request.walls else "first_cell" if request.y_plus is None else "y_plus"
     check_names(request.layered, known, option)
     heights = request.heights()

@@ -1,0 +1,60 @@
+"""Kinks of polygons as corners of two cells, so that a grid has a node at each."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Indices, distinct
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.loop import Loop, turns_sharply
+from meshonet.geometry.polygon.corners import turning
+from meshonet.geometry.polygon.straights import find_kinks
+
+APART = 0.01
+"""Smallest distance of a kink from a corner or another kink, relative to the length of the loop: cells that
+are no longer than that would grow too fast beside longer ones.
+"""
+
+
+def with_kinks(domain: Domain) -> Domain:
+    """Return a domain whose polygons have corners at kinks too.
+
+    Kinks are those of `find_kinks` between two corners, with a turn that makes no corner of itself. Between
+    nodes a cell would cut them off, by several first cells where layers are thin.
+    """
+    held = 1 if domain.periodic else 0  # periodic sides are matched already
+    loops = domain.loops
+    return replace(domain, loops=(*loops[:held], *map(_with_kinks, loops[held:])))
+
+
+def _with_kinks(loop: Loop) -> Loop:
+    straight = loop.curve.straight
+    if straight is None or not straight.all() or not loop.corners:
+        return loop
+    kinks = _kinks(loop)
+    if len(kinks) == 0:
+        return loop
+    corners = distinct(np.append(loop.corners, kinks)).tolist()
+    names, cells = loop.names, dict(zip(loop.corners, loop.cells, strict=False))
+    if len(names) > 1:
+        names = tuple(loop.name_at(float(loop.curve.knots[k])) for k in corners)
+    if cells:
+        cells |= dict.fromkeys(kinks.tolist(), 2)
+    return replace(loop, corners=tuple(corners), names=names, cells=tuple(cells[k] for k in corners if cells))
+
+
+def _kinks(loop: Loop) -> Indices:
+    """Return the indices of kinks between the corners of a loop."""
+    points, count = loop.curve.points, len(loop.curve.points)
+    parts = []
+    for begin, end in zip(loop.corners, (*loop.corners[1:], loop.corners[0] + count), strict=True):
+        stretch = np.arange(begin, end + 1) % count
+        parts.append(stretch[find_kinks(points[stretch])])
+    kinks = distinct(np.concatenate(parts))
+    kinks = kinks[~turns_sharply(turning(points, closed=True)[kinks])]
+    arcs = loop.curve.knots[kinks]
+    others = np.concatenate([arcs, loop.corner_arcs])
+    way = np.mod(others - arcs[:, None] + 0.5 * loop.length, loop.length) - 0.5 * loop.length
+    return kinks[(np.abs(way) < APART * loop.length).sum(axis=1) == 1]  # itself
