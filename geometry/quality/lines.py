@@ -28,7 +28,7 @@ from meshonet.kernels import _native
 
 @dataclass(frozen=True)
 class Lines:
-    """Growth and bend at the nodes of grid lines, with the place of the largest; None if there are none.
+    """Growth and bend at the nodes of grid lines: largest values, each with its place; None without nodes.
 
     `growth` is the growth along each direction of the blocks; across a side it counts for the direction
     normal to the side. `leaving` is the growth along the lines that start at walls, through all blocks that

@@ -169,9 +169,10 @@ class Stack:
 
     @property
     def steep(self) -> str:
-        """A note on the panel that is thinnest in relation to its sections; empty if none is steep.
+        """A note on the steepest panel; empty if no panel is steep.
 
-        A section that is inclined to a panel is thicker than the panel, by the cosine of that angle.
+        If the planes of the sections are inclined to the normal of a panel, the panel is as thick as its
+        sections times the cosine of the angle between them.
         """
         if self.kind != "wing":
             return ""

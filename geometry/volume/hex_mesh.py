@@ -129,9 +129,11 @@ def second_layer(values: AnyArray, side: Side) -> AnyArray:
 def exchange(
     connections: Sequence[Connection], outside: FaceValues, inside: FaceValues
 ) -> None:  # fmt: skip
-    """Copy the values in the layer inside each side of the connections to the layer outside the other side.
+    """Copy values across connections.
 
-    The functions `inside` and `outside` return views of these layers, given a block and a side.
+    A connection joins two sides. The values of the layer just inside one of them are copied to the layer just
+    outside the other, in both directions. The functions `inside` and `outside` return views of these layers,
+    given a block and a side.
     """
     for each in connections:
         own_out, donor_out = each.nodes(lambda block, side: outside(block, side)[..., None])

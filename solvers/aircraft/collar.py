@@ -87,12 +87,12 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return the numbers of the nodes of a `root` whose lines end at the corners of the rectangle `box`.
+    """Return two counts of nodes, which give the nodes of a `root` whose lines end at the corners of `box`.
 
-    The first number counts nodes from the middle of the trailing edge, the second from the middle of the
-    nose, both upwards and downwards. The nodes are chosen whose normals point most directly at the corners,
-    so that lines are bent least. Only nodes are considered with which cells on neighbouring sides of the
-    rectangle have similar lengths. Both numbers are at least `fewest`.
+    The two rear nodes are the first count away from the middle of the trailing edge, one upwards and one
+    downwards; the two front nodes are the second count away from the middle of the nose. Of all counts of at
+    least `fewest` with which cells on neighbouring sides of the rectangle have similar lengths, those are
+    chosen at which the normals of the root point most directly at the corners, so that lines are bent least.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)

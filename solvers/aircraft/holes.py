@@ -98,7 +98,7 @@ def _room(before: _Along, after: _Along, clear: float = _CLEAR) -> tuple[Floats,
 def holes_of(
     space: BodyMap, columns: Sequence[Sequence[WingLines]], sections: Sequence[Sequence[Floats]]
 ) -> tuple[tuple[tuple[Hole, ...], ...], ...]:
-    """Return the holes of each wing in `columns` on the key levels, from nose to tail.
+    """Return the holes that the wings in `columns` cut, on each key level; columns run from nose to tail.
 
     `sections` (k, n, 3) are the sections of each wing on these levels.
 

@@ -43,7 +43,7 @@ def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) 
 
 
 def without_layers(domain: Domain) -> list[str]:
-    """Return a note on named sides around holes that may be walls, but get no layers if no wall is named."""
+    """Return a note on sides of the outer loop that may be walls: only the holes get layers by default."""
     outer = domain.loops[0].names
     if 0 in domain.layered_loops or len(outer) == 1:
         return []

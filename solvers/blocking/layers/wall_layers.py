@@ -120,8 +120,8 @@ class WallLayers:
     def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
         """Return whether a wake reaches the outer loop and has room for layers on its whole length.
 
-        `wake` are the numbers of the nodes of the wake in `mesh`, from the sharp edge of the loop `number`
-        on.
+        `wake` lists the indices in `mesh` of the nodes of the wake, starting at the sharp edge of loop
+        number `number`.
         """
         return bool(mesh.places.loop[wake[-1]] == 0) and self.has_room(number, mesh.nodes[wake])
 

@@ -31,7 +31,7 @@ Edge = tuple[int, int]
 
 @dataclass(frozen=True, eq=False)
 class WallRows:
-    """Blocks of a layout that are rows along walls.
+    """Rows of blocks along the walls of a layout, and the rows that each block belongs to.
 
     Parameters
     ----------
