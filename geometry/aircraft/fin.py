@@ -51,7 +51,8 @@ def _refuse_half(section: Section, at: str) -> None:
     """Raise InputError for a section whose halves on both sides of the plane z = 0 differ."""
     for key, value in (("y", section.y), ("twist", section.twist), ("cant", section.cant)):
         if value != 0.0:
-            raise InputError(f"{value} in a fin", "leave it out", place=f"{at}.{key}")
+            text = value if isinstance(value, str) else f"{value:g}"
+            raise InputError(f"{text} in a fin", "leave it out", place=f"{at}.{key}")
     if not isinstance(section.shape, Airfoil):
         return
     curve, (origin, length) = section.shape.curve, section.frame
