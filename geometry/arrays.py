@@ -110,6 +110,15 @@ def wrapped(parts: Floats, least: float = -0.5) -> Floats:
     return np.asarray(np.mod(parts - least, 1.0) + least)
 
 
+def shortest_ways(ways: Floats, length: float | Floats) -> Floats:
+    """Return the shortest ways (...) between the same points of closed curves: at most half of each `length`.
+
+    >>> shortest_ways(np.array([3.0, -3.0, 1.0]), 4.0).tolist()
+    [-1.0, 1.0, 1.0]
+    """
+    return np.asarray(np.mod(ways + 0.5 * length, length) - 0.5 * length)
+
+
 def arc_lengths(line: Floats) -> Floats:
     """Return the arc lengths (..., n), from 0, at the nodes of lines (..., n, d)."""
     arcs = np.zeros(line.shape[:-1])

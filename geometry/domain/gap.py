@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, extent_of, norms
+from meshonet.geometry.arrays import Floats, extent_of, norms, shortest_ways
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.kernels._native import nearest_ahead
@@ -41,7 +41,7 @@ def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
     first, last = sum(counts[:number]), sum(counts[: number + 1])
     along_wall = loop.length * np.linspace(0.0, 1.0, counts[number], endpoint=False)
     for k, arc in enumerate(arcs.tolist()):
-        away = np.abs(np.mod(along_wall - arc + 0.5 * loop.length, loop.length) - 0.5 * loop.length)
+        away = np.abs(shortest_ways(along_wall - arc, loop.length))
         counted = np.ones(len(walls), dtype=bool)
         counted[first:last] = away > _AROUND_CORNER * norms(walls[first:last] - points[k])
         gaps[k : k + 1] = gaps_in_front(walls[counted], points[k : k + 1], along[k : k + 1])

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Indices, distinct
+from meshonet.geometry.arrays import Indices, distinct, shortest_ways
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop, turns_sharply
 from meshonet.geometry.polygon.corners import turning
@@ -56,5 +56,5 @@ def _kinks(loop: Loop) -> Indices:
     kinks = kinks[~turns_sharply(turning(points, closed=True)[kinks])]
     arcs = loop.curve.knots[kinks]
     others = np.concatenate([arcs, loop.corner_arcs])
-    way = np.mod(others - arcs[:, None] + 0.5 * loop.length, loop.length) - 0.5 * loop.length
+    way = shortest_ways(others - arcs[:, None], loop.length)
     return kinks[(np.abs(way) < APART * loop.length).sum(axis=1) == 1]  # itself

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, shortest_ways
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
@@ -150,9 +150,7 @@ def _with_cells(loop: Loop, pairs: Sequence[Periodic]) -> Loop:
     cells, arcs, length = loop.corner_cells.copy(), loop.corner_arcs, loop.length
     for each in pairs:
         for ends in zip(each.first, each.second[::-1], strict=True):
-            both = [
-                int(np.abs(np.mod(arcs - arc + 0.5 * length, length) - 0.5 * length).argmin()) for arc in ends
-            ]
+            both = [int(np.abs(shortest_ways(arcs - arc, length)).argmin()) for arc in ends]
             room = max(2, round(float(loop.corner_angles[both].sum()) / 90.0))
             for k in both:
                 if cells[k] == 2 and cells[both].sum() > room:

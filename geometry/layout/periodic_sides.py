@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.arrays import Floats, Indices, shortest_ways
 from meshonet.geometry.domain.periodic import Periodic, rounded
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 
@@ -79,5 +79,5 @@ def _at(mesh: QuadMesh, arc: float) -> int:
     """Return the node at a corner of the outer loop."""
     corners = np.flatnonzero((mesh.places.loop == 0) & (mesh.places.cells > 0))
     length = mesh.domain.loops[0].length
-    apart = np.abs(np.mod(mesh.places.arc[corners] - arc + 0.5 * length, length) - 0.5 * length)
+    apart = np.abs(shortest_ways(mesh.places.arc[corners] - arc, length))
     return int(corners[int(np.argmin(apart))])

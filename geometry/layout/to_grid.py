@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from meshonet.geometry.arrays import Indices, Side
+from meshonet.geometry.arrays import Indices, Side, shortest_ways
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
@@ -176,7 +176,7 @@ def _patches(layout: Layout, line: Line, start: int, walls: Collection[str]) -> 
     places, domain = layout.mesh.places, layout.mesh.domain
     number, arcs = int(places.loop[nodes[0]]), places.arc[nodes]
     loop = domain.loops[number]
-    step = np.mod(np.diff(arcs) + 0.5 * loop.length, loop.length) - 0.5 * loop.length
+    step = shortest_ways(np.diff(arcs), loop.length)
     names = [loop.name_at(float(arc)) for arc in arcs[:-1] + 0.5 * step]
     patches = []
     for name, cells in groupby(names):

@@ -10,7 +10,7 @@ from typing import Self
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms, wrapped
+from meshonet.geometry.arrays import Floats, norms, shortest_ways, wrapped
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.curve import Curve
@@ -119,7 +119,7 @@ class BladeProfile:
     def _off(self, arcs: Floats, edge: float) -> Floats:
         """Return signed distances (n,) along the curve of arc lengths (n,) from an edge."""
         length = self.curve.length
-        return np.asarray(np.mod(arcs - edge + 0.5 * length, length) - 0.5 * length)
+        return shortest_ways(arcs - edge, length)
 
     def reshaped(self, plane: Floats, heights: Floats) -> Self:
         """Return the profile with other points: m' and theta `plane` (n, 2), and `heights` (n,)."""

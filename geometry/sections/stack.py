@@ -107,8 +107,8 @@ class Stack:
     @property
     def span(self) -> int | None:
         """Number of nodes along the span, if those of all panels are given."""
-        given = [cells for cells in self.panel_cells if cells is not None]
-        return sum(given) + 1 if len(given) == len(self.panel_cells) else None
+        cells = [each for each in self.panel_cells if each is not None]
+        return sum(cells) + 1 if len(cells) == len(self.panel_cells) else None
 
     def with_tip(self, tip: Tip | None) -> Stack:
         """Return the same stack with another tip; None keeps its own.
@@ -164,8 +164,8 @@ class Stack:
         own = np.concatenate([[0.0], 0.5 * (panels[1:] + panels[:-1]), panels[-1:]])
         if self.tip == "open":
             own[-1] = 0.0
-        given = [0.0 if section.cant == "panel" else math.radians(section.cant) for section in self.sections]
-        return np.where([section.cant == "panel" for section in self.sections], own, given)
+        angles = [0.0 if section.cant == "panel" else math.radians(section.cant) for section in self.sections]
+        return np.where([section.cant == "panel" for section in self.sections], own, angles)
 
     @property
     def steep(self) -> str:

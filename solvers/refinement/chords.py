@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, Indices, distinct
+from meshonet.geometry.arrays import Bools, Floats, Indices, distinct, shortest_ways
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.wall_turning import corners_between, turning_between
@@ -124,7 +124,7 @@ class Chords:
         nodes, places = self.edges[edge], self.layout.mesh.places
         length = self.layout.mesh.domain.loops[places.loop[nodes[0]]].length
         step = np.diff(places.arc[nodes])
-        step = np.mod(step + 0.5 * length, length) - 0.5 * length
+        step = shortest_ways(step, length)
         if abs(np.sign(step).sum()) < len(step):  # a loop in two or three steps: keep the way of most
             way = np.sign(np.sign(step).sum()) or 1.0
             step = np.where(step * way < 0, step + way * length, step)

@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, shortest_ways
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.layout.from_grid import layout_of, with_nodes
 from meshonet.geometry.layout.layout import Layout
@@ -128,7 +128,7 @@ def part_of_the_way(given: Layout, layout: Layout, part: Floats) -> Layout:
     moved[old.places.partner[old.places.partner >= 0]] = False
     on = (old.places.loop >= 0) & moved
     length = old.domain.lengths[old.places.loop[on]]
-    way = np.mod(mesh.places.arc[on] - arc[on] + 0.5 * length, length) - 0.5 * length
+    way = shortest_ways(mesh.places.arc[on] - arc[on], length)
     arc[on] = np.mod(arc[on] + part[on] * way, length)
     nodes[on] = old.domain.at(old.places.loop[on], arc[on])
     return replace(layout, mesh=mesh.with_nodes(old.beside_partners(nodes), arc))

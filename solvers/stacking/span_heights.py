@@ -69,9 +69,9 @@ def _cells(own: Indices, panels: Sequence[int | None], free: Sequence[int]) -> l
     """Return the numbers of cells of panels; those not given share the rest in proportion to their `own`."""
     rest = int(own.sum()) - sum(each for each in panels if each is not None)
     if rest < len(free) or (rest and not free):
-        given = int(own.sum()) - rest
-        problem = f"{int(own.sum()) + 1} nodes along the span, and panels with {given + 1} of them"
-        raise InputError(problem, f"use {given + len(free) + 1} or more", parameter="span")
+        prescribed = int(own.sum()) - rest
+        problem = f"{int(own.sum()) + 1} nodes along the span, and panels with {prescribed + 1} of them"
+        raise InputError(problem, f"use {prescribed + len(free) + 1} or more", parameter="span")
     out = [each or 0 for each in panels]
     for k in free:  # the last one takes what rounding leaves
         later = [j for j in free if j >= k]

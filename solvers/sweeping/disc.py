@@ -79,14 +79,13 @@ class Disc:
         """Number of cells on each quarter."""
         if self.around is not None:
             return self.around // 4
-        if self.cells is None:
+        if (wanted := self.cells) is None:
             return AROUND // 4
-        low, high = _LEAST // 4, math.isqrt(self.cells)
+        low, high = _LEAST // 4, math.isqrt(wanted)
         while high - low > 1:
             middle = (low + high) // 2
-            low, high = (middle, high) if self.count(middle) < self.cells else (low, middle)
+            low, high = (middle, high) if self.count(middle) < wanted else (low, middle)
         nearest = [side for side in (low, high) if side >= low]
-        wanted = self.cells
         return min(nearest, key=lambda side: abs(self.count(side) - wanted))
 
     @property

@@ -89,9 +89,9 @@ class PlanesDescent(HexProblem):
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
         """Do at most `most` iterations; return the smallest Jacobian and the value of the functional."""
-        found = super().run(weights, most, epsilon)
+        smallest_and_value = super().run(weights, most, epsilon)
         self.planes[...] = self.nodes.T.reshape(self.planes.shape)
-        return found
+        return smallest_and_value
 
 
 def inverse_lengths(planes: Floats) -> tuple[float, float, float]:

@@ -224,9 +224,9 @@ def test_lines_of_default_grids_leave_slid_walls_as_upright_as_those_of_elliptic
     lines = ["# axis", "-4 0", "7 0", "", "# wall", *(f"{a} {b}" for a, b in zip(x, wall, strict=True))]
     Path("nozzle.csv").write_text("\n".join(lines) + "\n")
     for command in ("infer", "solve-pde"):
-        told = meshonet(
+        report = meshonet(
             command, "nozzle.csv", "--res", "201x81", "--first-cell", "1e-3", "-o", f"{command}.vts", "--json"
         ).only
-        assert told["method"] == "winslow"
+        assert report["method"] == "winslow"
     (one,), (other,) = read_grids("infer.vts"), read_grids("solve-pde.vts")
     np.testing.assert_allclose(one.nodes, other.nodes, atol=1e-6)

@@ -82,11 +82,11 @@ def test_a_base_of_few_nodes_is_noted_with_its_growth_and_a_number_that_keeps_th
         return next((each for each in result.notes if "nodes on the base" in each), "")
 
     few = made(blunt(0.08), growth=None, base_nodes=41)
-    told = re.search(r"41 nodes on the base, .* grow by (\S+) from .*; {base_nodes} (\d+) or more", note(41))
-    assert told is not None
+    match = re.search(r"41 nodes on the base, .* grow by (\S+) from .*; {base_nodes} (\d+) or more", note(41))
+    assert match is not None
     steps = np.hypot(*np.diff(few.grid.blocks[1].nodes[0], axis=0).T)
-    assert float(told[1]) == pytest.approx((steps[1:20] / steps[:19]).max(), rel=0.01)
-    assert note(int(told[2])) == ""
+    assert float(match[1]) == pytest.approx((steps[1:20] / steps[:19]).max(), rel=0.01)
+    assert note(int(match[2])) == ""
 
 
 @pytest.mark.parametrize(("topology", "near"), [("c", "49 or 53"), ("o", "49 or 57")])
@@ -97,9 +97,9 @@ def test_numbers_of_nodes_on_a_base_that_can_be_coarsened_are_named(topology: st
 
 
 def test_too_few_nodes_are_refused_with_a_number_that_suffices() -> None:
-    with pytest.raises(InputError, match="leave too few for the wall; use at least") as told:
+    with pytest.raises(InputError, match="leave too few for the wall; use at least") as error:
         made(blunt(0.08), ni=101)
-    least = re.search(r"at least (\d+)", str(told.value))
+    least = re.search(r"at least (\d+)", str(error.value))
     assert least is not None
     made(blunt(0.08), ni=int(least[1]))
 
@@ -227,9 +227,9 @@ def test_too_few_rows_beside_a_rounded_flank_are_refused_with_as_many_as_suffice
     body = rounded(0.2, 60, 50)
     with pytest.raises(
         InputError, match=r"rows of nodes cannot reach the far field growing by 1\.15"
-    ) as told:
+    ) as error:
         made(body, growth=1.15, ni=401, nj=97)
-    least = re.search(r"use (\d+) rows or more", str(told.value))
+    least = re.search(r"use (\d+) rows or more", str(error.value))
     assert least is not None
     assert made(body, growth=1.15, ni=401, nj=int(least[1])).quality["max_angle"].max < 135.0
 
@@ -239,8 +239,8 @@ def test_growth_off_walls_above_the_default_is_noted_with_the_option_that_limits
     body: Airfoil, nj: int
 ) -> None:
     def advice(result: Result) -> list[str]:
-        told = r"from the wall and its base grow by up to (\S+); {growth} 1\.2 limits"
-        return re.findall(told, "; ".join(result.notes))
+        pattern = r"from the wall and its base grow by up to (\S+); {growth} 1\.2 limits"
+        return re.findall(pattern, "; ".join(result.notes))
 
     few = made(body, first=8e-6, growth=None, ni=401, nj=nj)
     figure = quality_report(few.grid).figures("wall_growth")
@@ -281,8 +281,8 @@ def test_cells_behind_a_base_are_nearly_orthogonal_for_flow_solvers_on_coarser_g
 def test_cells_too_long_for_their_height_behind_a_base_are_noted_with_the_nodes_that_suffice() -> None:
     def advice(**nodes: int) -> tuple[list[str], float]:
         result = made(blunt(0.02), first=8e-6, growth=None, ni=401, nj=100, **nodes)
-        told = re.findall(r"non-orthogonality .* degrees; {wake_nodes} (\d+) makes", "; ".join(result.notes))
-        return told, most_oblique(result)
+        nodes = re.findall(r"non-orthogonality .* degrees; {wake_nodes} (\d+) makes", "; ".join(result.notes))
+        return nodes, most_oblique(result)
 
     (enough,), angle = advice(wake_nodes=25)
     assert angle > 80.0
@@ -294,8 +294,8 @@ def test_cells_too_long_for_their_height_behind_a_base_are_noted_with_the_nodes_
 def test_cells_too_long_for_their_height_on_the_wall_are_noted_with_the_nodes_that_suffice() -> None:
     def advice(ni: int) -> tuple[list[str], float]:
         result = made(blunt(0.02), first=4e-7, growth=None, ni=ni, nj=100)
-        told = re.findall(r"non-orthogonality .* degrees; {res} (\d+)x100 makes", "; ".join(result.notes))
-        return told, most_oblique(result)
+        nodes = re.findall(r"non-orthogonality .* degrees; {res} (\d+)x100 makes", "; ".join(result.notes))
+        return nodes, most_oblique(result)
 
     (enough,), angle = advice(401)
     assert angle > 80.0

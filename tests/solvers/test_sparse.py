@@ -84,8 +84,8 @@ def test_blocks_of_two_unknowns_are_eliminated_together(sides):
     pattern = SparsePattern(n, rows, columns, block=2)
     values = np.zeros((pattern.entries, 2, 2))
     dense = np.zeros((n, 2, n, 2))
-    given = rng.normal(size=(n + m, 2, 2))
-    for row, column, slot, block in zip(rows, columns, pattern.slot, given, strict=True):
+    blocks = rng.normal(size=(n + m, 2, 2))
+    for row, column, slot, block in zip(rows, columns, pattern.slot, blocks, strict=True):
         block = block + block.T + 40.0 * np.eye(2) if row == column else block
         late, early = (row, column) if pattern.places[row] >= pattern.places[column] else (column, row)
         values[slot] += block

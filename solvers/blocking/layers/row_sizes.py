@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, distinct, turned_left
+from meshonet.geometry.arrays import Floats, distinct, shortest_ways, turned_left
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import gaps_in_front, wall_points
 from meshonet.geometry.domain.loop import Loop
@@ -143,7 +143,7 @@ def _gaps(domain: Domain, number: int, arcs: Floats) -> Floats:
     own = np.linspace(0.0, loop.length, 2 * SAMPLES, endpoint=False)
     walls = loop.at(own)
     for k, arc in enumerate(arcs.tolist()):
-        way = np.abs(np.mod(own - arc + 0.5 * loop.length, loop.length) - 0.5 * loop.length)
+        way = np.abs(shortest_ways(own - arc, loop.length))
         away = np.hypot(*(walls - points[k]).T)
         there = walls[way > AROUND_CORNER * away]
         if len(there):

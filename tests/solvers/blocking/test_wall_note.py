@@ -48,9 +48,9 @@ def test_a_body_in_a_square_is_told_with_its_first_cell(walls: tuple[str, ...], 
         request = BlockRequest(cells=1500, first_cell=1e-2, growth=growth, walls=walls)
         (note,) = (n for n in make_blocks(shape, request).notes if n.startswith("the first-cell height"))
         height = rf"the first-cell height is 0[.]01 at every {where}"
-        found = re.fullmatch(rf"{height}; the mean growth ratio is (\S+)", note)
-        assert found, note
-        grown[growth] = float(found[1])
+        match = re.fullmatch(rf"{height}; the mean growth ratio is (\S+)", note)
+        assert match, note
+        grown[growth] = float(match[1])
     assert 1.0 < grown[1.1] < grown[1.3] < 1.3
 
 

@@ -6,7 +6,7 @@ mean.
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Indices, distinct
+from meshonet.geometry.arrays import Bools, Indices, distinct, shortest_ways
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.kernels._native import joined_classes
 from meshonet.solvers.blocking.decomposition.quads.padding import wrong_count
@@ -56,7 +56,7 @@ def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
     first, arc = np.zeros(count), np.zeros(count)
     first[of[::-1]] = places.arc[wall[::-1]]
     length = mesh.domain.lengths[places.loop[wall]]
-    off = np.mod(places.arc[wall] - first[of] + 0.5 * length, length) - 0.5 * length
+    off = shortest_ways(places.arc[wall] - first[of], length)
     mean = first + np.bincount(of, off, minlength=count) / np.maximum(members, 1)
     arc[of] = np.mod(mean[of], length)
     size = np.bincount(label, minlength=count)

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, Indices, along_and_across, distinct, norms
+from meshonet.geometry.arrays import Bools, Floats, Indices, along_and_across, distinct, norms, shortest_ways
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
@@ -265,7 +265,7 @@ def _on_loops(mesh: QuadMesh, on_rays: Indices) -> QuadMesh:
         walls = np.flatnonzero(loop == number)
         arcs = np.mod(arc[walls], each.length)
         for corner, wanted in zip(each.corner_arcs, each.corner_cells, strict=True):
-            off = np.abs(np.mod(arcs - corner + 0.5 * each.length, each.length) - 0.5 * each.length)
+            off = np.abs(shortest_ways(arcs - corner, each.length))
             at = off.argmin()
             arcs[at], cells[walls[at]] = corner, wanted
         arc[walls], points[walls] = arcs, each.at(arcs)
