@@ -52,8 +52,8 @@ def fine_layout(
 ) -> Layout:
     """Return a layout with the requested number of cells and optimised nodes.
 
-    Then all cells are halved `halved` times, so that every second, fourth, ... node forms the coarser nested
-    grids. Raises NoValidGridError: folded cells remain.
+    Then all cells are halved `halved` times in both directions: every second, fourth, ... node is a node of a
+    coarser nested grid. Raises NoValidGridError: folded cells remain.
     """
     timings = {} if timings is None else timings
     area = layout.mesh.domain.area
@@ -124,9 +124,10 @@ def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, h
 
 
 def cut_off(fine: Layout, area: float = 0.0) -> float:
-    """Return the fraction of an area that cells along walls cut off; negative if they add area.
+    """Return the fraction of `area` that is lost because cells along curved walls have straight edges.
 
-    The `area` is by default that between the polygons through the points of the domain.
+    It is negative if the cells cover more than `area`, which is by default the area inside the polygons
+    through the points of the domain.
     """
     (x, y), area = fine.mesh.nodes[fine.mesh.quads].transpose(2, 0, 1), area or fine.mesh.domain.area
     return 1.0 - 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum()) / area

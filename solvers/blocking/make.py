@@ -60,7 +60,7 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
 def grid_of(
     shape: DomainShape, request: BlockRequest, fine_of: Callable[[Domain, Timings], Layout]
 ) -> Solution:
-    """Return the grid of the fine layout that a function makes of a domain, once that is checked.
+    """Return the grid of the fine layout that `fine_of` makes; first the domain is checked.
 
     Raises InputError: see `make_blocks`.
     """
@@ -106,8 +106,8 @@ def _cut_off(fine: Layout) -> str:
 def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
     """Return the blocks of a domain.
 
-    If the request has no number of cells, the number is that of the decomposition. Raises InputError: see
-    `make_blocks`. Raises SolverError: the decomposition fails.
+    Without a number of cells in the request, its quad mesh has the default number of the decomposition.
+    Raises InputError: see `make_blocks`. Raises SolverError: the decomposition fails.
     """
     domain = _checked(shape.domain, request)
     if request.pitch is not None:
@@ -161,7 +161,7 @@ def _with_layers(
 
 
 def settings_of(request: BlockRequest, height: AtWalls) -> LayerSettings:
-    """Return the layers of a request whose first cells have a height, or one for each wall."""
+    """Return the settings of the layers; `height` is the first-cell height, or a height for each wall."""
     from meshonet.solvers.layers.layer_settings import LayerSettings
 
     heights = height if isinstance(height, Mapping) else {}

@@ -31,21 +31,22 @@ class BlockRequest(FirstCell):
 
     Parameters
     ----------
-    cells : approximate number of cells; without `cells`, `cell_size` and `res` it is `CELLS`, with layers
-        `LAYERED_CELLS`.
+    cells : approximate number of cells. If `cells`, `cell_size` and `res` are all missing, it is `CELLS`, or
+        `LAYERED_CELLS` with layers.
     cell_size : target edge length away from walls, in the domain's unit.
     res : number of cells along the longest extent of the domain.
-    first_cell : first-cell height at walls, in the domain's unit, or heights by name of walls with layers.
-    y_plus, reynolds, chord_fraction : the same as y+, converted for a flat plate.
+    first_cell : first-cell height at walls, in the domain's unit, or a mapping from names of walls to
+        heights.
+    y_plus, reynolds, chord_fraction : first-cell height as y+, converted with the friction of a flat plate.
     length : reference length of the Reynolds number; None is the extent of the bodies.
     growth : largest ratio of neighbouring cells away from the wall.
     constant_layers : number of first layers of equal height.
-    walls : names of the stretches with layers; none stands for `Domain.layered_loops`.
+    walls : names of the stretches with layers; if empty, `Domain.layered_loops` have layers.
     pitch : vector from one blade of a cascade to the next: the domain is the passage around it.
     inlet, outlet : lengths of the passage before and behind the blade, in its axial chords; None is 1.
     periodic : pairs of sides of the outer boundary, by name, that are translated copies of each other.
-    layout : blocks to take, of this domain or of one like it.
-    count : numbers of cells along sides of the domain, by their names.
+    layout : blocks that are used instead of a decomposition, of this domain or of a similar one.
+    count : numbers of cells along sides of the domain, by the names of the sides.
     refine : how often all cells are halved. `cells`, `cell_size` and `res` apply to the coarsest grid of the
         family; `first_cell` and `growth` apply to the finest grid, which is the result.
 
@@ -113,7 +114,7 @@ class BlockRequest(FirstCell):
     def default_cells(self) -> int:
         """Number of cells before refinement if none is requested.
 
-        It is reduced, to half at most, if the refined grid would have more than `MOST_CELLS`.
+        If the refined grid would have more than `MOST_CELLS`, the number is reduced, but at most by half.
         """
         usual, room = self.usual_cells, MOST_CELLS // self.multiple**2
         return room if usual // 2 <= room < usual else usual

@@ -26,7 +26,6 @@ def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) 
     Parameters
     ----------
     grid : grid of blocks, or of one ring.
-    domain : its domain.
     names : names of the walls with layers; empty for those of `Domain.layered_loops`.
     first : prescribed height in the domain's unit.
     """
@@ -43,7 +42,7 @@ def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) 
 
 
 def without_layers(domain: Domain) -> list[str]:
-    """Return a note on sides of the outer loop that may be walls: only the holes get layers by default."""
+    """Return a note on sides of the outer loop that may be walls but get no layers unless they are named."""
     outer = domain.loops[0].names
     if 0 in domain.layered_loops or len(outer) == 1:
         return []
@@ -53,7 +52,7 @@ def without_layers(domain: Domain) -> list[str]:
 
 
 def sharp_edge_notes(layout: Layout) -> list[str]:
-    """Return a note for each sharp edge that no line with layers leaves, so that lines turn around it."""
+    """Return a note for each sharp edge at which cells have wide angles because no wake has layers there."""
     notes, mesh = [], layout.mesh
     for loop in mesh.domain.loops[1:]:
         if has_sharp_edge(loop):

@@ -47,15 +47,17 @@ class Cascade:
     Parameters
     ----------
     blade : loop of the blade, with the passage on its left.
-    pitch : displacement from a blade to the next.
+    pitch : displacement from one blade to the next.
     inlet, outlet : lengths of the passage upstream and downstream of the blade, in axial chords.
     settings : layers at the blade; the default is a few rows of equal cells.
     name : name of the blade.
-    near : distances upstream and downstream of the blade, in pitches, at which straight rows begin, if
-        inlet and outlet are that far away.
-    centre : origin of axial distances, inside the blade; the default is a point far from its surface.
+    near : distances upstream and downstream of the blade, in pitches, at which straight rows of cells begin,
+        if the inlet and the outlet are farther away than that.
+    centre : point inside the blade from which axial distances are measured; the default is the point farthest
+        from its surface.
     marched : the layers around the blade, if they are already known.
-    factors : (n,) factors of the first-cell height at the points of the blade; the default is 1.
+    factors : (n,) factors by which the first-cell height is multiplied at the points of the blade; the
+        default is 1.
     """
 
     blade: Loop
@@ -75,7 +77,7 @@ class Cascade:
 
     @property
     def opposite(self) -> bool:
-        """Whether the pitch points to the next blade on the right of the flow, which is towards larger x."""
+        """Whether the pitch points to the right of the flow direction, which is that of x."""
         return self.pitch[1] < 0.0 or (self.pitch[1] == 0.0 and self.pitch[0] > 0.0)
 
     @property
@@ -140,7 +142,7 @@ class Cascade:
     def measures(self) -> dict[int, Measures]:
         """Measures whose steps along the front (the outer edge of the layers) should be even.
 
-        They are in a dict with the number of the loop; it is empty if growth has no limit.
+        The key is the index of the loop; the dict is empty if growth has no limit.
         """
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
@@ -154,7 +156,7 @@ class Cascade:
     def reach(self) -> tuple[float, float]:
         """Requested lengths from the front (the outer edge of the layers) to inlet and outlet.
 
-        They may be too short for blocks; see `ends`, which checks this.
+        The lengths may be too short for the blocks; `ends` checks this.
         """
         axial, around = self._axial(self.blade), self._axial(self.ring.front)
         before = self.inlet * self.chord - float(axial.min() - around.min())
@@ -185,7 +187,7 @@ class Cascade:
 
     @cached_property
     def metric(self) -> SizeMetric:
-        """Cell sizes outside of the layers of the blade and of its neighbours."""
+        """Target cell sizes outside the layers of the blade and of the two neighbouring blades."""
         own = self.factors_at(self.ring.arcs)
         sizes = replace(ring_metric(self.ring, self.layers, own), largest=abs(self.left) / ACROSS)
         shift = pairs_of(np.array([0.0, -self.left, self.left]))
@@ -196,7 +198,7 @@ class Cascade:
         return replace(sizes, points=points, normals=normals, across=across, along=along)
 
     def check_reach(self, cells: int | None, cell_size: float | None) -> None:
-        """Raise InputError if there must be far more than `cells` cells, or too many of size `cell_size`."""
+        """Raise InputError if the passage needs far more than `cells` cells, or too many of `cell_size`."""
         largest = cell_size or abs(self.left) / ACROSS * COARSEST**0.5
         length = (1.0 + self.inlet + self.outlet) * self.chord
         most = MOST_CELLS if cell_size else min(MORE * (cells or CELLS), MOST_CELLS)
@@ -208,7 +210,7 @@ class Cascade:
 
 
 def scaled(metric: SizeMetric, scale: float) -> SizeMetric:
-    """Return the sizes of a `metric` for cells that are `scale` times as long along the blade."""
+    """Return the `metric` with target lengths along the blade multiplied by `scale`."""
     return replace(metric, along=scale * metric.along, largest=metric.largest * scale**0.5)
 
 

@@ -61,11 +61,11 @@ def cascade_layout(
     cascade: Cascade, *, cells: int | None = None, cell_size: float | None = None,
     timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
-    """Return a fine layout of a passage with about `cells` cells, or with a cell size away from the blade.
+    """Return a fine layout of a passage with about `cells` cells, or `cell_size` away from the blade.
 
-    Its outer loop has the parts periodic1, outlet, periodic2 and inlet; nodes of periodic2 are those of
-    periodic1 plus the pitch. Raises InputError: too little room for layers, inlet or outlet,
-    far more cells than requested; NoValidGridError: folded cells.
+    Its outer loop consists of periodic1, outlet, periodic2 and inlet; each node of periodic2 is a node of
+    periodic1 displaced by the pitch. Raises InputError: too little room for layers, inlet or outlet; far more
+    cells needed than requested; NoValidGridError: folded cells.
     """
     timings = {} if timings is None else timings
     cascade.check_reach(cells, cell_size)
@@ -116,7 +116,7 @@ def _outside(
 def passage_optimum(
     layout: Layout, iterations: int, metric: SizeMetric | None, held: Bools | None = None
 ) -> Layout:
-    """Return the layout of a passage with nodes that minimise the functional.
+    """Return the layout of a passage with its nodes moved to minimise the functional of grid quality.
 
     If `metric` is given, its cell sizes are targets. The two end nodes of the cut, and the nodes in the mask
     `held` (n,), do not move.
@@ -147,7 +147,7 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
 
 
 def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
-    """Return loop number, length and direction (1 or -1) of the rows to inlet and outlet."""
+    """Return, for the rows to the inlet and to the outlet, index of the loop, length, direction (1, -1)."""
     passage = cascade.passage
     axial = passage.axial(passage.front.curve.points)
     before = cascade.ends[0] - float(axial.min() - passage.inlet)
@@ -157,7 +157,7 @@ def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
 
 
 def row_steps(first: float, length: float, largest: float) -> Floats:
-    """Return distances of nodes from 0 to `length`; cells grow from `first` to about `largest`."""
+    """Return the nodes on a line from 0 to `length`; cells grow from `first` to about `largest`."""
     cells = [min(first * ROW_GROWTH**0.5, length)]
     total = cells[0]
     while total < length - 0.5 * cells[-1]:
@@ -171,7 +171,7 @@ def row_steps(first: float, length: float, largest: float) -> Floats:
 def counts_of(
     cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
 ) -> tuple[Indices, int, SizeMetric]:
-    """Return the coarse number of cells of each chord, the factor to the final numbers, and target sizes."""
+    """Return the coarse cell count of each chord, the factor to the final counts, and target cell sizes."""
     sizes = cascade.metric
     wanted = WantedCounts(chords, sizes)
     if cell_size is not None:
@@ -201,8 +201,8 @@ def attached_cells(
 
     `counts` (chords,) are the numbers of cells of the chords.
 
-    `layers` replaces the number of layers of the cascade. `longest` are lengths of the rows by the number of
-    their loop, which replace those of the cascade.
+    `layers`, if given, replaces the number of layers of the cascade. `longest`, if given, replaces the
+    lengths of the rows; its keys are the indices of their loops.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

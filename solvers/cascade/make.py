@@ -13,7 +13,7 @@ from meshonet.solvers.stages import Timings
 
 
 def make_passage(shape: DomainShape, request: BlockRequest) -> Solution:
-    """Return the grid of the passage around a blade, the only hole of a domain, for a request with a pitch.
+    """Return the grid of a passage; the blade is the only hole of the domain, the request has the pitch.
 
     Raises InputError: see `make_blocks`; options that do not apply to cascades; NoValidGridError: folded
     cells.

@@ -39,10 +39,10 @@ class Passage:
 
     Parameters
     ----------
-    front : the blade, or the front of its layers, with the passage on its left.
-    period : displacement from a blade to the next, on the left of the flow.
-    centre : origin of axial distances, inside the blade.
-    inlet, outlet : axial distances at which blocks end.
+    front : the blade, or the outer edge of its layers, with the passage on its left.
+    period : displacement from one blade to the next one on the left of the flow direction.
+    centre : point inside the blade from which axial distances are measured.
+    inlet, outlet : axial distances from `centre` at which the blocks end upstream and downstream.
     name : name of the blade.
     """
 
@@ -60,8 +60,9 @@ class Passage:
     ) -> Passage:  # fmt: skip
         """Return the passage around a closed front.
 
-        Blocks end at the distances `near` from the front, in pitches, or at `inlet` and `outlet`, in the unit
-        of the front, if these are less. The default of `centre` is a point far from the front.
+        Blocks end at the distances `near` from the front, in pitches; or at the distances `inlet` and
+        `outlet`, in the unit of the front, where these are smaller. The default of `centre` is a point far
+        from the front.
         """
         points = front.curve.points
         centre = inner_point(points) if centre is None else centre
@@ -85,11 +86,11 @@ class Passage:
         return product(points - pairs_of(np.array(self.centre)), self.axis)
 
     def along(self, points: Floats) -> Floats:
-        """Return the distances (n,) of points (n, 2) from the centre along the pitch, in pitches."""
+        """Return the distances (n,) of points (n, 2) from the centre along the pitch vector, in pitches."""
         return np.asarray(((complex_of(points) - self.centre) / self.period).real)
 
     def at(self, axial: Sequence[float], along: Sequence[float]) -> Floats:
-        """Return the points (n, 2) at axial distances (n,) from the centre and distances in pitches (n,)."""
+        """Return the points (n, 2) at given distances from the centre: axial (n,), and in pitches (n,)."""
         centre = pairs_of(np.array(self.centre))
         return centre + np.array(axial)[:, None] * self.axis + np.array(along)[:, None] * self.pitch
 
@@ -108,9 +109,9 @@ class Passage:
         """Return the domain of the blocks, with the loops front, inlet, outlet, and one around them.
 
         The loops inlet and outlet are rectangles upstream and downstream of the passage. The first side of
-        the first rectangle is the inlet, which goes from `inlet` against the pitch; the first side of the
-        second is the outlet, which goes along the pitch to `outlet`. Both are distances along the pitch from
-        the centre, in pitches.
+        the upstream rectangle is the inlet: it starts at `inlet` and goes against the pitch. The first side
+        of the downstream rectangle is the outlet: it goes along the pitch and ends at `outlet`. `inlet` and
+        `outlet` are distances from the centre in the direction of the pitch, in pitches.
         """
         pitch = abs(self.period)
         x, far = (self.inlet, self.outlet), (self.inlet - pitch, self.outlet + pitch)
@@ -127,7 +128,7 @@ class Passage:
 
 
 def inner_point(polygon: Floats) -> complex:
-    """Return the point of a lattice inside a polygon (n, 2) that is farthest from the polygon."""
+    """Return the point inside a polygon (n, 2), of those of a lattice, that is farthest from its edges."""
     low, high = polygon.min(axis=0), polygon.max(axis=0)
     best, most = complex(*polygon.mean(axis=0)), -1.0
     for rows in (40, 160, 640):
@@ -155,9 +156,9 @@ def _crossings(polygon: Floats, x: float) -> Floats:
 
 
 def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
-    """Return the layout with `rows` attached around a `wall`; its domain has periodic sides.
+    """Return the layout of the passage with `rows` attached; its domain has periodic sides and the `wall`.
 
-    `cut` (k,) are the nodes on the lower side of the layout's cut, from inlet to outlet.
+    `cut` (k,) are the nodes on the lower side of the cut of the layout, ordered from inlet to outlet.
     """
     mesh = layout.mesh
     count = len(mesh.nodes)

@@ -36,16 +36,16 @@ _LEAST = 1e-9  # of the slit: by how much the potential rises from point to poin
 
 @dataclass(frozen=True, eq=False)
 class PassageFlow:
-    """The flow past a cascade, which maps a blade to a slit, and further to the edges of a strip.
+    """Potential flow past a cascade: it maps a blade to a slit, and the slit to the edges of a strip.
 
-    ζ is the position, scaled so that the pitch is iπ. G is the complex potential, in which the blade is a
-    slit from -h to h. σ is the coordinate in the strip.
+    ζ is the position in the plane, scaled so that the pitch is iπ. G is the complex potential; in the plane
+    of G the blade is a slit from -h to h. σ is the coordinate in the strip.
 
     Parameters
     ----------
-    half : half the length of the slit, h.
-    around : (n,) increasing angles ν of points on the blade, at h cos ν on the slit. In long channels, points
-        at equal steps are added.
+    half : h, half the length of the slit.
+    around : (n,) increasing angles ν of points on the blade; G of such a point is h cos ν. In long channels,
+        points at equal steps are added.
     strip : (n,) positions σ of the points, infinite at the ends of the slit.
     away : (n,) ζ - G at the points.
     """
@@ -81,7 +81,7 @@ class PassageFlow:
         return cls(half, np.unwrap(angle), along + edge, points - phi)
 
     def to_places(self, places: Complexes) -> Complexes:
-        """Return the positions ζ (n,) of points G (n,) between the slits."""
+        """Return the positions ζ (n,) of the points whose potentials are G (n,), between the slits."""
         ratio = sinh(places + self.half) / sinh(places - self.half)
         return places + self.inside(np.asarray(0.5 * log(ratio)))
 
@@ -92,7 +92,7 @@ class PassageFlow:
         return float(before.real), float(behind.real)
 
     def inside(self, places: Complexes) -> Complexes:
-        """Return ζ - G, a function without singularities, at points σ (m,), from its values on the blade.
+        """Return ζ - G at points σ (m,); the function is computed from its values on the blade.
 
         Cauchy's integral is evaluated by the trapezoidal rule in the variable tanh σ/2, whose values fill a
         disc. The result is divided by the same integral of the constant function 1 (Helsing, Ojala, J.

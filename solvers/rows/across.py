@@ -16,14 +16,14 @@ _FROM = -0.25  # least place: u = 0, the leading edge, is between others
 
 @dataclass(frozen=True, eq=False)
 class ChannelLines:
-    """Lines across the channel, normal to the outer edges of the layers, as a mean over sections.
+    """Lines across the channel between two blades, normal to the layers' outer edges; means over sections.
 
     Parameters
     ----------
-    upper : (n,) places u on the upper side, from 0 to 0.5.
-    lower : (n,) 1 - u of the places opposite them, on the lower side of the next blade.
-    slant : (n,) tangent of the angle between a line and the normal, per unit of u by which one of its ends is
-        moved; 0 where no place is opposite.
+    upper : (n,) places u (see `SectionPlane`) on the upper side of a blade, from 0 to 0.5.
+    lower : (n,) 1 - u of the opposite places, on the lower side of the next blade.
+    slant : (n,) tangent of the angle between line and normal if one end of the line is moved by 1 in u; 0
+        where no place is opposite.
     """
 
     upper: Floats
@@ -45,10 +45,10 @@ class ChannelLines:
         return cls(upper, upper, squares)
 
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
-        """Return how much more lines across the channel lean with places `u` (k,) than with `start` (k,).
+        """Return how much more lines deviate from the normal with places `u` (k,) than with `start` (k,).
 
         The result is the increase of the tangent of each line's angle to the normal, linearised at `u` and
-        multiplied by `weight`. `pairs` (p, 2) are the numbers of the places that lines join.
+        multiplied by `weight`. `pairs` (p, 2) are the indices of the two places that each line joins.
         """
         one = u[pairs[:, 0]]
         slope = np.interp(one, self.upper, np.gradient(self.lower, self.upper))
@@ -58,18 +58,18 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square of the tangent by which lines between `pairs` (p, 2) of places lean.
+        """Return the mean square of tan(angle to the normal) of the lines between `pairs` (p, 2) of places.
 
-        The places are `u` (k,).
+        `u` (k,) are the places.
         """
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return the square of the slant (p,) of lines between pairs (p, 2) of places."""
+        """Return the squares (p,) of `slant` for the lines between pairs (p, 2) of places u."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return the distances (p,), in u, of the lower ends of `pairs` (p, 2) from their ideal places.
+        """Return by how much u (p,) the lower places of `pairs` (p, 2) differ from their ideal places.
 
         The ideal place is the one opposite the upper end.
         """

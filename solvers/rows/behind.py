@@ -32,12 +32,12 @@ _KEPT = 0.4
 
 
 def even_behind(sections: Sequence[KeySection], columns: Indices) -> tuple[KeySection, ...]:
-    """Return sections at `key_heights` with nodes behind the blade on polynomials of the height.
+    """Return the sections with nodes behind the blade moved onto polynomials of the height along the span.
 
-    For each node, two quantities become polynomials of the height: the share of the way (see
-    `SectionPlane.shares`), and the difference of theta from the trailing edge. Nodes of layers, which are in
-    `columns` (k, m), stay; nodes near the layers and near the trailing edge move by a fraction. If a Jacobian
-    would become too small, all nodes move by less.
+    The `sections` are those at `key_heights`. For each node, two quantities become polynomials of the height:
+    its position along the passage (see `SectionPlane.shares`), and its theta minus that of the trailing edge.
+    The nodes `columns` (k, m) of layers are fixed; nodes near the layers and near the trailing edge move by a
+    fraction of the way. If a Jacobian would become too small, all nodes move less.
     """
     mesh = sections[0].layout.mesh
     values = []

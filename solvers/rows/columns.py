@@ -17,7 +17,7 @@ they are as marched.
 
 
 def layer_columns(layout: Layout) -> Indices:
-    """Return the nodes (k, rows + 1) of the columns of layers, from the wall, clockwise around the blade."""
+    """Return the nodes (k, rows + 1) of the columns of layers: clockwise, and each from the wall outwards."""
     blocks = [layout.blocks[number] for number in layout.layers]
     ordered, left = [blocks[0]], blocks[1:]
     while left:
@@ -29,10 +29,9 @@ def layer_columns(layout: Layout) -> Indices:
 def straight_near(lines: Floats, away: Floats) -> Floats:
     """Return the columns `lines` (k, m, 2), straightened where they are close to a corner.
 
-    `away` (k,) are the distances from the nearest corner.
-
-    Marched columns diverge around a corner. Distances between straight columns change linearly from the wall
-    to the outer edge of the layers.
+    `away` (k,) are the distances of the columns from the nearest corner. Marched columns are curved where
+    they diverge around a corner. Between straight columns, the distance changes linearly from the wall to the
+    outer edge of the layers.
     """
     thickness = norms(np.diff(lines, axis=1)).sum(axis=1).max()
     t = np.clip((_MARCHED - away / thickness) / (_MARCHED - _STRAIGHT), 0.0, 1.0)
@@ -44,32 +43,32 @@ def straight_near(lines: Floats, away: Floats) -> Floats:
 def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
     """Return the coordinates `values` (k, m, 2) of columns of nodes, moved along the columns.
 
-    `space` (k, m, 3) are the positions of the nodes in space. First cells get the height `first`; the outer
-    ends stay, and the displacement decreases to zero towards them.
+    `space` (k, m, 3) are the positions of the nodes in space. First cells get the height `first`. The outer
+    ends of the columns are fixed; displacements decrease to zero towards them.
     """
     steps = norms(np.diff(space, axis=1))
     return resampled(values, steps, with_first(steps, np.full(len(steps), first)))
 
 
 def resampled(values: Floats, steps: Floats, new: Floats) -> Floats:
-    """Return `values` (k, m, 2), given at nodes of lines, interpolated at other nodes of these lines.
+    """Return `values` (k, m, 2), known at the nodes of k lines, interpolated at new nodes of these lines.
 
-    `steps` (k, m - 1) are the distances of the given nodes, `new` (k, m - 1) those of the other nodes; both
-    have the same sums.
+    `steps` (k, m - 1) are the distances between consecutive given nodes, `new` (k, m - 1) those between new
+    nodes; the sum along each line is the same.
     """
     arcs = arcs_of(steps)
     return sampled(values, arcs, arcs_of(new))
 
 
 def arcs_of(steps: Floats) -> Floats:
-    """Return the arc lengths (k, m + 1), from 0, at the nodes of lines of `steps` (k, m)."""
+    """Return the arc lengths (k, m + 1) at the nodes of k lines; they are the sums of `steps` (k, m)."""
     return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
 
 
 def with_first(steps: Floats, first: Floats) -> Floats:
     """Return `steps` (k, m), scaled so that the first step of each line is `first` (k,).
 
-    The factors change gradually along a line; the sum of its steps stays the same.
+    The factor changes gradually along each line, so that the sum of its steps stays the same.
     """
     t = np.linspace(0.0, 1.0, steps.shape[1])
     begin = steps * exp(log(first[:, None] / steps[:, :1]) * (1.0 - t) ** 2)

@@ -17,10 +17,11 @@ def exact_in_corners(
     nodes: Floats, begins: tuple[Floats, Floats], sizes: tuple[float, Floats],
     in_space: Callable[[Floats], Floats],
 ) -> Floats:  # fmt: skip
-    """Return nodes (..., 3) moved so that lines to them from two nodes are `sizes` long.
+    """Return nodes (..., 3), each moved so that the two lines that end at it have the lengths `sizes`.
 
-    In each round a node moves along both lines, as far as would make both lengths exact if the map to space
-    were linear. Rounds end when they make lengths no more exact: what is left is rounding.
+    Newton's method: in each round a node moves along both lines so far that both lengths would be exact if
+    the map to space were linear. Rounds end when the lengths no longer improve: only rounding errors are
+    left.
 
     Parameters
     ----------

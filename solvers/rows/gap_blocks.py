@@ -22,12 +22,12 @@ _ROUNDS = 4
 
 @dataclass(frozen=True, eq=False)
 class GapEnds:
-    """Nodes inside the outline of the blade at both ends of a gap.
+    """Nodes inside the outline of the blade at the lower and the upper end of a gap.
 
     Parameters
     ----------
-    fill : numbering of the nodes; nodes of the outline come first.
-    low, high : (n, 2) s and theta of the nodes at the lower and at the upper end.
+    fill : numbering of the nodes; nodes of the outline come first. low, high : (n, 2) s and theta of the
+        nodes at the lower and at the upper end.
     """
 
     fill: GapFill
@@ -42,7 +42,7 @@ class GapBlocks:
     Parameters
     ----------
     fill : numbering of the nodes; nodes of the outline come first.
-    outline : (k,) for each node of the outline, its number among the nodes of a section of the row.
+    outline : (k,) for each node of the outline, its index among the nodes of a section of the row.
     space : (levels, n, 3) x, y, z of the nodes.
     """
 
@@ -58,11 +58,12 @@ def gap_ends(
 
     Parameters
     ----------
-    beside : function from a height to (k, 2, 3) s, theta, h of the nodes of the blade, clockwise, and of the
-        nodes next to them.
+    beside : function of the height that returns (k, 2, 3): for each node of the blade, clockwise, s, theta, h
+        of this node and of the node next to it away from the blade.
     lead : index of the node at the leading edge.
     zone : the gap.
-    first, growth : height of the cells inside next to the outline, and largest ratio of neighbouring cells.
+    first, growth : height of the cells inside the outline that touch it, and largest ratio of neighbouring
+        cells.
 
     Raises NoValidGridError: cells stay folded.
     """
@@ -88,10 +89,10 @@ def gap_ends(
 def gap_blocks(
     row: Row, ends: GapEnds, around: Indices, outline: Floats, zone: Zone, growth: float
 ) -> GapBlocks:
-    """Return the blocks of a gap between its ends.
+    """Return the blocks of a gap, with nodes between its lower and its upper end.
 
-    `around` (k,) are the numbers of the nodes of the blade, clockwise around it; `outline` (levels, k, 3) are
-    s, theta and h of these nodes in the levels of the gap.
+    `around` (k,) are the indices, in a section, of the nodes of the blade, clockwise; `outline` (levels, k,
+    3) are s, theta and h of these nodes on each level of the gap.
     """
     fill = ends.fill
     blade = row.channel.in_space(outline[:, fill.outline])

@@ -56,8 +56,8 @@ class GapFill:
 
     Parameters
     ----------
-    outline : (k,) indices, in the given outline, of the nodes clockwise from the first node of side 0. In
-        `layout` these nodes come first, in this order.
+    outline : (k,) indices of nodes of the given outline, clockwise, starting with the first node of side 0.
+        In `layout` these nodes come first, in this order.
     layout : the five blocks, the core last.
     """
 
@@ -66,10 +66,10 @@ class GapFill:
 
 
 def outline_sides(count: int, lead: int, aside: int) -> list[Indices]:
-    """Return positions of the four sides among `count` nodes of an outline, `lead` at the leading edge.
+    """Return, for each of the four sides, the indices of its nodes in an outline of `count` nodes.
 
-    Side 1 is at the trailing edge and side 3 at the leading edge of the blade. Each extends over `aside`
-    nodes on both sides of this edge.
+    Side 1 is at the trailing edge and side 3 at the leading edge of the blade, where node `lead` is. These
+    two sides extend over `aside` nodes in both directions from the edge.
     """
     m, half = aside, count // 2
     cuts = [m, half - m, half + m, count - m, count + m]
@@ -99,7 +99,7 @@ def _counts(outline: Floats, lead: int, first: float, growth: float) -> tuple[in
 
 
 def filled_outline(outline: Floats, outside: Floats, lead: int, first: float, growth: float) -> GapFill:
-    """Return the five blocks inside an outline (k, 2), clockwise, at whose edge cells are about `first` high.
+    """Return the five blocks inside a clockwise outline (k, 2); cells that touch it are about `first` high.
 
     `outside` (k, 2) are the nodes next to the outline on its outer side; `lead` is the index of the node at
     the leading edge; `growth` is the largest ratio of neighbouring cells. Raises NoValidGridError: cells are

@@ -10,11 +10,11 @@ from meshonet.solvers.sparse import SparsePattern
 
 
 class HarmonicMoves:
-    """Harmonic displacements of the nodes of a mesh, of which some are prescribed.
+    """Displacements of the nodes of a mesh: some are prescribed, the others are harmonic.
 
-    They can be computed for all meshes with the same quads and the same prescribed nodes. Neighbours are
-    weighted by the inverse square of their distance, so that small cells keep their form. Nodes with a
-    periodic partner move as the partner does.
+    The object serves all meshes with the same quads and the same prescribed nodes. Harmonic means: each
+    displacement is the mean of those of the neighbours, weighted by their inverse square distances, so that
+    small cells keep their form. Nodes with a periodic partner move as the partner does.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class HarmonicMoves:
         self.pattern = SparsePattern(len(self.free), rows, columns)
 
     def of(self, mesh: QuadMesh, moves: Floats) -> Floats:
-        """Return displacements (n, 2): `moves` (n, 2) where prescribed, elsewhere weighted means."""
+        """Return displacements (n, 2): `moves` (n, 2) at prescribed nodes, harmonic ones at the others."""
         moves = np.where(self.prescribed[:, None], moves, 0.0)
         (a, b), count = self.edges, len(moves)
         off = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]

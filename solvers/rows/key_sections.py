@@ -45,20 +45,20 @@ STEEP, MARGIN = 3.0, 0.93
 
 @dataclass(frozen=True, eq=False)
 class SectionPlan:
-    """Data that all sections share.
+    """Data that all sections of a row share.
 
     Parameters
     ----------
     growth : largest ratio of neighbouring cells.
-    columns : (k, rows + 1) nodes of the layers; each column runs from the blade outwards, and columns follow
-        each other clockwise around it.
-    outward : (k,) node next to each column beyond the layers.
+    columns : (k, rows + 1) nodes of the layers: columns are ordered clockwise around the blade, and the nodes
+        of each from the blade outwards.
+    outward : (k,) for each column, the next node beyond the layers.
     ends : nodes at inlet and outlet.
     held : (n,) mask of the nodes in layers or at inlet and outlet.
-    moves : displacements of the other nodes that follow from those of the held ones.
-    places : places u of the first nodes of the columns.
-    wake : difference of theta between the outlet and the trailing edge along a straight wake, at half the
-        height; and its derivative with respect to the height.
+    moves : computes the displacements of all other nodes from those of the held nodes.
+    places : places u (see `SectionPlane`) of the first nodes of the columns.
+    wake : theta at the outlet minus theta at the trailing edge, along a straight wake, at half the height;
+        and the derivative of this difference with respect to the height.
     """
 
     growth: float
@@ -71,7 +71,7 @@ class SectionPlan:
     wake: tuple[float, float]
 
     def bent(self, plane: SectionPlane, nodes: Floats) -> Floats:
-        """Return nodes (n, 2) in (m', theta) of a section, moved in theta with the wake behind the blade."""
+        """Return nodes (n, 2) of a section in (m', theta), shifted in theta so that they follow the wake."""
         most = self.wake[0] + self.wake[1] * (plane.height - 0.5)
         start = float(plane.edges[1, 0])
         t = np.maximum(nodes[:, 0] - start, 0.0) / (plane.map.length - start)
@@ -81,7 +81,7 @@ class SectionPlan:
 
 @dataclass(frozen=True, eq=False)
 class LayerColumns:
-    """Columns of the layers of a section, before nodes are spaced along them.
+    """Columns of the layers of a section, before the final nodes are distributed along them.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ class LayerColumns:
 
     @classmethod
     def of(cls, plane: SectionPlane, places: Floats) -> LayerColumns:
-        """Return the columns of a section that begin at places u (k,)."""
+        """Return the columns of a section that begin at the places u (k,) on the blade."""
         front = plane.front_arcs(places)
         lines, walls = plane.cascade.ring.columns(front)
         lines = straight_near(lines, plane.from_corners(walls))
@@ -110,7 +110,8 @@ class KeySection:
     Parameters
     ----------
     plane : the section as a plane cascade.
-    layout : its blocks in (m', theta). The domain of the layout is that of the middle section.
+    layout : the blocks of the section in (m', theta); the domain of this layout is that of the middle
+        section.
     places : (k,) places u of the first nodes of the columns of layers.
     """
 
@@ -121,14 +122,14 @@ class KeySection:
 
 @dataclass(frozen=True, eq=False)
 class Beginning:
-    """The middle section, and what the others need to follow from it.
+    """The middle section, and the data from which all other sections are made.
 
     Parameters
     ----------
     plan : data that all sections share.
-    columns : columns of the layers of each section; None of the middle one.
+    columns : columns of the layers of each section; None for the middle section.
     middle : the middle section.
-    following : those that make the sections towards the hub, and towards the casing.
+    following : objects that make the sections towards the hub, and towards the casing.
     """
 
     plan: SectionPlan
@@ -141,11 +142,11 @@ def planned(
     planes: Sequence[SectionPlane], coarse: Layout | None, cells: int, longest: Mapping[int, float],
     wake: tuple[float, float], gaps: tuple[bool, bool],
 ) -> Beginning:  # fmt: skip
-    """Return the plan of all sections, and the middle one, with about `cells` cells.
+    """Return the plan of all sections, and the middle section with about `cells` cells.
 
-    `coarse` is the `coarse_section` in the middle, if it is known; `longest` are the largest lengths of the
-    rows to inlet and outlet, by the number of their loop; `wake` is that of `SectionPlan`; `gaps` tells
-    whether the blade ends in a gap at the hub and at the casing.
+    `coarse` is the `coarse_section` of the middle section, if it is known. `longest` has the largest lengths
+    of the rows to inlet and outlet, by the index of their loop. `wake` is that of `SectionPlan`. `gaps` tells
+    whether the blade ends in a gap at the hub, and whether it does at the casing.
     """
     plane = planes[len(planes) // 2]
     whole = middle_section(planes, cells, longest, coarse)
@@ -180,14 +181,14 @@ def _begun(plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySectio
 
 
 class NextSections:
-    """Makes sections one after the other, each from its neighbour's, with the blocks of `section`."""
+    """Makes sections one after another, each from the nodes of the one before, with the same blocks."""
 
     def __init__(self, plan: SectionPlan, section: KeySection) -> None:
         self.plan = plan
         self._problem = _problem(plan, section.plane, section.layout.mesh)
 
     def of(self, before: KeySection, plane: SectionPlane, columns: LayerColumns | None = None) -> KeySection:
-        """Return the section of a plane from the section `before` it; `columns` are computed unless given.
+        """Return the section in `plane`, made from the section `before`; `columns` are computed unless given.
 
         Raises NoValidGridError: its cells stay folded.
         """

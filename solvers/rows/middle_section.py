@@ -48,10 +48,10 @@ def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
 def middle_section(
     planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], coarse: Layout | None = None
 ) -> Layout:
-    """Return the middle section of `planes`, with about `cells` cells, its layers and its rows.
+    """Return the middle section of `planes` with about `cells` cells, including its layers and rows.
 
-    `longest` are the largest lengths of the rows to inlet and outlet in any section, by the number of their
-    loop; `coarse` is the `coarse_section`, if it is known. Raises NoValidGridError: cells are folded.
+    `longest` has the largest lengths in any section of the rows to inlet and outlet, by the index of their
+    loop. `coarse` is the `coarse_section`, if it is known. Raises NoValidGridError: cells are folded.
     """
     plane = planes[len(planes) // 2]
     try:

@@ -35,9 +35,9 @@ class NodeGroup:
     ----------
     row : the row.
     zones : zones of the span, from hub to casing.
-    ids : (m,) numbers of the nodes.
-    lines : s and theta of the nodes as functions of the height.
-    around : places u on the blade at which columns begin, as functions of the height; None: no columns.
+    ids : (m,) numbers of the nodes. lines : s and theta of the nodes as functions of the height.
+    around : places u on the blade at which the columns of layers begin, as functions of the height; None if
+        the group has no columns.
     first : height of first cells at the blade.
     """
 
@@ -50,11 +50,11 @@ class NodeGroup:
 
     @property
     def columns(self) -> int:
-        """Number of columns of layers; the nodes of each follow those of the one before."""
+        """Number of columns of layers in the group; the nodes of one column are consecutive."""
         return self.around.coefficients.shape[1] if self.around else 0
 
     def arcs(self) -> list[LineArcs]:
-        """Return the arc lengths of the lines along the span through the nodes, for each zone."""
+        """Return, for each zone, the arc lengths of the lines along the span through the nodes."""
         out = []
         for zone in self.zones:
             at = zone.low + (zone.high - zone.low) * key_heights(_IN_GAP if zone.gap else SAMPLES)
@@ -66,7 +66,7 @@ class NodeGroup:
     def values(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
         """Return s, theta, h (levels, m, 3) of the nodes for the spacing in each zone.
 
-        `arcs` are from `arcs()`.
+        `arcs` is the result of the method `arcs`.
         """
         values = self.at(self._heights(arcs, spacings))
         self._exact_along_span(values)

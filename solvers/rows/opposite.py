@@ -11,12 +11,13 @@ from meshonet.solvers.rows.across import ChannelLines
 
 
 def opposite_places(places: Floats, pairs: Indices, lines: ChannelLines) -> Floats:
-    """Return places u (k,) of nodes clockwise around a blade; each place u has its partner at 1 - u.
+    """Return places u (k,) of nodes clockwise around a blade, with a node at 1 - u for each node at u.
 
-    Both sides have the same number of nodes, so that blocks inside the blade's outline, in a gap, are not
-    skew. `pairs` (p, 2) are nodes on the upper and the lower side, from the leading edge on, that `lines`
-    across the channel join. The node at the leading edge is one of those between the first pair: the one for
-    which these lines lean least. k is even; there are nodes at the leading and at the trailing edge.
+    Both sides have the same number of nodes, so that the blocks inside the blade's outline in a gap are not
+    skewed. `pairs` (p, 2) are a node on the upper and a node on the lower side that a line across the channel
+    joins, in order from the leading edge. k is even; the leading and the trailing edge have a node. Of the
+    nodes between those of the first pair, the one at the leading edge is chosen so that `lines` deviate least
+    from the normal.
     """
     both = _both_sides(places)
     k, half = len(places), len(places) // 2

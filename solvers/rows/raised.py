@@ -45,8 +45,8 @@ class Rise:
     end : height at which the blade ends.
     up : 1 where the gap is above it, -1 below.
     gap : height of the gap.
-    deep : (k,) for each column, the distance in height from this end, along the blade, at which moves become
-        0.
+    deep : (k,) for each column, the distance in height from this end of the blade at which displacements
+        become 0.
     moves : (k, 3) for each column, the displacement in space of the node next to the end of the blade.
     """
 
@@ -58,7 +58,7 @@ class Rise:
 
     @classmethod
     def of(cls, row: Row, zone: Zone, blade: Zone, around: SpanLines, lines: SpanLines) -> Rise:
-        """Return the moves next to a gap, `zone`.
+        """Return the displacements of layers next to a gap, `zone`.
 
         Parameters
         ----------
@@ -81,7 +81,7 @@ class Rise:
         return replace(self, deep=self.deep[part], moves=self.moves[part])
 
     def shares(self, heights: Floats) -> Floats:
-        """Return the fraction (levels, k) of each column's move that applies at the `heights` (levels, k)."""
+        """Return the fraction (levels, k) of its displacement by which each column moves at given heights."""
         off = self.up * (heights - self.end)
         away = np.where(off > 0.0, off / self.gap, -off / self.deep)
         return np.asarray(smooth_step(np.clip(1.0 - away, 0.0, 1.0)))
@@ -90,7 +90,7 @@ class Rise:
 def rises_of(
     row: Row, zones: Sequence[Zone], around: SpanLines, lines: SpanLines, first: float
 ) -> list[Rise]:
-    """Return the moves of columns that begin at `around` (k,), where there are any (see `Rise.of`).
+    """Return the displacements of columns next to each narrow gap; parameters are as for `Rise.of`.
 
     `first` is the height of first cells at the blade.
     """
@@ -103,15 +103,15 @@ def rises_of(
 def raise_layers(
     rises: Sequence[Rise], space: Floats, heights: Floats, ends: tuple[Indices, Indices, Floats], first: float
 ) -> None:
-    """Move the nodes of columns in place; first cells keep their exact heights.
+    """Displace the nodes of columns; `space` is changed in place. First cells keep their exact heights.
 
     Parameters
     ----------
-    rises : the moves.
+    rises : the displacements.
     space : (levels, k, rows, 3) x, y, z of the nodes.
-    heights : (levels, k) of the nodes on the blade.
-    ends : the numbers of the levels that bound zones; the numbers of the levels next to them; the heights of
-        the cells between both.
+    heights : (levels, k) heights of the nodes on the blade.
+    ends : indices of the levels that bound zones; indices of the levels next to them; heights of the cells
+        between these two levels.
     first : height of first cells at the blade.
     """
     rows = space.shape[2]

@@ -70,13 +70,13 @@ class RowRequest(FirstCell):
         return DEFAULT_GROWTH if self.growth is None else self.growth
 
     def height(self, unit: float = 1.0) -> float:
-        """Return the first-cell height in chords; `unit` is the reference length of a y+, in chords."""
+        """Return the first-cell height in chords; `unit` is the reference length for y+, in chords."""
         height = super().height(unit)
         return DEFAULT_FIRST_CELL if height is None else height
 
 
 def row_request(**parameters: Any) -> RowRequest:
-    """Return the request with the parameters, fields of `RowRequest`; ``wall_spacing`` is ``first_cell``.
+    """Return a `RowRequest` with the parameters as its fields; ``wall_spacing`` is read as ``first_cell``.
 
     Raises InputError: a parameter that `RowRequest` does not have; see also `RowRequest`.
     """

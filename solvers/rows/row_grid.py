@@ -40,7 +40,7 @@ _OTHER = 0.15
 
 
 def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
-    """Return the grid of a passage, and notes.
+    """Return the grid of one passage of a row (or of several passages), and notes for the report.
 
     Raises InputError: a row that leaves no room for layers, inlet or outlet. Raises NoValidGridError: cells
     are folded.
@@ -86,9 +86,10 @@ def turned_by(angle: float) -> Motion:
 
 @dataclass(frozen=True, eq=False)
 class ZoneSection:
-    """The blocks of one level of a zone, and the blocks inside the outline of the blade.
+    """The blocks around the blade on one level of a zone, and the blocks inside the outline of the blade.
 
-    The former are given both as a planar grid and as a layout; the latter are None unless the zone is a gap.
+    The blocks around the blade are given as a planar grid, `plane`, and as a layout. The blocks inside the
+    outline, `inside`, are None unless the zone is a gap.
     """
 
     plane: Grid

@@ -17,8 +17,8 @@ class RowNodes:
     Parameters
     ----------
     space : (levels, n, 3) x, y, z.
-    beside : (levels, k, 2, 3) s, theta, h of the nodes of the blade, clockwise around it, and of the nodes
-        next to them.
+    beside : (levels, k, 2, 3) for each node of the blade, clockwise: s, theta, h of this node and of the node
+        next to it.
     """
 
     space: Floats

@@ -40,10 +40,10 @@ _NEAR_EDGE = 0.06  # places before and behind the trailing edge by which the mea
 
 @dataclass(frozen=True, eq=False)
 class SectionPlane:
-    """A section of a blade row as a plane cascade.
+    """A section of a blade row, mapped to a plane cascade.
 
-    Places u around the blade run from 0 at the leading edge along the upper side to 0.5 at the trailing edge,
-    and along the lower side to 1.
+    A place u around the blade is a number: 0 at the leading edge, increasing along the upper side to 0.5 at
+    the trailing edge, and along the lower side to 1, again at the leading edge.
 
     Parameters
     ----------
@@ -88,13 +88,13 @@ class SectionPlane:
 
     @property
     def room(self) -> tuple[float, float]:
-        """Distances of the inlet and of the outlet from the outer edge of the layers, in pitches."""
+        """Distances from the outer edge of the layers to the inlet and to the outlet, in pitches."""
         before, behind = self.cascade.ends
         return before / self.cascade.pitch[1], behind / self.cascade.pitch[1]
 
     @property
     def thickest(self) -> float:
-        """Place u on the upper side, 0 to 0.5, at which opposite points of both sides are farthest apart."""
+        """Place u (0 to 0.5) where the blade is thickest: the points at u and 1 - u are farthest apart."""
         u = np.linspace(0.1, 0.4, 61)
         return float(u[int(modulus(self._opposite(u) - self._opposite(1.0 - u)).argmax())])
 
@@ -108,7 +108,7 @@ class SectionPlane:
 
     @property
     def wake(self) -> float:
-        """Difference of theta between outlet and trailing edge along the continued mean line.
+        """Theta at the outlet minus theta at the trailing edge, along the continuation of the mean line.
 
         The continuation is straight, and inclined by at most `STEEPEST` degrees to the axis.
         """
@@ -121,7 +121,8 @@ class SectionPlane:
     def ending(self, near: tuple[float, float], thickest: float) -> SectionPlane:
         """Return the section with straight rows of cells from `near` pitches before and behind the blade.
 
-        The centre of its conformal map is in the middle between the places `thickest` and 1 - `thickest`.
+        The centre of the conformal map is the midpoint of the points at the places `thickest` and 1 -
+        `thickest`.
         """
         one, other = self._opposite(np.array([thickest, 1.0 - thickest]))
         centre = complex(0.5 * (one + other))
@@ -133,9 +134,9 @@ class SectionPlane:
         return self.places[list(self.cascade.blade.corners)]
 
     def from_corners(self, arcs: Floats) -> Floats:
-        """Return the distances of arc lengths (n,) on the blade from the nearest corner.
+        """Return, for points at arc lengths (n,) on the blade, the distances from the nearest corner.
 
-        Infinite without corners.
+        The distances are infinite if the blade has no corner.
         """
         off = wrapped((arcs - self.wall_arcs(self.corners)[:, None]) / self._walls[-1])
         return np.asarray(self._walls[-1] * np.abs(off).min(axis=0, initial=np.inf))
@@ -145,15 +146,15 @@ class SectionPlane:
         return np.append(self.cascade.blade.curve.knots, self.cascade.blade.length)
 
     def wall_arcs(self, u: Floats) -> Floats:
-        """Return the arc lengths (n,) on the blade of places u (n,), from 0 to 1."""
+        """Return the arc lengths (n,) on the blade at the places u (n,), which are from 0 to 1."""
         return np.interp(u, np.append(self.places, 1.0), self._walls)
 
     def places_of(self, arcs: Floats) -> Floats:
-        """Return the places u (n,) of arc lengths (n,) on the blade."""
+        """Return the places u (n,) at the arc lengths (n,) on the blade."""
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:
-        """Return the arc lengths (n,) on the outer edge of the layers where columns of places u (n,) end."""
+        """Return the arc lengths (n,), on the outer edge of the layers, of the columns from places u (n,)."""
         ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)
@@ -163,7 +164,7 @@ class SectionPlane:
 
     @cached_property
     def across(self) -> tuple[Floats, Floats]:
-        """1 - u (n,) of the places across the channel from `ON_SIDE` (n,), and the slant (n,) there.
+        """For the places `ON_SIDE` (n,): 1 - u (n,) of the places across the channel, and the slant (n,).
 
         See `ChannelLines`.
         """
@@ -180,7 +181,7 @@ class SectionPlane:
         return lower, np.where(inside, self.cascade.blade.length / np.sqrt(here), 0.0)
 
     def place(self, point: Floats) -> str:
-        """Return the position of a point (2,) along span and blade as text for messages."""
+        """Return a text for messages: where a point (2,) is along the span and along the blade."""
         share = float(self.shares(point[None])[0])
         along = f"between the blades, {100.0 * share:.0f} % of the way along them"
         if share < _AT_EDGE:
@@ -190,18 +191,18 @@ class SectionPlane:
         return f"section at {100.0 * self.height:.3g} % of the span, {along}"
 
     def shares(self, points: Floats) -> Floats:
-        """Return how far points (n, 2) are along the passage, as shares (n,) of the way.
+        """Return how far points (n, 2) are along the passage, as numbers (n,) called shares.
 
         A share is -1 at the inlet, 0 at the leading edge, 1 at the trailing edge and 2 at the outlet.
         """
         return np.interp(points[:, 0], self._stations, _SHARES)
 
     def stations(self, shares: Floats) -> Floats:
-        """Return the coordinate m' (n,) at `shares` (n,) of the way: the inverse of the method `shares`."""
+        """Return the coordinate m' (n,) at `shares` (n,) along the passage, the inverse of `shares`."""
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:
-        """Return theta (n,) of the line in the middle between both sides, at `shares` (n,) from 0 to 1."""
+        """Return theta (n,) of the mean line of the blade at `shares` (n,), which are from 0 to 1."""
         u = np.linspace(0.0, 0.5, _AROUND)
         middle = 0.5 * (self._opposite(u) + self._opposite(1.0 - u))
         part = np.maximum.accumulate(self.shares(pairs_of(middle)))

@@ -15,7 +15,7 @@ from meshonet.kernels._native import chebyshev_sums
 
 
 def key_heights(count: int) -> Floats:
-    """Return `count` heights from 0 to 1 at the extrema of a Chebyshev polynomial."""
+    """Return `count` heights from 0 to 1: the extrema of a Chebyshev polynomial."""
     heights = 0.5 * (1.0 - cos(np.pi * np.arange(count) / (count - 1)))
     heights[0], heights[-1] = 0.0, 1.0
     return np.asarray(heights)
@@ -23,15 +23,16 @@ def key_heights(count: int) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class SpanLines:
-    """Chebyshev coefficients (k, n, ...) of n functions of the height, which is from 0 to 1."""
+    """Chebyshev coefficients (k, n, ...) of n functions of the height (0 to 1)."""
 
     coefficients: Floats
 
     @classmethod
     def through(cls, values: Floats, degree: int | None = None) -> SpanLines:
-        """Return the polynomials through values (k, n, ...) at ``key_heights(k)``.
+        """Return the n polynomials through the values (k, n, ...) at the heights ``key_heights(k)``.
 
-        With a `degree` below k - 1, a least-squares approximation, in which both ends have half the weight.
+        With a `degree` below k - 1, they are least-squares approximations in which both ends have half
+        weight.
         """
         kept = _fit(len(values))[: len(values) if degree is None else degree + 1]
         return cls(_times(kept, values))
@@ -50,7 +51,7 @@ class SpanLines:
 
 
 def slopes_at_keys(values: Floats) -> Floats:
-    """Return the derivatives (k, n, ...) by height, at the key heights, of polynomials through `values`."""
+    """Return d/dheight (k, n, ...), at the key heights, of the polynomials through `values` (k, n, ...)."""
     return _times(_slopes(len(values)), values)
 
 

@@ -28,13 +28,13 @@ _NEAR_EDGE = 0.1  # places from an edge up to which corners are its own
 
 @dataclass(frozen=True, eq=False)
 class SpanPlaces:
-    """Places of nodes clockwise around a blade.
+    """Places u (see `SectionPlane`) of nodes clockwise around a blade, from hub to casing.
 
     Parameters
     ----------
-    ends : (k,) places u at the hub, and at the casing.
-    gaps : whether the blade ends in a gap at the hub, and at the casing; at such an end, places on both sides
-        of the blade are opposite each other.
+    ends : places u (k,) at the hub, and places u (k,) at the casing.
+    gaps : whether the blade ends in a gap at the hub, and whether it does at the casing; at such an end there
+        is a node at 1 - u for each node at u.
     """
 
     ends: tuple[Floats, Floats]
@@ -44,10 +44,10 @@ class SpanPlaces:
     def of(
         cls, planes: Sequence[SectionPlane], places: Floats, pairs: Indices, gaps: tuple[bool, bool]
     ) -> SpanPlaces:
-        """Return places near `places` (k,), those of the middle section, with nodes at corners of the blade.
+        """Return places near those of the middle section, `places` (k,), with a node at each corner.
 
-        `planes` are all sections; `pairs` (p, 2) are nodes on the upper and the lower side that lines across
-        the channel join; `gaps` as in the class.
+        `planes` are all sections. `pairs` (p, 2) are a node on the upper and a node on the lower side that a
+        line across the channel joins. `gaps` is as in the class.
         """
         corners, half = planes[0].corners, len(planes) // 2
         if any(gaps):
@@ -71,7 +71,7 @@ class SpanPlaces:
         return np.asarray(np.mod(start + height * wrapped(end - start), 1.0))
 
     def evened(self, planes: Sequence[SectionPlane], growth: float, pairs: Indices) -> SpanPlaces:
-        """Return places with steps between nodes that grow by at most about `growth` in all sections."""
+        """Return places so that, in all sections, steps between nodes grow by at most about `growth`."""
         lines, corners = ChannelLines.of(planes), planes[0].corners
 
         def even(k: int) -> Floats:
@@ -83,7 +83,7 @@ class SpanPlaces:
 
 
 def at_corners(places: Floats, corners: Floats) -> Floats:
-    """Return `places` u (k,), in which the place nearest to each of the `corners` u (c,) is moved to it."""
+    """Return `places` u (k,) with the nearest place to each of the `corners` u (c,) moved to the corner."""
     out = places.copy()
     out[corner_nodes(places, corners)] = corners
     return out

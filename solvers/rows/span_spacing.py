@@ -29,7 +29,8 @@ Ends: TypeAlias = tuple[Floats | float, Floats | float]
 def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least: int) -> int:
     """Return the number of cells, at least `least`, that fill a length.
 
-    Cells have the lengths `ends` at both ends and grow by `growth` up to the length `largest`.
+    The first and the last cell have the lengths `ends`; from both ends, cells grow by the ratio `growth` up
+    to the length `largest`.
     """
 
     def reach(cells: int) -> float:
@@ -39,7 +40,7 @@ def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least
 
 
 def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,) with cells that grow from both `ends`."""
+    """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,); cells grow from both ends."""
     from_ends = _from_ends(ends, growth, cells)
     least, most = lengths / cells, lengths
     largest = least
@@ -56,10 +57,11 @@ def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
 
 
 def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | None], cells: int) -> Floats:
-    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,) with cells whose sizes change evenly.
+    """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,); cell sizes change evenly.
 
-    The logarithm of the size is a quadratic function of the cell number with the values of `ends` at both
-    ends. If the second of `ends` is None, the function is linear, and the last size follows.
+    The logarithm of the cell size is a quadratic function of the index of the cell; `ends` are the sizes of
+    the first and the last cell. If the second of `ends` is None, the function is linear, and the size of the
+    last cell follows.
     """
     t = np.linspace(0.0, 1.0, cells)
     first, last = (None if end is None else np.broadcast_to(end, lengths.shape)[:, None] for end in ends)
@@ -86,8 +88,8 @@ def smooth_cells(
 ) -> int:
     """Return the smallest number of cells, at least `least`, that grow by at most `growth`.
 
-    Cells are those of `smooth_arcs` on a line of this `length`, or on n lines of lengths (n,) with `ends`
-    (n,).
+    The cells are those that `smooth_arcs` returns for a line of this `length`, or for n lines with `length`
+    (n,) and `ends` (n,).
     """
     lengths = np.atleast_1d(length)
     for cells in range(max(least, 4), MOST_CELLS):
@@ -119,7 +121,7 @@ def _fourth(values: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Spacing:
-    """Arc lengths of `two_sided`, relative to the length of the line, for all lengths in a range.
+    """Results of `two_sided` divided by the length of the line, tabulated for a range of lengths.
 
     Parameters
     ----------
@@ -150,13 +152,12 @@ class Spacing:
 
 @dataclass(frozen=True, eq=False)
 class LineArcs:
-    """Arc lengths of lines as functions of the part of the way along them.
+    """Arc lengths along n lines as functions of the parameter along each line, which is from 0 to 1.
 
     Parameters
     ----------
     lengths : (n,) lengths of the lines.
-    ahead : difference between the part of the way and the relative arc length, as a function of the relative
-        arc length.
+    ahead : parameter minus relative arc length, as a function of the relative arc length.
     """
 
     lengths: Floats
@@ -164,7 +165,7 @@ class LineArcs:
 
     @classmethod
     def through(cls, samples: Floats) -> LineArcs:
-        """Return n lines through positions (k, n, 3) at the parts ``key_heights(k)`` of the way."""
+        """Return n lines through positions (k, n, 3) at the parameters ``key_heights(k)``."""
         speed = norms(slopes_at_keys(samples))
         arcs = integrals_at_keys(speed)
         lengths, wanted = arcs[-1], key_heights(len(samples))[:, None]
@@ -174,28 +175,20 @@ class LineArcs:
         return cls(lengths, SpanLines.through(ahead))
 
     def parts(self, spacing: Spacing) -> Floats:
-        """Return the positions (cells + 1, n) of the nodes on the lines for a `spacing`.
-
-        They are parts of the way along a line, from 0 to 1.
-        """
+        """Return the parameters (cells + 1, n), from 0 to 1, of the nodes on the lines for a `spacing`."""
         return self.parts_at(spacing.at(self.lengths))
 
     def parts_at(self, arcs: Floats) -> Floats:
-        """Return the parts (cells + 1, n) of the way, 0 to 1, at the relative arc lengths `arcs`.
-
-        `arcs` has the shape (cells + 1, n).
-        """
+        """Return the parameters (cells + 1, n), from 0 to 1, at relative arc lengths (cells + 1, n)."""
         parts = np.clip(arcs + self.ahead.at(arcs), 0.0, 1.0)
         parts[0], parts[-1] = 0.0, 1.0
         return parts
 
 
 def line_parts(samples: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return the positions (cells + 1, n) on lines of the nodes of `two_sided`.
+    """Return the parameters (cells + 1, n), from 0 to 1, of the nodes of `two_sided` on n lines.
 
-    They are parts of the way along a line, from 0 to 1.
-
-    `samples` (SAMPLES, n, 3) are positions on the lines at the parts ``key_heights(SAMPLES)`` of the way.
+    `samples` (SAMPLES, n, 3) are positions on the lines at the parameters ``key_heights(SAMPLES)``.
     """
     arcs = LineArcs.through(samples)
     range_ = float(arcs.lengths.min()), float(arcs.lengths.max())

@@ -34,7 +34,7 @@ _AT_ONCE = 1 << 16
 
 
 class StackedRow:
-    """The nodes of a row.
+    """The nodes of a row, stacked along the span.
 
     Parameters
     ----------
@@ -46,9 +46,10 @@ class StackedRow:
 
     Attributes
     ----------
-    columns : (k, rows + 1) nodes of the layers; each column runs from the blade outwards, and columns follow
-        each other clockwise around it.
-    leading : (2,) indices of the columns that start nearest to the leading edge, at hub and casing.
+    columns : (k, rows + 1) nodes of the layers: columns are ordered clockwise around the blade, and the nodes
+        of each from the blade outwards.
+    leading : (2,) indices of the columns that start nearest to the leading edge, at the hub and at the
+        casing.
     """
 
     def __init__(self, row: Row, keys: KeyTables, zones: Sequence[Zone], first: float, growth: float) -> None:
@@ -99,19 +100,19 @@ class StackedRow:
         return second, partner[second]
 
     def beside(self, height: float) -> Floats:
-        """Return s, theta, h (k, 2, 3), at a height, of the nodes of the blade and of the nodes next to them.
+        """Return s, theta, h (k, 2, 3), at a height, of each node of the blade and of the node next to it.
 
-        The height must bound a zone. The result equals `RowNodes.beside` at this level; no other levels are
-        computed.
+        The height must be a boundary of a zone. The result equals `RowNodes.beside` at this level, but no
+        other level is computed.
         """
         group = self._group(self.columns.ravel(), self.around)
         values = group.at(np.full((1, self.columns.size), height))
         return values.reshape(*self.columns.shape, 3)[:, :2]
 
     def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
-        """Return the nodes, of which only those at the blade are computed, and tasks that compute all others.
+        """Return the nodes, so far computed only at the blade, and tasks that compute all other nodes.
 
-        Tasks can run in any order. They leave out the nodes of the second periodic side.
+        The tasks can run in any order. They do not compute the nodes of the second periodic side.
         """
         groups = self._groups()
         arcs = in_threads(NodeGroup.arcs, groups)

@@ -29,11 +29,12 @@ def even_wall_places(
     planes: Sequence[SectionPlane], places: Floats, corners: Floats, growth: float, pairs: Indices,
     lines: ChannelLines, *, opposite: bool,
 ) -> Floats:  # fmt: skip
-    """Return places u (k,) of nodes clockwise around the blade, near `places` (k,), with even steps.
+    """Return places u (k,) of nodes clockwise around the blade: `places` (k,) moved until steps are even.
 
-    Nodes at `corners` (c,) stay. `pairs` (p, 2) are nodes on the upper side and on the lower side of the next
-    blade that `lines` across the channel join; additional leaning of these lines is penalised. With
-    `opposite` the places u and 1 - u stay opposite each other, and lines have no effect.
+    Nodes at `corners` (c,) do not move. `pairs` (p, 2) are a node on the upper side of a blade and a node on
+    the lower side of the next blade that one of the `lines` across the channel joins; it is penalised if a
+    line leans more than before. With `opposite`, there remains a node at 1 - u for each node at u, and
+    `lines` have no effect.
     """
     limit = MARGIN * math.log(growth)
     lead = int(np.abs(wrapped(places)).argmin())

@@ -24,15 +24,15 @@ _RATIO = 2.0
 def whole_section(
     plane: SectionPlane, beyond: Layout, layers: int, largest: float, longest: Mapping[int, float]
 ) -> Layout:  # fmt: skip
-    """Return the layout of a section that consists of layers, the blocks `beyond` them, and rows.
+    """Return the layout of a section: layers, the blocks `beyond` the layers, rows to inlet and outlet.
 
     Parameters
     ----------
-    beyond : layout of these blocks in (m', theta).
+    beyond : layout of the blocks beyond the layers in (m', theta).
     layers : number of rows of the layers.
     largest : size of the largest cells.
-    longest : largest lengths, in any section, of the rows to inlet and outlet, by the number of their loop;
-        they determine the number of cells.
+    longest : largest lengths, in any section, of the rows to inlet and outlet, by the index of their loop.
+        The lengths determine the numbers of cells.
     """
     cascade = plane.cascade
     mesh = beyond.mesh

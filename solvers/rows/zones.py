@@ -28,7 +28,7 @@ GAP_ROWS = 17
 
 @dataclass(frozen=True)
 class Zone:
-    """A part of the span.
+    """A part of the span: a gap, or the blade.
 
     Parameters
     ----------
@@ -46,15 +46,15 @@ class Zone:
 
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
-    """Return the number of cells of a section with which the row has about `cells` cells.
+    """Return the number of cells that a section needs so that the row has about `cells` cells.
 
-    It is larger if `growth` needs more cells.
+    The number is larger if `growth` demands more cells.
     """
     return max(_needed(growth), int(cells / _sections(zones)))
 
 
 def fewest_cells(zones: Sequence[Zone], growth: float) -> int:
-    """Return the approximate smallest number of cells of a row with which cells grow by at most `growth`."""
+    """Return approximately the smallest number of cells of a row whose cells grow by at most `growth`."""
     return round(_needed(growth) * _sections(zones))
 
 

@@ -80,7 +80,7 @@ def decompose(
     count : approximate number of points of the triangulation.
     price : price of a block, in degrees of mean deviation from 90 degrees; a higher price gives fewer blocks.
     timings : filled with the times of the stages.
-    sizes : target lengths of the edges of the quad mesh, instead of `cells`; by default all edges are alike.
+    sizes : target lengths of the edges of the quad mesh, used instead of `cells`.
     symmetric : whether a symmetric domain gets symmetric blocks (`symmetry.symmetric`).
 
     Raises SolverError: no attempt gave a valid layout, or the domain has too many corners.
@@ -189,7 +189,7 @@ def _optimised(mesh: QuadMesh, iterations: int, sizes: SizeMetric | None) -> Qua
 
 
 def most_folded(mesh: QuadMesh) -> str:
-    """Return the place of the most folded corner for a message.
+    """Return a description of where the most folded corner of a mesh is, for a message.
 
     A corner whose Jacobian is not a number counts as the most folded one.
     """

@@ -28,7 +28,7 @@ OFFSETS = 128
 def carried_over(layout: Layout, domain: Domain) -> Layout:
     """Return the layout with its nodes on and inside the loops of another domain; cells may be folded.
 
-    Raises InputError, with the difference: another number of loops, or of corners on a loop.
+    Raises InputError if the numbers of loops, or of corners on a loop, differ; the message says which.
     """
     mesh = layout.mesh
     pairs = _pairs(mesh.domain.loops, domain.loops)

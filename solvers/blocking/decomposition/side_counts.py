@@ -25,9 +25,9 @@ _NONE: Mapping[int, int] = MappingProxyType({})
 
 
 def sums_of(chords: Chords) -> Sums:
-    """Return, for each name with a given number of cells, how many edges of each chord are along its sides.
+    """Return, for each side name with a given cell count, how many edges of each chord lie on these sides.
 
-    Raises InputError: a side with a given number ends inside an edge of a block.
+    Raises InputError: a side with a given count ends inside an edge of a block.
     """
     mesh = chords.layout.mesh
     given = mesh.domain.counts
@@ -66,12 +66,12 @@ def suited(
     chords: Chords, counts: Indices, least: Indices, *, finer: int = 1, multiple: int = 1,
     fixed: Mapping[int, int] = _NONE, named: bool = True,
 ) -> Indices:  # fmt: skip
-    """Return the counts (chords,) nearest to `counts`, at least `least`, that suit the sides of the domain.
+    """Return the admissible cell counts (chords,), at least `least`, that are nearest to `counts`.
 
-    Counts are equal along periodic sides and, if `named`, their sums are the numbers given for names of
-    sides. Each cell is divided into `finer` cells later, and numbers are then adjusted again; if `finer` is
-    not 1, sums may therefore differ from the given numbers by less than one. All counts are multiples of
-    `multiple`, and so must the given numbers be. The counts of the chords in `fixed` are prescribed.
+    Admissible counts are multiples of `multiple`, agree along the two sides of each periodic pair and, if
+    `named`, add up to the counts given for named sides, which must be multiples of `multiple` too. `fixed`
+    prescribes the counts of some chords. If each cell is divided into `finer` > 1 cells later, counts are
+    adjusted again then; the sums may therefore differ from the given counts by less than one.
 
     Raises InputError: given counts that contradict each other, or that are too small; SolverError: no counts
     are equal along periodic sides.
@@ -127,7 +127,7 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return `counts` (chords,), scaled so that sides get nearly the numbers of cells given for them."""
+    """Return `counts` (chords,), scaled so that named sides get nearly the cell counts given for them."""
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())
@@ -138,7 +138,7 @@ def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
 
 
 def check_sides(layout: Layout) -> None:
-    """Raise SolverError if no counts are equal on periodic sides, or blocks extend past their ends."""
+    """Raise SolverError if no counts can agree on periodic sides, or a block extends past an end of one."""
     mesh = layout.mesh
     if not mesh.domain.periodic:
         return
@@ -170,9 +170,9 @@ def _alike(chords: Chords) -> list[Row]:
 
 
 def lacking_side(layout: Layout) -> Indices | None:
-    """Return the nodes along a periodic side that has fewer cells than its partner, whatever the counts.
+    """Return the nodes along a periodic side that always has fewer cells than its partner, else None.
 
-    None if there is no such side. Counts are the numbers of cells of the chords.
+    Always means: whatever the numbers of cells of the chords are.
     """
     if not layout.mesh.domain.periodic:
         return None

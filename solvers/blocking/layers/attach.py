@@ -14,14 +14,14 @@ from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Lines that leave the nodes of a loop, away from the layout.
+    """Lines that start at the nodes of a loop of a layout and lead out of the layout.
 
     Parameters
     ----------
-    loop : number of the loop, the same in the layout's domain and in the extended one.
-    nodes : (k, m, 2) lines, in the order of `Places.along`; the first node of each is the layout's.
-    arcs : (k,) arc lengths of their ends on the loop of the extended domain.
-    layers : whether they end at a wall with layers, which no optimisation moves.
+    loop : index of the loop, the same in the layout's domain and in the extended one.
+    nodes : (k, m, 2) lines, in the order of `Places.along`; the first node of each is a node of the layout.
+    arcs : (k,) arc lengths on the loop of the extended domain at which the lines end.
+    layers : whether the lines are layers that end at a wall; no optimisation moves layers.
     """
 
     loop: int
@@ -31,9 +31,9 @@ class Rows:
 
 
 def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
-    """Return a layout with blocks of `rows` next to every block with a side on their loops.
+    """Return a layout in which each block that has a side on the loop of `rows` gets a new block there.
 
-    `domain` is the extended domain: it has the same loops, of which those of `rows` are in new positions.
+    `domain` is the extended domain: it has the same loops, but those of `rows` are where the lines end.
     """
     mesh = layout.mesh
     nodes, places = [mesh.nodes], [replace(mesh.places, loop=mesh.places.loop.copy())]
@@ -75,10 +75,10 @@ def _places(rows: Rows, domain: Domain) -> Places:
 
 
 def beside(blocks: Sequence[Indices], position: Indices, count: int) -> list[Indices]:
-    """Return for each side of a block that is on the loop the indices (n,) of its nodes along the loop.
+    """Return, for each block side that is on a loop, the indices (n,) of the side's nodes along the loop.
 
-    The indices of a side ascend by one. `position` is the index of each node along the loop, below 0 for
-    other nodes; `count` is the number of nodes of the loop.
+    The indices of a side ascend by one. `position` has for each node its index along the loop, or a negative
+    number if the node is not on the loop. `count` is the number of nodes of the loop.
     """
     along = []
     for block in blocks:

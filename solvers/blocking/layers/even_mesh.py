@@ -52,11 +52,10 @@ _SLACK = 0.02  # radians by which such corners may become worse
 def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines, following: Indices = NO_PAIRS) -> QuadMesh:
     """Return the mesh with nodes moved where edges along its grid lines grow too fast.
 
-    The nodes in the mask `held` (n,) are fixed. `following` (k, 2) are pairs of a node on a loop and a node
-    that moves with it, so that first cells keep their heights.
-
-    Other nodes on loops slide along them, except corners and periodic sides. Where a limit cannot be
-    reached, it is exceeded as little as good angles permit.
+    The nodes in the mask `held` (n,) are fixed. Each pair in `following` (k, 2) is a node on a loop and a
+    node that moves with it, so that first cells keep their heights. Other nodes on loops slide along the
+    loops, except corners and nodes of periodic sides. Where a limit cannot be satisfied, it is exceeded as
+    little as good angles permit.
     """
     sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0)
     sliding[_periodic(mesh)] = False  # both nodes of a pair would have to move alike

@@ -27,10 +27,10 @@ class GrowthLines:
 
     Parameters
     ----------
-    nodes : (k, 3) nodes of each pair.
-    limit : (k,) logarithms of the largest ratios.
+    nodes : (k, 3) the three nodes of each pair, in order along the grid line.
+    limit : (k,) logarithms of the largest permitted ratios of edge lengths.
     offset : (k,) terms that are added to the logarithms of the ratios before the comparison with the limits.
-    begins : (k,) nodes at which second edges begin: the middle ones, or their partners at periodic sides.
+    begins : (k,) node at which the second edge begins: the middle node, or its partner on a periodic side.
     """
 
     nodes: Indices
@@ -42,7 +42,7 @@ class GrowthLines:
     def of(cls, mesh: QuadMesh, limit: float, factors: Floats | None = None) -> Self:
         """Return all pairs of a mesh with the same limit.
 
-        The ratios are those of edges whose lengths are the lengths in the mesh times `factors` (e,).
+        If `factors` (e,) are given, edge lengths are multiplied by them before ratios are computed.
         """
         nodes, begins = _pairs(mesh)
         offset = np.zeros(len(nodes))
@@ -55,11 +55,11 @@ class GrowthLines:
     def from_walls(
         cls, layout: Layout, walls: Bools, limit: float, elsewhere: float, sliding: Bools | bool = False
     ) -> Self:
-        """Return all pairs of a layout, with a `limit` along lines from `walls` and across sides of blocks.
+        """Return all pairs of a layout; `limit` applies along lines from `walls` and across block sides.
 
-        `walls` (n,) is a mask of nodes. The limit is `elsewhere` for all other pairs and around irregular
-        vertices. Along walls, in the blocks at the wall, it is the larger of `elsewhere` and the ratio on the
-        wall, unless its nodes are `sliding` (n,).
+        `walls` (n,) is a mask of nodes. For all other pairs, and at irregular vertices, the limit is
+        `elsewhere`. Only for pairs parallel to a wall in the blocks at this wall, the limit is the larger of
+        `elsewhere` and the ratio on the wall, unless the wall nodes are `sliding` (n,).
         """
         mesh = layout.mesh
         nodes, begins = _pairs(mesh)
@@ -91,7 +91,7 @@ class GrowthLines:
         return type(self)(self.nodes[which], self.limit[which], self.offset[which], self.begins[which])
 
     def growth(self, z: Complexes) -> Floats:
-        """Return the logarithms (k,) of the ratios of edges between nodes `z` (n,), with the offset."""
+        """Return the logarithms (k,) of the edge ratios for nodes at `z` (n,), plus the offsets."""
         before, after = self.edges(z)
         return np.asarray(log(modulus(after) / modulus(before)) + self.offset)
 
@@ -104,7 +104,7 @@ class GrowthLines:
 
 
 def growth_along(z: Complexes, lines: Indices) -> Floats:
-    """Return the logarithms (k,) of the ratio of the second edge to the first, for the nodes `lines` (k, 3).
+    """Return log(second edge / first edge) (k,) of the edges between the three nodes in `lines` (k, 3).
 
     `z` (n,) are the positions of the nodes as complex numbers.
     """

@@ -18,11 +18,10 @@ _WINDOW = 4  # columns to either side over which lengths along fronts are averag
 
 
 def ring_metric(ring: Ring, settings: LayerSettings, factors: Floats | float = 1.0) -> SizeMetric:
-    """Return the cell sizes that the front (outer edge) of a ring of layers requires.
+    """Return the sizes of the cells beyond the front (outer edge) of a ring of layers.
 
-    They follow from the distances of its columns and the heights of its last layer.
-
-    First cells have the height of the settings times `factors` (n,) at the columns.
+    The sizes follow from the distances between columns on the front and the heights of the last layer. The
+    height of the first cell at each column is that of the settings times `factors` (n,).
     """
     points = ring.front.curve.points
     step = np.roll(points, -1, axis=0) - points
@@ -38,7 +37,7 @@ def ring_metric(ring: Ring, settings: LayerSettings, factors: Floats | float = 1
 def last_layers(
     thickness: Floats, rows: int, settings: LayerSettings, first: float | Floats | None = None
 ) -> Floats:
-    """Return the heights (n,) of the first cells beyond `rows` layers with the total `thickness` (n,)."""
+    """Return the heights (n,) of the cells just beyond `rows` layers whose total is `thickness` (n,)."""
     none = np.full_like(thickness, np.inf)
     arcs = layer_arcs(thickness, settings.first if first is None else first, none, rows, settings.constant)
     return np.asarray(settings.join * (arcs[:, -1] - arcs[:, -2]))
@@ -48,11 +47,11 @@ def ring_rows(
     mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats,
     factors: Callable[[Floats], Floats] | None = None,
 ) -> Rows:  # fmt: skip
-    """Return the layers between a wall and the nodes of a front, the outer edge of the layers.
+    """Return the layers between the wall of a ring and the nodes on its front, the outer edge of the layers.
 
     `inner` (k,) are the heights of the cells beyond the front.
 
-    First cells have the height of the settings times `factors`, a function of arc lengths (k,) of the wall,
+    First cells have the height of the settings, times `factors` (a function of arc lengths (k,) of the wall)
     if given.
     """
     order = mesh.places.along(loop)
@@ -63,7 +62,7 @@ def ring_rows(
 
 
 def heights_inside(layout: Layout, loop: int) -> Floats:
-    """Return the lengths (k,) of the edges that leave the nodes of a loop into the domain, by arc length."""
+    """Return the lengths (k,) of edges from the nodes of a loop into the domain, in order of arc length."""
     mesh = layout.mesh
     height = np.zeros(len(mesh.nodes))
     for block in layout.blocks:

@@ -63,11 +63,11 @@ def layered(
     domain: Domain, loops: Sequence[int], settings: LayerSettings, *, stretches: Sequence[Stretch] = (),
     cells: int = 0, cell_size: float = 0.0, layout: Layout | None = None, timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
-    """Return a fine layout of about `cells` cells, with layers at loops of a domain and some stretches.
+    """Return a fine layout of about `cells` cells, with layers at `loops` and `stretches` of a domain.
 
     Without `cells`, edges away from walls are at most `cell_size` long. `layout`, if given, is used instead
-    of a decomposition. It belongs to a similar domain, and fills either the whole domain or the part of it
-    outside of such layers. Raises InputError; SolverError; NoValidGridError: folded cells.
+    of a decomposition: the layout of a similar domain, or of the part of a similar domain outside the layers.
+    Raises InputError; SolverError; NoValidGridError: folded cells.
     """
     timings = {} if timings is None else timings
     sheets = () if layout else tuple(k for k in loops if k and has_sharp_edge(domain.loops[k]))

@@ -38,8 +38,9 @@ def marched(
 ) -> tuple[Floats | None, Bools]:
     """Return levels (n, m, 2) and a mask of folded columns, for the best of several marches.
 
-    They start at the columns `start` (n, 2) of a closed wall, with the domain on its left, with cells of
-    height `first`, and reach `thickness` (n,). The levels are None if all marches overflow.
+    The first level is the closed wall `start` (n, 2), which has the domain on its left. The first cells have
+    the height `first`; the last level is at the distance `thickness` (n,). The levels are None if all marches
+    overflow.
     """
     cells = cells_for_growth(first, float(thickness.max()), MARCH_GROWTH)
     heights = distinct(thickness)  # most columns have the same
@@ -64,8 +65,9 @@ def fitted(
 ) -> Floats:  # fmt: skip
     """Return levels (n, m, 2) without folded cells, as thick as `thickness` where `room` (n,) permits it.
 
-    `arcs` (n,) are the arc lengths of the columns on a closed wall of the given length; `place` describes a
-    column in messages. Raises InputError: a gap too narrow for layers; a wall at which every march folds.
+    `arcs` (n,) are the arc lengths of the columns on the closed wall, whose total is `length`; `place`
+    returns the description of a column for messages. Raises InputError: a gap is too narrow for layers, or
+    every march folds at a wall.
     """
     check_room(room, first, place)
     least = FEWEST_CELLS * first
@@ -89,7 +91,8 @@ def fitted(
 def check_room(room: Floats, first: float, place: Callable[[int], str]) -> None:
     """Raise InputError if `room` (n,) is too small for layers that start with `first`.
 
-    `room` is `GAP_PART` times the gaps in front of the wall; `place` describes index k in messages.
+    `room` is `GAP_PART` times the gap in front of each column; `place` returns the description of column k
+    for messages.
     """
     k = int(np.argmin(room))
     if room[k] < FEWEST_CELLS * first:
@@ -115,6 +118,6 @@ def _march(start: Floats, cells: int, first: float, ratios: Floats, settings: Ma
 
 
 def folded_columns(levels: Floats) -> Bools:
-    """Return a mask (n,) of the columns of cells with a folded corner, for levels (n, m, 2) around a wall."""
+    """Return a mask (n,) of the columns of cells that have a folded corner; `levels` (n, m, 2) are closed."""
     cells = ring_of(np.concatenate([levels, levels[:1]])).transpose(1, 2, 0, 3)
     return np.asarray((corner_jacobians(cells.reshape(-1, 4, 2)) <= 0.0).reshape(len(levels), -1).any(axis=1))

@@ -34,7 +34,8 @@ GROWTH = 1.18  # of cells in rows to the far field
 class NearField:
     """A circle around the bodies, and the outer loop in polar coordinates about its centre.
 
-    `angles` (n,) ascend over one turn, `radii` (n,) are those of the outer loop, `arcs` (n,) its arc lengths.
+    At the ascending `angles` (n,), over one turn, the outer loop has the `radii` (n,) and arc lengths `arcs`
+    (n,).
     """
 
     circle: Loop
@@ -47,10 +48,7 @@ class NearField:
 
     @classmethod
     def of(cls, domain: Domain) -> NearField | None:
-        """Return the near field of a domain.
-
-        None unless its outer loop is smooth, distant and star-shaped.
-        """
+        """Return the near field of a domain, or None unless its outer loop is smooth, far, star-shaped."""
         outer = domain.loops[0]
         if len(domain.loops) < 2 or outer.corners:
             return None
@@ -78,7 +76,7 @@ class NearField:
     def cells(self, first: float, settings: LayerSettings) -> int:
         """Return the number of cells along a line from the circle to the outer loop.
 
-        `first` is the height of the cells inside the circle.
+        `first` is the height of the cells just inside the circle.
         """
         growth, multiple = settings.below(GROWTH), settings.multiple
         distance = float(self.radii.mean()) - self.radius
@@ -88,8 +86,8 @@ class NearField:
     def rows(self, mesh: QuadMesh, heights: Floats, settings: LayerSettings) -> Rows:
         """Return straight rows from the nodes of the circle, loop 0 of `mesh`, to the outer loop.
 
-        `heights` (k,) are those of the cells inside the circle. The rows start with these heights and grow by
-        at most `GROWTH`, or less than the limit of the layers.
+        `heights` (k,) are the heights of the cells just inside the circle. The cells of a row start with this
+        height and grow by a ratio of at most `GROWTH`, and less than the limit for layers.
         """
         order = mesh.places.along(0)
         start = mesh.nodes[order]

@@ -24,11 +24,11 @@ CLOSE = "use a larger {growth} or a larger first cell, or open the gap there"
 def found_outside(
     rest: Domain, fronts: Collection[int], timings: Timings | None = None, symmetric: bool = True
 ) -> Layout:
-    """Return the blocks of a domain of which some loops are fronts of layers.
+    """Return the blocks of a domain; the loops with indices `fronts` are fronts (outer edges) of layers.
 
     If `symmetric`, a symmetric domain gets symmetric blocks.
 
-    Raises SolverError: no blocks are found; InputError: walls or fronts that nearly touch.
+    Raises SolverError: no blocks are found; InputError: walls or fronts nearly touch.
     """
     plain = rest if symmetric and mirrors_of(rest) else replace(rest, loops=tuple(map(_smooth, rest.loops)))
     sizes = feature_sizes(plain)
@@ -42,11 +42,12 @@ def found_outside(
 
 
 def taken_outside(layout: Layout, rest: Domain, fronts: Collection[int]) -> Layout:
-    """Return a layout transferred to a domain of which `fronts` are the loops that are fronts of layers.
+    """Return `layout` transferred to the domain `rest`; its loops `fronts` are the outer edges of layers.
 
-    A layout without fronts can be used if blocks do not meet corners of the walls behind the fronts.
+    A layout of a domain without layers can be used if its blocks have no vertex at a corner of a wall behind
+    a front.
 
-    Raises InputError: the errors of `carried_over`; a layout with layers around other loops.
+    Raises InputError: as `carried_over`; or the layout has layers around other loops.
     """
     taken = carried_over(layout, rest)
     places = taken.mesh.places

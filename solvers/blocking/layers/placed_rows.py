@@ -30,7 +30,7 @@ _STEPS = 50  # of bisection, to round-off
 
 
 def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings) -> int:
-    """Return the number of layers of a row that fill most columns without growing too fast."""
+    """Return how many layers a row needs so that, in most columns, they fill it without growing too fast."""
     blocks = np.nonzero(rows.across == row)[0]
     columns = np.concatenate(
         [
@@ -50,10 +50,10 @@ def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings)
 
 
 def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings]) -> Layout:
-    """Return a fine layout with the nodes of its rows moved along the lines across them.
+    """Return a fine layout in which the nodes of wall rows are moved along the grid lines across the rows.
 
-    `settings` has one entry per row. First cells are exact; the other cells grow to the size of the cells
-    beyond the front.
+    `settings` has one entry per row. First cells get their prescribed height exactly; the heights of the
+    other cells grow to that of the cells beyond the front of the row.
     """
     mesh = layout.mesh
     moved = np.zeros(len(mesh.nodes), dtype=bool)
@@ -80,10 +80,10 @@ def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings
 
 
 def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings, sheets: int) -> tuple[Bools, Indices]:
-    """Return a mask (n,) of nodes of rows that stay, and pairs (k, 2) of nodes that move together.
+    """Return a mask (n,) of nodes of rows that are fixed, and pairs (k, 2) of nodes that move together.
 
-    A pair is a node on a wall and a node of a first cell above it. At corners, and in the first `sheets`
-    rows, such nodes stay.
+    Each pair is a node on a wall and a node of the first cells above it. At corners, and in the first
+    `sheets` rows, both are fixed instead.
     """
     mesh, cells = layout.mesh, settings.constant + 1
     held, pairs = np.zeros(len(mesh.nodes), dtype=bool), []

@@ -43,11 +43,11 @@ class Ring:
     Parameters
     ----------
     wall : the loop.
-    arcs : (n,) arc lengths at which the columns of `levels` start, ascending; the first is at a corner, if
-        there is one.
+    arcs : (n,) ascending arc lengths at which the columns of `levels` start. If the wall has corners, the
+        first column starts at one.
     levels : (n, m, 2) nodes from the wall (0) to the front (m - 1).
-    front : loop along the last level, with one point per column. At corners of the wall it has a corner with
-        two cells, so that there is a node.
+    front : loop along the last level, with one point per column. Where the wall has a corner, the front has a
+        corner with two cells, which forces a node there.
     """
 
     wall: Loop
@@ -63,8 +63,8 @@ class Ring:
     def columns(self, places: Floats) -> tuple[Floats, Floats]:
         """Return lines (k, m, 2) from the wall to the front, and the arc lengths (k,) of their starts.
 
-        The lines end at the arc lengths `places` (k,) of the front. They are interpolated between columns by
-        cubics through four columns, but not across a corner.
+        `places` (k,) are the arc lengths on the front at which the lines end. Lines are interpolated by
+        cubics through four columns, but never across a corner.
         """
         n = len(self.arcs)
         knots = np.append(self.front.curve.knots, self.front.length)
@@ -86,7 +86,7 @@ class Ring:
 
     @cached_property
     def along(self) -> Measures:
-        """Arc lengths of the front, of the wall beneath it, and of the level next to the wall."""
+        """Corresponding arc lengths along the front, along the wall, and along the level next to the wall."""
         n = len(self.arcs)
         index = np.arange(FINER * n + 1) / FINER
         knots = np.append(self.front.curve.knots, self.front.length)
@@ -120,10 +120,10 @@ def march_ring(
 ) -> Ring:  # fmt: skip
     """Return the ring around a loop of a domain, as thick as `thickness` where there is room.
 
-    `first` is the height of first cells, `largest` the length of cells along the wall, all in the domain's
-    unit. The ring is symmetric about those of the `mirrors` that take the loop to itself. It is no thicker
-    than `room` (n,) at the columns of the ring `before`, if these are given. Raises InputError: a gap that no
-    layer fits in, or a wall that every march folds at; with the place.
+    `first` is the height of first cells, `largest` the largest length of cells along the wall; both are in
+    the domain's unit. The ring is symmetric about those `mirrors` in which the loop is its own image. If
+    `before` and `room` (n,) are given, the ring is at most as thick as `room` at the columns of the ring
+    `before`. Raises InputError, with the place: no layer fits in a gap, or every march folds at a wall.
     """
     loop = domain.loops[number]
     own = [mirror for mirror in mirrors if mirror.loops[number] == number]
@@ -164,10 +164,10 @@ def march_ring(
 
 
 def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
-    """Return for each ring that would collide with another one how thick (n,) it may be at its columns.
+    """Return, for each ring that would hit another one, the largest thickness (n,) at each of its columns.
 
-    Lines of a march spread around sharp edges, towards walls that are not in front of the point where they
-    start.
+    Rings can collide although gaps were considered: columns fan out around a sharp edge, towards walls that
+    are not in front of the points where the columns start.
     """
     rooms = {}
     walls = {k: np.arange(_SAMPLES) / _SAMPLES * ring.wall.length for k, ring in rings.items()}
@@ -187,9 +187,9 @@ def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
 
 
 def mirrored(ring: Ring, loop: Loop, mirror: Mirror, total: float) -> Ring:
-    """Return the mirror image of a ring, which goes around another loop.
+    """Return the mirror image of a ring: the ring around `loop`, the image of its wall.
 
-    `total` is the sum of the arc lengths of a point and of its mirror image.
+    `total` is the sum of the arc lengths of a point of the wall and of its mirror image on `loop`.
     """
     arcs = _at_corners(loop, np.mod(total - ring.arcs[::-1], loop.length))
     levels = mirror.images(ring.levels[::-1])
@@ -224,10 +224,10 @@ def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
 
 
 def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, Indices]:
-    """Return weights (k, 4) of columns at fractional column numbers (k,), and the first of each four (k,).
+    """Return the weights (k, 4) of four columns for each fractional `index` (k,), and the first column (k,).
 
-    `low` and `high` (k,) are the columns at the corners on both sides of each number: only columns between
-    them have weights. Where these are fewer than four, the last weights are zero.
+    The columns that are used lie between `low` and `high` (k,), the columns at the two nearest corners. Where
+    there are fewer than four of them, the last weights are zero.
     """
     first = np.clip(index.astype(np.intp) - 1, low, np.maximum(high - 3, low))
     width = np.minimum(high - first, 3)

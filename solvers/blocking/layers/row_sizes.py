@@ -38,14 +38,14 @@ corner, and the distance is no gap.
 
 @dataclass(frozen=True, eq=False)
 class RowSizes:
-    """Sizes along the stretches of a loop with layers.
+    """Sizes along a loop, at points on and between its stretches with layers.
 
     Parameters
     ----------
     loop : the wall.
-    arcs : (n,) arc lengths on it, ascending.
-    length : (n,) lengths of cells there, for a scale of 1.
-    gap : (n,) distances to the nearest wall in front.
+    arcs : (n,) ascending arc lengths of the points.
+    length : (n,) cell length along the wall at each point, for a scale of 1.
+    gap : (n,) distance from each point to the nearest wall in front of it.
     on : (n,) mask of points with layers.
     first : (n,) first-cell heights.
     """
@@ -76,7 +76,7 @@ class RowSizes:
         return cls(loop, arcs, length, gap, on, first)
 
     def thickness(self, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (n,) of layers: cells grow until they are square, or until the gap is filled.
+        """Return the thickness (n,) of the layers, whose cells grow until they are square or fill the gap.
 
         `scale` is a factor on the cell lengths along the wall; with a larger scale, layers are thicker.
         """
@@ -91,12 +91,12 @@ class RowSizes:
         return np.interp(arcs, self.arcs, self.thickness(scale, settings), period=self.loop.length)
 
     def thickness_behind(self, away: Floats, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (k,) along a wake at the distances `away` (k,) from the sharp edge."""
+        """Return the thickness (k,) of a wake's layers at the distances `away` (k,) from the sharp edge."""
         edge = self.thickness_at(self.loop.corner_arcs[:1], scale, settings)
         return edge + SPREAD * away
 
     def rows(self, scale: float, settings: LayerSettings) -> int:
-        """Return the approximate number of layers where the first-cell height is that of `settings`.
+        """Return the approximate number of layers, of points with the first-cell height of `settings`.
 
         `scale` is a factor on the cell lengths along the wall.
         """
@@ -121,7 +121,7 @@ class RowSizes:
         return SizeMetric(points[on], normals[on], across[on], along[on], np.inf)
 
     def wake_metric(self, wake: Floats, scale: float, settings: LayerSettings) -> SizeMetric:
-        """Return the sizes of cells next to a wake (k, 2), which begins at the sharp edge.
+        """Return the sizes of cells next to a wake (k, 2), a line that begins at the sharp edge.
 
         `scale` is as in `metric`.
         """

@@ -18,7 +18,7 @@ from meshonet.solvers.blocking.decomposition.quads.padding import along_wall
 
 
 def has_sharp_edge(loop: Loop) -> bool:
-    """Return whether a loop has a single corner that is so sharp that four cells meet there."""
+    """Return whether a loop has exactly one corner, so sharp that four cells meet there."""
     return len(loop.corners) == 1 and int(loop.corner_cells[0]) == 4
 
 
@@ -33,10 +33,10 @@ def wake_of(mesh: QuadMesh, number: int) -> list[int]:
 
 
 def with_sheet(mesh: QuadMesh, number: int) -> QuadMesh:
-    """Return the mesh with the row inserted at loop `number`.
+    """Return the mesh with a row of quads inserted around the loop with index `number` and its wake.
 
-    The quads of the row are the last of the mesh; each begins at the loop or its wake and ends at the front,
-    the other side of the row.
+    The new quads are the last of the mesh. The first two nodes of each are on the loop or its wake, the
+    others on the front (the opposite side of the row).
     """
     wake = wake_of(mesh, number)
     return with_row(mesh, [*wake[:0:-1], *_edge(mesh, number), *wake])

@@ -11,14 +11,14 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of a loop with layers that starts and ends at corners with one cell.
+    """A part of a loop that has layers, and that starts and ends at corners with one cell.
 
     Parameters
     ----------
-    loop : number of the loop.
+    loop : index of the loop.
     first, last : indices of the corners among those of the loop; equal if it is the whole loop.
-    joined : whether the walls beyond these corners have layers too, which meet in a block. Otherwise the
-        layers end at these walls.
+    joined : for each end, whether the wall beyond the corner has layers too; both layers then share a block
+        at the corner. Otherwise the layers end at that wall.
     """
 
     loop: int
@@ -27,7 +27,7 @@ class Stretch:
     joined: tuple[bool, bool]
 
     def span(self, loop: Loop) -> tuple[float, float]:
-        """Return the arc lengths of its start and end, the second one larger."""
+        """Return the arc lengths of its start and end; the end is larger, if need be by the loop's length."""
         begin, end = (float(loop.corner_arcs[k]) for k in (self.first, self.last))
         return begin, end if end > begin else end + loop.length
 
@@ -39,11 +39,11 @@ class Stretch:
 
 
 def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int], tuple[Stretch, ...]]:
-    """Return the numbers of loops with layers all around, and stretches of other loops, by names of walls.
+    """Return the indices of the loops with layers all around, and the stretches of other loops with layers.
 
-    Without names, `Domain.layered_loops` have layers, apart from stretches that are no walls by their names.
-    Raises InputError, with the place: there is no such hole; layers would end at a point where the boundary
-    is straight or turns away.
+    `names` are the walls with layers. Without names, `Domain.layered_loops` have layers, except where a name
+    says that a stretch is no wall. Raises InputError, with the place: no boundary has this name; layers would
+    end where the boundary is straight or at a reflex corner.
     """
     whole: list[int] = []
     stretches: list[Stretch] = []

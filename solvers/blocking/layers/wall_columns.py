@@ -20,10 +20,10 @@ _RESOLVED = 0.01  # samples that a cell at a corner is long, at the least, witho
 
 
 def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floats:
-    """Return ascending arc lengths (n,) of columns around a loop, its corners among them.
+    """Return the ascending arc lengths (n,) of columns around a loop; each corner gets a column.
 
-    `largest` is the length of the largest cell. For each c in `sums`, the columns are symmetric: the mirror
-    image of the column at arc length s is the column at c - s.
+    `largest` is the largest distance of neighbouring columns. For each c in `sums`, the columns are
+    symmetric: the mirror image of the column at arc length s is the column at c - s.
     """
     arcs = np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs)
     arcs = distinct(np.append(arcs, _beside_corners(loop, largest)))
@@ -54,7 +54,7 @@ def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floa
 
 
 def nearest_arc(arcs: Floats, arc: float, length: float) -> int:
-    """Return the index in `arcs` (n,) of the arc length nearest to `arc` on a closed curve of a `length`."""
+    """Return the index in `arcs` (n,) of the arc length nearest to `arc`; the curve is closed."""
     off = (arcs - arc) / length
     return int(np.abs(off - np.round(off)).argmin())
 

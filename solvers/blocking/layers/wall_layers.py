@@ -50,13 +50,13 @@ _BISECTIONS = 14  # of a range of 240 to 1: the scale to 0.03 %
 
 @dataclass(frozen=True, eq=False)
 class WallLayers:
-    """Walls with their layers, and the remaining domain, which is decomposed into blocks.
+    """The layers at the walls of a domain, and the remaining domain, which is decomposed into blocks.
 
-    There are two kinds of layers. Those in `rings` go around a loop. Loops have the same numbers in `domain`
-    and in the remaining domain `rest`; `rings` is a dict with these numbers as keys. The other layers are
-    rows of blocks of the layout: along `stretches`, and around the loops `sheets` and along the wakes of
-    these; `sizes` has their cell sizes by the number of the loop. `near` replaces an outer loop that is far
-    away.
+    There are two kinds of layers. Those of the first kind, `rings`, go around whole loops. The keys of
+    `rings` are the indices of these loops, which are the same in `domain` and in the remaining domain `rest`.
+    Layers of the second kind are rows of blocks of the layout: along `stretches`, or around the loops with
+    indices `sheets` and along their wakes. `sizes` has, by index of the loop, the cell sizes of the second
+    kind. `near` replaces an outer loop that is far away.
     """
 
     domain: Domain
@@ -73,7 +73,7 @@ class WallLayers:
         cls, domain: Domain, loops: Sequence[int], settings: LayerSettings,
         stretches: Sequence[Stretch] = (), sheets: Sequence[int] = (),
     ) -> WallLayers:  # fmt: skip
-        """Return the layers of a domain: rings around some loops, rows along stretches and around `sheets`.
+        """Return the layers of a domain: rings around `loops`, rows along `stretches` and around `sheets`.
 
         Raises InputError: too little room for layers; a wall at which layers fold.
         """
@@ -120,13 +120,13 @@ class WallLayers:
     def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
         """Return whether a wake reaches the outer loop and has room for layers on its whole length.
 
-        `wake` lists the indices in `mesh` of the nodes of the wake, starting at the sharp edge of loop
-        number `number`.
+        `wake` lists the indices in `mesh` of the nodes of the wake, starting at the sharp edge of the loop
+        with index `number`.
         """
         return bool(mesh.places.loop[wake[-1]] == 0) and self.has_room(number, mesh.nodes[wake])
 
     def has_room(self, number: int, wake: Floats, scale: float = 1.0) -> bool:
-        """Return whether other bodies leave room for layers along a wake (k, 2)."""
+        """Return whether other bodies leave room for layers along the `wake` (k, 2) of loop `number`."""
         others = [loop for k, loop in enumerate(self.rest.loops) if k not in (0, number)]
         if not others:
             return True
@@ -142,9 +142,10 @@ class WallLayers:
     def metric(
         self, scale: float, size: float = 0.0, wakes: Mapping[int, Floats] | None = None
     ) -> SizeMetric:
-        """Return the cell sizes outside the layers: at most `size`, or `scale` times those of the columns.
+        """Return the target cell sizes outside the layers.
 
-        `wakes` are lines (k, 2) by the number of their loop.
+        Next to layers, they are `scale` times the cell lengths along the wall; they are at most `size`, if
+        given. `wakes` are lines (k, 2) by the index of their loop.
         """
         scale = 1.0 if size else scale
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
@@ -164,9 +165,9 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Measures, besides arc length, whose steps should be even along the new loops of `rest`.
+        """Measures besides arc length in which nodes should be evenly spaced along the new loops of `rest`.
 
-        These loops are the fronts of rings and the circle of `near`.
+        The new loops are the fronts of rings and the circle of `near`; the keys are their indices.
         """
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
@@ -192,7 +193,7 @@ class WallLayers:
 
 
 def rings_around(domain: Domain, loops: Sequence[int], settings: LayerSettings) -> dict[int, Ring]:
-    """Return the rings around some loops of a domain, by number.
+    """Return the rings around `loops` of a domain; the keys are the indices of the loops.
 
     Raises InputError: too little room for layers; a wall at which layers fold.
     """
@@ -235,14 +236,15 @@ class Counts:
 
     Parameters
     ----------
-    coarse : (chords,) counts of the first optimised layout: the final counts divided by `stride` and `times`.
-    stride : factor of these counts for the second optimisation; 1 if there is only one.
-    times : factor of the counts after the last optimisation, from the optimised to the fine layout.
-    scale : factor of the sizes along walls.
+    coarse : (chords,) counts of the first layout that is optimised: the final counts divided by `stride` and
+        `times`.
+    stride : factor from the counts of the first optimisation to those of the second; 1 if there is only one.
+    times : factor from the counts of the last optimisation to the final counts.
+    scale : factor by which the cell lengths along walls are multiplied.
     metric : target sizes.
-    layers : (rows,) ratio of the layers of each row to the number that its thickness requires. It is known
-        after an optimisation. It is averaged geometrically with its previous value, because the thickness in
-        turn depends on the number of layers.
+    layers : (rows,) for each row, its number of layers divided by the number that its thickness requires. The
+        ratio is known only after an optimisation. Because the thickness in turn depends on the number of
+        layers, each new ratio is averaged geometrically with the previous one.
     """
 
     coarse: Indices
@@ -258,8 +260,8 @@ def wanted_counts(
 ) -> Counts:
     """Return counts for about `cells` cells in total, or for cells of the given size.
 
-    During the optimisation each row has `ROWS` cells across, whatever its final number. `before` are the
-    counts of the previous optimisation.
+    During the optimisation each row has `ROWS` cells across, whatever its final number of layers. `before`
+    has the counts of the previous optimisation.
     """
     multiple, row = walls.settings.multiple, rows.of_chords(chords)
     wakes = rows.wakes(chords.layout)

@@ -31,14 +31,15 @@ Edge = tuple[int, int]
 
 @dataclass(frozen=True, eq=False)
 class WallRows:
-    """Rows of blocks along the walls of a layout, and the rows that each block belongs to.
+    """Rows of blocks along the walls of a layout, and the one or two rows that each block belongs to.
 
     Parameters
     ----------
-    loops : number of the loop of each row.
-    across : (b, 2) row that a block crosses from south to north, and from west to east; -1 for none. Refined
-        layouts have the same blocks, so that it is valid for them too.
-    back : (b, 2) whether the block crosses the row from the front to the wall.
+    loops : for each row, the index of the loop along which it goes.
+    across : (b, 2) for each block, the index of the row whose thickness is the block's south-north direction,
+        and of that whose thickness is its west-east direction; -1 if none. The blocks of a refined layout are
+        the same, so that these indices stay valid.
+    back : (b, 2) whether this direction of the block leads from the front of the row to the wall.
     """
 
     loops: tuple[int, ...]
@@ -46,14 +47,14 @@ class WallRows:
     back: Bools
 
     def of_chords(self, chords: Chords) -> Indices:
-        """Return for each chord the number (chords,) of the row that its edges cross, -1 for none."""
+        """Return, for each chord, the index (chords,) of the row that its edges cross; -1 if none."""
         row = np.full(chords.count, -1, dtype=np.intp)
         row[chords.chord[chords.sides[:, 2]]] = self.across[:, 0]
         row[chords.chord[chords.sides[:, 0]]] = self.across[:, 1]
         return row
 
     def columns(self, layout: Layout, row: int) -> list[Indices]:
-        """Return the nodes (k, n) of lines across a row, from wall or wake to front, an array per block."""
+        """Return for each block of a row the nodes (k, n) of its lines from wall or wake to front."""
         tables = []
         for block, direction in zip(*np.nonzero(self.across == row), strict=True):
             table = layout.blocks[block].T if direction else layout.blocks[block]
@@ -61,7 +62,7 @@ class WallRows:
         return tables
 
     def growth(self, layout: Layout, loop: int) -> float:
-        """Return the largest logarithm of the ratio of neighbouring edges along a wall and its wake."""
+        """Return the largest |log(ratio)| of neighbouring edges along the wall of a loop and its wake."""
         base = np.zeros(len(layout.mesh.nodes), dtype=bool)
         for table in self.columns(layout, self.loops.index(loop)):
             base[table[:, 0]] = True
@@ -70,7 +71,7 @@ class WallRows:
         return float(np.abs(growth_along(z, lines[base[lines].all(axis=1)])).max())
 
     def wakes(self, layout: Layout) -> dict[int, Floats]:
-        """Return the lines (k, 2) behind sharp edges that have rows, by the number of their loop."""
+        """Return the wakes (k, 2) of the loops that have a row around them; keys are the loops' indices."""
         mesh, lines = layout.mesh, {}
         for row, loop in enumerate(self.loops):
             base = distinct(np.concatenate([table[:, 0] for table in self.columns(layout, row)]))
@@ -85,10 +86,11 @@ class WallRows:
 def with_wall_rows(
     layout: Layout, stretches: Sequence[Stretch], sheets: Sequence[int] = (), mirrors: Sequence[Mirror] = ()
 ) -> tuple[Layout, WallRows]:
-    """Return a layout with rows of quads along stretches and around loops with a sharp edge, and the rows.
+    """Return a layout with rows of quads along `stretches` and around the loops `sheets`, and the rows.
 
-    The second result tells which blocks of the layout are rows. If the quads of the layout are symmetric to
-    `mirrors`, the blocks are also symmetric. Raises SolverError: the lines of the mesh do not bound blocks.
+    Each loop in `sheets` has a sharp edge. The second result says which blocks belong to which row. If the
+    quads of the layout are symmetric about `mirrors`, the blocks are too. Raises SolverError: the lines of
+    the mesh do not bound blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front

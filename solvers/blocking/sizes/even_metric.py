@@ -21,7 +21,7 @@ STEEPEST = 8.0
 
 
 def metric_places(chords: Chords, counts: Indices, metric: SizeMetric) -> list[Floats]:
-    """Return the positions of new nodes along each edge, (cells + 1,), as fractional indices of old nodes.
+    """Return, for each edge, the positions (cells + 1,) of its new nodes as fractional indices of old nodes.
 
     `counts` (chords,) are the new numbers of cells.
     """

@@ -11,7 +11,7 @@ _PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
 
 
 class WantedCounts:
-    """Target numbers of cells of chords, for metrics with the same points but different sizes."""
+    """Target numbers of cells of chords, computed for several metrics with equal points but other sizes."""
 
     def __init__(self, chords: Chords, metric: SizeMetric) -> None:
         self.chords = chords
@@ -23,7 +23,7 @@ class WantedCounts:
         self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
 
     def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
-        """Return counts (chords,), multiples of `multiple`, near the target numbers of cells.
+        """Return the multiples (chords,) of `multiple` that are nearest to the target numbers of cells.
 
         The target of a chord is the geometric mean of the targets of its edges.
         """

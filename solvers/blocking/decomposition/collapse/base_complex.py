@@ -23,10 +23,10 @@ from meshonet.kernels._native import split_quads
 
 @dataclass(frozen=True, eq=False)
 class BaseComplex:
-    """Blocks of a quad mesh, the edges that bound them, and the chords.
+    """Blocks of a quad mesh, the edges that bound them, and the chords (rows of blocks).
 
-    A chord is a set of sides of blocks, each opposite the next one in a block; they all have the same number
-    of cells.
+    A chord is the set of sides that are reached from one side of a block by stepping repeatedly to the
+    opposite side of a block. All sides of a chord have the same number of cells.
     """
 
     mesh: QuadMesh
@@ -47,11 +47,11 @@ class BaseComplex:
 
     @cached_property
     def sides(self) -> tuple[Indices, Indices, Indices]:
-        """Sides of the blocks, south, north, west and east of each: three arrays.
+        """Edges along the sides of the blocks, in the order south, north, west, east of each block.
 
-        The first array (k,) has, for the nodes of all sides one after the other, the number of the edge to
-        the next node, -1 after the last node of a side. The second array (4 b,) is the start of each side in
-        the first array, the third (4 b,) the chord of each side.
+        The first array (k,) lists the nodes of all sides, one side after another: for each node the index of
+        the edge to the next node of the side, or -1 at the last node. The second array (4 b,) has the index
+        in the first array where each side starts, the third array (4 b,) the index of the chord of each side.
         """
         lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
         nodes = np.concatenate(lines)
@@ -68,7 +68,7 @@ class BaseComplex:
         return moved
 
     def side_lengths(self, unit: Floats | None = None) -> Floats:
-        """Return the lengths (b, 4) of south, north, west and east of each block, in units (e,) of edges."""
+        """Return the lengths (b, 4) of the south, north, west, east sides, if an edge is `unit` (e,) long."""
         edge, first, _ = self.sides
         length = self.mesh.edge_lengths
         if unit is not None:

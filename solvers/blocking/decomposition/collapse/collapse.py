@@ -40,11 +40,9 @@ PER_TRIAL, PER_OPTIMUM = 3, 20
 def simplify(mesh: QuadMesh, *, price: float, sizes: SizeMetric | None) -> BaseComplex:
     """Return the blocks of an optimised quad mesh after collapsing chords (rows of blocks).
 
-    The narrowest chords are collapsed first.
-
-    If there are many chords, several are collapsed before the next optimisation. `sizes` are prescribed
-    lengths of edges. `price` is the increase of the mean deviation of angles from 90 degrees that is accepted
-    for one block less.
+    The narrowest chords are collapsed first; if there are many, several are collapsed before the next
+    optimisation. `sizes` are prescribed lengths of edges. `price` is how much the mean deviation of angles
+    from 90 degrees (in degrees) may grow for each block that is removed.
     """
 
     def wanted(mesh: QuadMesh) -> Floats | None:

@@ -19,9 +19,9 @@ VALENCES = (3, 5)
 def contract(mesh: QuadMesh, rungs: Bools) -> QuadMesh | None:
     """Return the mesh with the nodes of each edge in `rungs` (e,) merged; None if it would be invalid.
 
-    It is invalid if two corners would be merged, or wall nodes without a wall edge in `rungs` between them;
-    if more wall nodes than before have a wrong number of quads; or if the result is no conforming mesh of the
-    same domain with 3 to 5 quads around each interior node.
+    The mesh would be invalid if two corners were merged; if wall nodes were merged that no wall edge in
+    `rungs` connects; if more wall nodes than before had a wrong number of quads; or if it were not a
+    conforming mesh of the same domain with 3 to 5 quads around each interior node.
     """
     label, count = joined_classes(np.ascontiguousarray(mesh.edges[rungs]), len(mesh.nodes))
     kept = ~rungs[mesh.edge_of].any(axis=1)
@@ -69,7 +69,7 @@ def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
 
 
 def is_conforming(mesh: QuadMesh, many: int = 0) -> bool:
-    """Return whether the quads are a mesh of the domain with 3 to 5 (or up to `many`) at each inner node."""
+    """Return whether the mesh conforms, with 3 to 5 (or up to `many`) quads around each interior node."""
     inside = mesh.valence[~mesh.wall_nodes]
     few, many = VALENCES[0], max(VALENCES[1], many)
     return conforms(mesh) and bool(((inside >= few) & (inside <= many)).all())

@@ -31,7 +31,7 @@ SIZES = 8.0
 def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = None) -> float:
     """Return the score of blocks; lower is better.
 
-    `wanted` (e,) are target lengths of edges, by default equal ones.
+    `wanted` (e,) are target lengths of the edges; by default all edges have the same target.
     """
     mesh = blocks.mesh
     off = deviations(mesh)
@@ -50,9 +50,9 @@ def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = Non
 def size_spread(blocks: BaseComplex, wanted: Floats | None) -> float:
     """Return the mean square of log(length / mean length) of the sides of blocks across each chord.
 
-    A chord has the same number of cells everywhere, so the spread of these lengths is that of its cells.
-    Means are weighted by the area of blocks. With target lengths `wanted` (e,) of edges, lengths and areas
-    are in units of these.
+    All these sides have the same number of cells, so that the spread of their lengths is the spread of cell
+    lengths. Means are weighted by the areas of the blocks. If target lengths `wanted` (e,) of edges are
+    given, lengths and areas are measured in units of the target lengths.
     """
     lengths = log(blocks.side_lengths(wanted))
     chord = blocks.sides[2]

@@ -64,9 +64,9 @@ class CrossField:
 def cross_field(surface: Triangulation, fewer: bool = True) -> CrossField:
     """Return a smooth cross field that is aligned with the walls of a surface.
 
-    It starts from a harmonic u, followed by steps of normalisation and diffusion (Viertel, Osting, SIAM J.
-    Sci. Comput. 41 (2019) A452-A479), which separate the clustered singularities of the harmonic field. If
-    `fewer`, pairs of singularities are then removed if this costs little energy.
+    The first field is harmonic, and its singularities are clustered. Steps of normalisation and diffusion
+    separate them (Viertel, Osting, SIAM J. Sci. Comput. 41 (2019) A452-A479). If `fewer` is true, pairs of
+    singularities are then removed where this costs little energy.
 
     Raises SolverError: the sum of the singularities contradicts the topology of the surface.
     """

@@ -40,7 +40,7 @@ class Frames:
 
 
 def cut_frames(field: CrossField) -> Frames:
-    """Return frames that agree over a spanning tree of the triangles, and the edges to cut."""
+    """Return frames that agree across all edges but those of a cut, which opens the surface to a disc."""
     surface = field.surface
     turn, cut = surface_comb(surface.arrays, surface.size, field.quarters)
     keep = surface.on_wall.copy()
@@ -79,7 +79,7 @@ def _wedges(field: CrossField, cut: Bools) -> Indices:
 
 
 def frame_sizes(field: CrossField) -> Floats:
-    """Return lengths e^H (t,), with median 1, with which the crosses are nearly gradients of two functions.
+    """Return lengths e^H (t,) that make the crosses nearly the gradients of two functions; median 1.
 
     Frames e^H (cos theta, sin theta) are free of curl if grad H is grad theta rotated by a quarter turn; H
     satisfies this in the least-squares sense.

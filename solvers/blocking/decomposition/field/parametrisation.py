@@ -20,14 +20,15 @@ _IMAGINARY = np.array([0.0, 1.0, 0.0, -1.0])  # imaginary parts of them
 class Parametrisation:
     """Linear system for the coordinates u + i v of the vertices of an opened surface.
 
-    It minimises the sum over triangles of weight times area times
+    The solution minimises the sum over all triangles of weight times area times
 
         |grad u - s (cos theta, sin theta)|^2 + |grad v - s (-sin theta, cos theta)|^2
 
-    under two constraints: u or v is equal at both ends of a wall edge, and the differences w_a - w_b along
-    the two sides of the cut are quarter turns of each other. This is the map of Bommes, Zimmer, Kobbelt (ACM
-    Trans. Graph. 28 (2009) 77) with real translations instead of integers. The u or v of a wall is one
-    unknown; the cut has Lagrange multipliers.
+    under two constraints. Of u and v, one is equal at both ends of a wall edge. At an edge ab of the cut, the
+    difference w_a - w_b on one side is that on the other side, rotated by a multiple of 90 degrees. This is
+    the map of Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009) 77) with real translations instead of
+    integers. The constant u or v of a wall is one unknown; the conditions at the cut have Lagrange
+    multipliers.
 
     Parameters
     ----------
@@ -102,7 +103,7 @@ class Parametrisation:
         return rows[kept], column[kept].astype(np.intp), value[kept]
 
     def solve(self, weights: Floats) -> Complexes:
-        """Return the coordinates (t, 3) at the corners, for weights (t,) of the triangles."""
+        """Return u + i v (t, 3) at the corners of the triangles, for weights (t,) of the triangles."""
         stiffness = (weights[:, None] * self._values)[self._there]
         values = np.concatenate([stiffness, self._coefficients])
         scale = 1.0 / max(float(np.abs(stiffness).mean()), 1e-300)
@@ -122,6 +123,6 @@ class Parametrisation:
         return np.asarray(coords[0] + 1j * coords[1])
 
     def jacobians(self, coords: Complexes) -> Floats:
-        """Return the determinants (t,) of the map's derivative relative to their targets."""
+        """Return the Jacobian determinant (t,) of the map in each triangle, divided by its target."""
         first, second = coords[:, 1] - coords[:, 0], coords[:, 2] - coords[:, 0]
         return np.asarray(times(np.conj(first), second).imag / (2.0 * self.surface.areas * self._wanted))

@@ -33,8 +33,8 @@ class SeamlessMap:
 
         w_g = i^k (w_f - w_f(a)) + w_g(a),   k = turns[f, e], e the edge in f, a one of its ends,
 
-    so that lines of constant u or v continue over every edge; if k is odd, u lines become v lines. Each edge
-    of a wall is on such a line. Edge e of a triangle goes from its corner e to corner (e + 1) % 3::
+    so that lines of constant u or v continue across every edge; if k is odd, a u line continues as a v line.
+    Each wall edge is part of such a line. Edge e of a triangle goes from its corner e to corner (e + 1) % 3::
 
                2
               / \
@@ -67,9 +67,9 @@ class SeamlessMap:
 def seamless_map(domain: Domain, count: int = 1500, seed: int = 0, fewer: bool = True) -> SeamlessMap:
     """Return a seamless map of a domain that is triangulated with about `count` vertices.
 
-    If the field has interior singularities, the domain is triangulated again with smaller triangles there. A
-    map that is nearly folded is solved again with larger weights at these triangles; some may stay folded.
-    With `fewer`, the number of singularities is reduced.
+    If the field has interior singularities, the domain is triangulated again with smaller triangles there. If
+    triangles of the map are folded or nearly so, the map is solved again with larger weights there; some may
+    stay folded. With `fewer`, the number of singularities is reduced.
 
     Raises SolverError: the field or the map has no solution; InputError: the domain cannot be triangulated.
     """

@@ -47,10 +47,10 @@ class _Lines:
 def without_pairs(
     surface: Triangulation, laplacian: Laplacian, factor: Factor, crosses: Complexes
 ) -> Complexes:
-    """Return the crosses (n,) without the pairs of singular points that cost more energy than they save.
+    """Return the crosses (n,) without those pairs of singular points whose removal lowers the energy.
 
-    `laplacian` is that of the interior vertices, `factor` its factors. Crosses at walls do not change. If no
-    pair is removed, the given array is returned.
+    `laplacian` has the interior vertices as free ones, `factor` is its factorisation. Crosses at walls do not
+    change. If no pair is removed, the given array is returned.
     """
     phase = angle(crosses)
     steps = phase[surface.triangles[:, NEXT]] - phase[surface.triangles]

@@ -42,10 +42,10 @@ class WallDirections:
 def wall_directions(surface: Triangulation) -> WallDirections:
     """Return directions along the walls of a surface.
 
-    At a corner with the angle alpha and k cells, the direction along each of the two walls is rotated by (90
-    k - alpha) / 2, in degrees, and less and less away from the corner. The cross at the corner is then the
-    same for both walls, and the number of cells is a boundary condition. Elsewhere the direction is the mean
-    of both edges.
+    At a corner with the angle alpha (degrees) where k cells meet, the directions of the two walls are rotated
+    by (90 k - alpha) / 2 degrees; the rotation decreases with the distance from the corner. Both walls then
+    give the same cross at the corner, and k is imposed as a boundary condition. At other vertices the
+    direction is the mean of the directions of the two wall edges.
     """
     triangle, edge = surface.walls
     start = surface.triangles[triangle, edge]

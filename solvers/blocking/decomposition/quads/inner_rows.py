@@ -22,17 +22,18 @@ HalfEdges = dict[tuple[int, int], tuple[int, int]]
 
 
 def half_edges(mesh: QuadMesh) -> HalfEdges:
-    """Return for each edge (a, b) of a quad the number of the quad, and the index of node a in it."""
+    """Return, for each directed edge (a, b) of a quad, the index of the quad and of a in it (0 to 3)."""
     return {(q[i], q[(i + 1) % 4]): (k, i) for k, q in enumerate(mesh.quads.tolist()) for i in range(4)}
 
 
 def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wall: bool = False) -> QuadMesh:
     """Return the mesh with a row of quads inserted on the left of a path of nodes.
 
-    The path goes from wall to wall, or is `closed`; it may be a wall. The quads of the row are the last of
-    the mesh; each begins at the path and ends at the front, the other side of the row. Where a closed path
-    begins at a corner of one quad, the row crosses itself, and its last quad is at this corner. New nodes are
-    those of the front, or, if it is a row `of_wall`, those of the path.
+    The path goes from wall to wall, or is `closed`; it may follow a wall. The side of the row opposite to the
+    path is its front. The new quads are the last of the mesh; the first two nodes of each are on the path,
+    the others on the front. If a closed path begins at a corner where one quad meets, the row crosses itself
+    there, and the last quad is the one at this corner. The new nodes are on the front; with `of_wall`, they
+    are on the path, and the old nodes form the front.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
     new = list(range(n, n + count))
@@ -109,10 +110,10 @@ def _left_of(
 
 
 def corner_row(mesh: QuadMesh, corner: int, farthest: int) -> QuadMesh | None:
-    """Return the mesh with a row of quads inserted around a corner of the domain at which one quad meets.
+    """Return the mesh with a row of quads inserted around a corner of the domain that has a single quad.
 
-    `corner` is the number of its node. The row is placed as far from the corner as possible: at most
-    `farthest` quads away, and with regular nodes only between the corner and the row. Return None if
+    `corner` is the index of the corner's node. The row is placed as far from the corner as possible, but at
+    most `farthest` quads away, and all nodes between the corner and the row must be regular. Return None if
     irregular nodes are next to the corner.
     """
     for size in range(farthest, 0, -1):

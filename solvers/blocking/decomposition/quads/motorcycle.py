@@ -29,8 +29,9 @@ CANCELLED, AT_NODE, AT_RAY, AT_WALL, TOO_LONG = range(5)  # how rays end, as in 
 class MotorcycleGraph:
     """The nodes of a motorcycle graph, and the trails between them, which become grid lines.
 
-    The directions in which lines leave a node are numbered counter-clockwise, one per right angle. At a wall
-    they go from 0, along the wall, to `quarters`, back along the wall; inside they are modulo `quarters`.
+    The directions in which lines leave a node are numbered counter-clockwise; there is one per right angle of
+    the map. At a wall node the first direction, 0, is forwards along the wall, and the last, `quarters`, is
+    backwards along the wall. At an interior node the numbers are modulo `quarters`.
     """
 
     map: SeamlessMap

@@ -31,13 +31,13 @@ def wrong_count(mesh: QuadMesh) -> Bools:
 
 
 def loops_to_pad(mesh: QuadMesh) -> list[int]:
-    """Return the numbers of loops without corners on which some node has a wrong number of quads."""
+    """Return the indices of the loops without corners on which a node has a wrong number of quads."""
     wrong = distinct(mesh.places.loop[wrong_count(mesh)])
     return [int(loop) for loop in wrong if loop >= 0 and not mesh.domain.loops[loop].corners]
 
 
 def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
-    """Return the stretches in `spans` within which some node has a wrong number of quads."""
+    """Return those stretches of `spans` in whose interior a node has a wrong number of quads."""
     places, wrong = mesh.places, wrong_count(mesh)
     return [
         (loop, begin, end)
@@ -47,7 +47,7 @@ def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
 
 
 def pad(mesh: QuadMesh, loops: Sequence[int]) -> QuadMesh:
-    """Return the mesh with a ring of quads along these loops, whose old nodes become interior ones.
+    """Return the mesh with a ring of quads along each of `loops`; their old nodes become interior nodes.
 
     >>> from meshonet.geometry.domain.domain import Domain
     >>> from meshonet.geometry.layout.quad_mesh import Places
@@ -67,8 +67,8 @@ def pad(mesh: QuadMesh, loops: Sequence[int]) -> QuadMesh:
 def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
     """Return the mesh with a row of quads along a stretch between two corners with one quad each.
 
-    The quads of the row are the last of the mesh; each begins at the wall and ends at the front, the other
-    side of the row. If both corners are the same, the row is closed.
+    The new quads are the last of the mesh. The first two nodes of each are on the wall, the other two on the
+    front (the opposite side of the row). If both corners are the same, the row is closed.
     """
     number, begin, end = span
     on, length = np.flatnonzero(mesh.places.loop == number), mesh.domain.loops[number].length
@@ -82,7 +82,7 @@ def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
 
 
 def along_wall(mesh: QuadMesh, first: int, last: int) -> list[int]:
-    """Return the nodes of a loop from node `first` to node `last`; if they are the same, once around."""
+    """Return the nodes along a loop from `first` to `last`; if `first` is `last`, the whole loop."""
     after, chain = following(mesh), [first]
     while chain[-1] != last or len(chain) == 1:
         chain.append(int(after[chain[-1]]))

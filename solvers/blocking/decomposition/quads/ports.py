@@ -16,7 +16,7 @@ SLACK = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Ports:
-    """Nodes at vertices, and the rays that leave them.
+    """Nodes of a motorcycle graph at vertices of the triangulation, and the rays that leave these nodes.
 
     `vertex` (n,) is the vertex of the triangulation at each node, `on_wall` (n,) whether the vertex is on a
     wall.

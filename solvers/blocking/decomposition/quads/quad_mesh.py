@@ -25,10 +25,11 @@ LOOP = 4
 def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None = None) -> QuadMesh:
     """Return a conforming mesh of about `cells` quads, whose irregular nodes are those of the map.
 
-    With `sizes`, these are the target edge lengths, and `cells` is ignored. Nodes on the arcs of the T-mesh
-    are at their positions in the map, other nodes are interpolated; cells may be folded.
+    If `sizes` (target edge lengths) are given, `cells` is ignored. Nodes on the arcs of the T-mesh have the
+    positions that the map gives; the other nodes are interpolated. Cells may be folded.
 
-    Raises SolverError: the lines of the map form no T-mesh of rectangles, or so few cells cannot conform.
+    Raises SolverError: the lines of the map form no T-mesh of rectangles, or no mesh with so few cells
+    conforms.
     """
     mesh = t_mesh(motorcycle_graph(seamless))
     wanted = _plane_lengths(mesh, sizes)

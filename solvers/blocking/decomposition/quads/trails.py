@@ -17,7 +17,7 @@ Tables = tuple[Floats, Indices, Indices, Indices]
 
 
 def map_tables(seamless: SeamlessMap) -> Tables:
-    """Return coordinates (t, 3, 2), neighbours, their edges and turns (t, 3) for the kernels."""
+    """Return the map for the kernels: coordinates (t, 3, 2); neighbours, their edges, turns (t, 3) each."""
     coords = np.ascontiguousarray(seamless.corner_coords).view(np.float64).reshape(-1, 3, 2)
     return coords, seamless.surface.neighbours, seamless.surface.neighbour_edge, seamless.turns
 
@@ -71,14 +71,14 @@ class Trails:
         return trail, float(self.length[piece + trail])
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
-        """Return the wall trail at the fraction `part` of an edge, and its length there."""
+        """Return the wall trail through the point at `part` (0 to 1) of an edge, and its length up to it."""
         piece = self._edges[face, edge]
         trail = self.trail_of(piece)
         start, stop = self.length[piece + trail : piece + trail + 2]
         return trail, float(start + part * (stop - start))
 
     def locate(self, trail: Indices, length: Floats) -> tuple[Indices, Floats]:
-        """Return the piece (q,) of a trail at a given length, and the fraction of the piece before it."""
+        """Return the pieces (q,) at lengths (q,) along trails (q,), and the fractions (q,) of the pieces."""
         ends = self.length[self.first[1:] + np.arange(len(self.first) - 1)]
         offset = np.append(0.0, np.cumsum(ends))
         owner = np.repeat(np.arange(len(ends)), np.diff(self.first))
@@ -99,7 +99,7 @@ class Trails:
 
 
 def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int) -> Trails:
-    """Return the trails of rays from the pieces (p, 3) and (p, 5) that `trace_rays` returned."""
+    """Return the trails of rays, made of the integers (p, 3) and floats (p, 5) that `trace_rays` returned."""
     order = np.argsort(pieces[:, 0], kind="stable")
     pieces, lines = pieces[order], lines[order]
     count = np.bincount(pieces[:, 0], minlength=rays)
@@ -164,7 +164,7 @@ def wall_trails(seamless: SeamlessMap) -> Trails:
 
 
 def to_plane(seamless: SeamlessMap, face: Indices, w: Complexes) -> Complexes:
-    """Return the points (q,) of the plane at coordinates w (q,) of triangles (q,)."""
+    """Return the points (q,), complex numbers, at the coordinates `w` (q,) in the triangles `face` (q,)."""
     corners = seamless.corner_coords[face]
     a, b, q = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], w - corners[:, 0]
     size = times(a.conj(), b).imag

@@ -8,7 +8,7 @@ from meshonet.solvers.sparse import Factor, SparsePattern
 
 
 class Laplacian:
-    """Integrals of products of gradients over a surface, for its vertices `free` (n,)."""
+    """Laplacian matrix of a surface (integrals of products of gradients) for its vertices `free` (n,)."""
 
     def __init__(self, surface: Triangulation, free: Bools) -> None:
         self.surface, self.free = surface, free
@@ -27,7 +27,7 @@ class Laplacian:
         return self.pattern.factor(np.append(self._edges, self._diagonal + mass))
 
     def flow(self, values: Complexes) -> Complexes:
-        """Return the right-hand side for values (n,) at vertices that are not free; others must be 0."""
+        """Return the right-hand side for given values (n,) at fixed vertices; `values` is 0 at free ones."""
         surface, weight = self.surface, self.surface.edge_weights
         corner = values[surface.triangles]
         flow = -weight * corner[:, NEXT] - weight[:, PREVIOUS] * corner[:, PREVIOUS]

@@ -37,7 +37,7 @@ CONE = 0.6
 
 @dataclass(frozen=True, eq=False)
 class WallSizes:
-    """Sizes at samples of all loops; each sample is in the middle of an interval of its loop."""
+    """Edge lengths at samples of all loops; each sample is the midpoint of an interval of its loop."""
 
     largest: float
     """Largest size."""
@@ -79,7 +79,7 @@ def usual_size(area: float, count: int) -> float:
 
 
 def pieces(loop: Loop) -> tuple[Floats, Floats]:
-    """Return the arc lengths (p,) at which pieces between two corners start and end."""
+    """Return the arc lengths (p,) at which the pieces of a loop from corner to corner start and end."""
     start = loop.corner_arcs if len(loop.corners) else np.zeros(1)
     return start, np.append(start[1:], start[0] + loop.length)
 
@@ -89,8 +89,8 @@ def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None =
 
     They are ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, at least ``h0 / 25`` or 1/400 of the loop,
     whichever is less. h0 is `usual_size`. The gap is the distance to the nearest wall within 53 degrees of
-    the normal; the other wall of a wide corner does not count. `finer` points (m, 2) have sizes (m,) of their
-    own. Sizes change by at most 0.35 per length.
+    the normal; the other wall at a wide corner is ignored. `finer` are further points (m, 2) with prescribed
+    sizes (m,). The gradient of the sizes is at most 0.35.
     """
     largest = usual_size(domain.area, count)
     samples = [_sample(loop, largest) for loop in domain.loops]
@@ -161,9 +161,10 @@ def _own_size(samples: _Samples, largest: float) -> Floats:
 
 
 def place_nodes(domain: Domain, sizes: WallSizes) -> tuple[Indices, Floats]:
-    """Return loop (b,) and arc length (b,) of nodes on the walls, at equal steps of ∫ ds / h in each piece.
+    """Return loop (b,) and arc length (b,) of wall nodes, at equal steps of ∫ ds / h in each piece.
 
-    h is the size of edges. Corners are nodes. A piece has at least 2 edges, a smooth loop at least 8.
+    Here h is the edge length in `sizes`, and a piece is a wall from corner to corner. Corners are nodes. A
+    piece has at least 2 edges, a loop without corners at least 8.
     """
     loops, arcs = [], []
     for number, loop in enumerate(domain.loops):

@@ -9,7 +9,7 @@ from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIO
 
 
 def split_edges_between_walls(triangulation: Triangulation) -> Triangulation:
-    """Return the triangulation with a vertex in the middle of every interior edge between walls.
+    """Return the triangulation with a new vertex on every interior edge that joins two wall vertices.
 
     Otherwise a triangle with two edges on the same wall would have all its vertices on one line of the map,
     and a gap one triangle wide could not contain a singularity.
@@ -57,7 +57,7 @@ def _split(triangulation: Triangulation, triangle: Indices, edge: Indices) -> Tr
 
 
 def join_triangles(triangles: Indices) -> tuple[Indices, Indices]:
-    """Return the triangle (t, 3) across each edge, and the number (t, 3) of the edge in that triangle.
+    """Return the triangle (t, 3) across each edge, and the index (0 to 2) of the edge in that triangle.
 
     Both are -1 at walls.
     """

@@ -22,7 +22,7 @@ PREVIOUS = np.array([2, 0, 1])  # and before each
 class Triangulation:
     """Delaunay triangulation of a domain, constrained by its walls: triangles joined at their edges.
 
-    Vertices on the walls come first, in order.
+    Vertices on the walls come first, in their order along the walls.
     """
 
     domain: Domain
@@ -51,7 +51,7 @@ class Triangulation:
 
     @cached_property
     def fans(self) -> tuple[Indices, Indices]:
-        """All corners (3 t,) ordered by vertex, and the start of each vertex (n + 1,) in this list."""
+        """All corners (3 t,) sorted by vertex, and the index (n + 1,) where each vertex's corners start."""
         start, corners, reached = surface_fans(self.arrays, self.size)
         if reached != len(corners):
             raise SolverError("triangles that meet in a point only")
@@ -75,7 +75,7 @@ class Triangulation:
 
     @cached_property
     def gradients(self) -> Complexes:
-        """(t, 3) gradient of the function that is linear in a triangle, 1 at a corner, 0 at the others."""
+        """(t, 3) for each corner, the gradient of the linear function that is 1 there, 0 at other corners."""
         return np.asarray(times(1j, self.edges[:, NEXT]) / (2.0 * self.areas[:, None]))
 
     @cached_property
@@ -95,15 +95,15 @@ class Triangulation:
     def edge_weights(self) -> Floats:
         """(t, 3) for each edge of a triangle, minus half the cotangent of the angle opposite to it.
 
-        This is the integral over the triangle of the scalar product of two `gradients`, those of the two ends
-        of the edge.
+        It is the integral over the triangle of the scalar product of the `gradients` of the two ends of the
+        edge.
         """
         g = self.gradients
         return np.asarray(self.areas[:, None] * times(g, np.conj(g[:, NEXT])).real)
 
     @cached_property
     def masses(self) -> Floats:
-        """(n,) a third of the area of the triangles around each vertex."""
+        """(n,) for each vertex, one third of the total area of the triangles around it."""
         return self.gather(np.repeat(self.areas[:, None] / 3.0, 3, axis=1))
 
     @cached_property
@@ -113,10 +113,10 @@ class Triangulation:
         return self.size - inner - len(self.walls[0]) + len(self.triangles)
 
     def gather(self, corners: Floats) -> Floats:
-        """Return the sums (n,) of values at corners (t, 3) around each vertex."""
+        """Return, for each vertex, the sum (n,) of the values `corners` (t, 3) at its corners."""
         return np.asarray(np.bincount(self.triangles.ravel(), corners.ravel(), self.size))
 
     def edge_size(self, vertices: Indices) -> Floats:
-        """Return the mean length of the edges around each of the `vertices`."""
+        """Return, for each of the `vertices`, the mean length of the edges that meet there."""
         lengths = self.gather(modulus(self.edges))
         return np.asarray(lengths[vertices] / np.diff(self.fans[0])[vertices])

@@ -71,7 +71,7 @@ class _Walls:
         raise InputError(problem, "open the gap there, or join the loops")
 
     def edges(self) -> Indices:
-        """Return the pairs (b, 2) of nodes that follow each other along a loop."""
+        """Return the pairs (b, 2) of consecutive nodes along the loops."""
         order = np.lexsort((self.arc, self.loop))
         after = np.empty(len(order), dtype=np.intp)
         last = np.flatnonzero(np.diff(self.loop[order], append=-1))
@@ -83,8 +83,8 @@ class _Walls:
     def recover(self) -> None:
         """Add wall edges that the triangulation lacks.
 
-        Long ones are halved, with the new node on the curve of the wall; short ones are made by flipping
-        edges.
+        A long wall edge is halved, with the new node on the curve of the wall. A short one is obtained by
+        flipping the edges of triangles.
         """
         lengths = self.domain.lengths
         while True:
@@ -121,11 +121,11 @@ def _spread(n: int) -> Indices:
 def triangulate(
     domain: Domain, count: int = 1500, finer: tuple[Floats, Floats] | None = None, seed: int = 0
 ) -> Triangulation:
-    """Return a triangulation of a domain with about `count` nodes, more if walls need short edges.
+    """Return a triangulation of a domain with about `count` nodes, or more if walls need short edges.
 
     Nodes along the walls follow `wall_sizes`; wall edges that are missing in the Delaunay triangulation are
     halved. Then circumcentres of triangles that are too large are inserted, and nodes are smoothed. `finer`
-    points (m, 2) have sizes (m,) of their own around them. The same input and `seed` give bitwise the same
+    are points (m, 2), around which sizes (m,) are prescribed. The same input and `seed` give bitwise the same
     result.
 
     Raises InputError: walls that are so close to each other that they cannot be distinguished.

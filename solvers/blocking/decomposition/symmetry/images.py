@@ -16,9 +16,9 @@ SOME = 100
 
 
 def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images:
-    """Return the mirror images of nodes in the mirrors about which the quads of a mesh are symmetric.
+    """Return, for each mirror about which the quads of a mesh are symmetric, the image of each node.
 
-    `mirrors` are the mirrors of the domain that are tried, by default all.
+    The `mirrors` are tried, by default all mirrors of the domain.
     """
     mirrors = mirrors_of(mesh.domain) if mirrors is None else mirrors
     images = []
@@ -37,7 +37,7 @@ def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list
 
 
 def agree(images: Images) -> bool:
-    """Return whether two reflections of nodes are always a rotation by twice the angle between mirrors."""
+    """Return whether any two reflections of the nodes combine to the same rotation as their mirrors do."""
     if len(images) < 2:
         return True
     (_, one), (_, other) = images[:2]
@@ -53,8 +53,8 @@ def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
     """Return the mesh with each node at the mean of itself and its mirror images.
 
     `images` are by default the images in all mirrors. Corners do not move. A ring with an odd number of quads
-    around is made symmetric about the first mirror only. If there are several mirrors, nodes are first made
-    symmetric about the first mirror, and then averaged over the rotations.
+    around it is made symmetric about the first mirror only. If there are several mirrors, nodes are first
+    made symmetric about the first mirror, and then averaged over the rotations.
     """
     images = images_of(mesh) if images is None else images
     if not agree(images):

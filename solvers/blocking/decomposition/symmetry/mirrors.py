@@ -30,9 +30,10 @@ _STEPS = 8  # of Newton's method towards a place on a curve, from the nearest of
 
 @dataclass(frozen=True, eq=False)
 class Mirror:
-    """A line through `centre` (2,) along the unit vector `along` (2,), and what it does to loops.
+    """A mirror line through `centre` (2,) along the unit vector `along` (2,), and the images of the loops.
 
-    The image of loop k is the loop `loops[k]`; the image of its point at arc length s is at `sums[k]` - s.
+    The image of loop k is loop `loops[k]`. The image of the point of loop k at arc length s is the point of
+    loop `loops[k]` at arc length `sums[k]` - s.
     """
 
     centre: Floats
@@ -45,13 +46,13 @@ class Mirror:
         return _images(points, self.centre, self.along)
 
     def ahead_and_left(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return coordinates (...) of points (..., 2) from the centre, along the line and to its left."""
+        """Return distances (...) of points (..., 2) from the centre: along the line, and to its left."""
         return along_and_across(points - self.centre, self.along)
 
 
 @lru_cache(maxsize=64)
 def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
-    """Return the mirrors of a domain in order of their angles; neighbours are separated by equal angles.
+    """Return the mirrors of a domain, sorted by angle; the angle from each to the next is the same.
 
     The first mirror is along x or y if there is such a mirror. A circle counts as having four mirrors, a
     domain with periodic sides none.
@@ -84,7 +85,7 @@ def _all_about(domain: Domain, first: Mirror, count: int) -> tuple[Mirror, ...]:
 
 
 def mirror_about(domain: Domain, centre: Floats, along: Floats) -> Mirror | None:
-    """Return the mirror about a line if the domain is symmetric to `SAME` of its extent, else None."""
+    """Return the mirror along a line; None if the domain deviates from symmetry by over `SAME` extents."""
     middles, _ = _centroids(domain)
     apart = norms(_images(middles, centre, along)[:, None] - middles)
     apart[0, 1:] = apart[1:, 0] = np.inf  # the outer loop is its own image

@@ -36,9 +36,9 @@ Ray = tuple[Mirror, Floats]
 
 @dataclass(frozen=True, eq=False)
 class LoopPart:
-    """Part of a loop of the whole domain, from ray to ray: arc lengths (n,), ascending, and points.
+    """Part of a loop of the whole domain between two rays: ascending arc lengths (n,), and the points there.
 
-    For the centre, which lies on no loop, the number of the loop is -1.
+    Where the part is only the centre of the mirrors, which lies on no loop, `loop` is -1.
     """
 
     loop: int
@@ -63,8 +63,8 @@ class DomainPart:
     domain : the part; its outer loop begins on the first ray.
     stretches, holes : walls of the part: parts of loops of the whole domain, and whole loops inside.
     rays : the mirrors that bound the part.
-    copies : for each part of the whole domain the mirrors in which this part is reflected, one after the
-        other, to get there; the first entry is empty.
+    copies : for each part of the whole domain, the mirrors at which this part is reflected one after the
+        other to obtain it. The first entry is empty: it is this part itself.
     """
 
     whole: Domain
@@ -76,10 +76,10 @@ class DomainPart:
 
 
 def spans_between(loop: Loop) -> list[Span]:
-    """Return the stretches of the outer loop of a part between two corners at which one cell meets.
+    """Return the stretches of a part's outer loop from one corner with a single cell to the next.
 
-    Corners within a stretch have two cells. A row of quads along a stretch moves singularities from a wall,
-    or from a ray, into the interior.
+    Any corners within a stretch have two cells. A row of quads along a stretch moves singularities from a
+    wall, or from a ray, into the interior.
     """
     corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
     turns = [(arc, cells) for arc, cells in corners if cells != 2]
@@ -88,7 +88,7 @@ def spans_between(loop: Loop) -> list[Span]:
 
 
 def part_of(domain: Domain, mirrors: Sequence[Mirror]) -> DomainPart:
-    """Return the half on the left of a mirror, or the quarter on the left of two at right angles.
+    """Return the half to the left of one mirror, or the quarter to the left of two perpendicular mirrors.
 
     Raises SolverError: a ray cuts a sharp corner.
     """
@@ -103,7 +103,7 @@ def part_of(domain: Domain, mirrors: Sequence[Mirror]) -> DomainPart:
 
 
 def sector_of(domain: Domain, mirrors: Sequence[Mirror], start: int) -> DomainPart:
-    """Return the sector that begins at mirror number `start` of all mirrors, by their angles.
+    """Return the sector that begins at the mirror with index `start`; `mirrors` are sorted by angle.
 
     Raises SolverError: a ray cuts a sharp corner, or the centre is outside.
     """

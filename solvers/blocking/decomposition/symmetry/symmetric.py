@@ -62,21 +62,21 @@ def symmetric_blocks(
 ) -> BaseComplex:  # fmt: skip
     """Return symmetric blocks of the domain of `blocks`, or `blocks` if no symmetric ones are about as good.
 
-    With three or more mirrors through a centre, blocks that are symmetric to all mirrors are tried: the given
-    blocks, then those of sectors. With two mirrors at right angles, blocks that are symmetric to both are
-    tried first, then blocks that are symmetric to one; blocks that are also symmetric to the two diagonal
-    mirrors are preferred. If the given blocks are already symmetric, blocks of a part replace them only if
-    they are better and not more numerous. If lengths of edges are prescribed, `unsized` returns the mesh of
-    blocks for edges of equal length, which is used if no other blocks are symmetric.
+    With three, or more than four, mirrors through a centre, blocks symmetric about all of them are tried: the
+    given blocks, then blocks made from sectors. With two perpendicular mirrors, blocks symmetric about both
+    are tried first, then about one of them; blocks that are also symmetric about the two diagonals are
+    preferred. If the given blocks are symmetric, blocks made from a part of the domain replace them only if
+    they are better and not more numerous. If edge lengths are prescribed, `unsized` returns the quad mesh for
+    edges of equal length, which is tried last.
     """
     mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
     pair = every[:1] if len(every) % 2 else every[:: max(len(every) // 2, 1)]
     most = score(blocks, False) + worth
 
     def best(ways: Sequence[Way], mirrors: Sequence[Mirror], enough: int = 0) -> BaseComplex | None:
-        """Return the blocks of the best of the `ways`; None if none is about as good as the given blocks.
+        """Return the best blocks that the `ways` give; None if none are about as good as the given blocks.
 
-        If one of the first `enough` ways succeeds, the others are not tried; 0 tries all.
+        If one of the first `enough` ways succeeds, the others are not tried; `enough` = 0 tries all.
         """
         least = None
         for number, way in enumerate(ways):
@@ -152,10 +152,11 @@ def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Ima
 
 
 def cut_on_mirrors(mesh: QuadMesh, images: Images, more: Bools | None = None) -> BaseComplex:
-    """Return the blocks of a mesh, cut along mirrors that pass through corners of the domain with two cells.
+    """Return the blocks of a mesh, also cut along mirrors through corners of the domain with two cells.
 
-    A mirror also cuts a ring of blocks. Images of sides of blocks are therefore sides of blocks. `more` (e,)
-    is a mask of further edges along which blocks are cut. Raises SolverError: a ring has no line on a mirror.
+    A ring of quads is cut along a mirror too. The mirror image of a side of a block is therefore again a side
+    of a block. `more` (e,) is a mask of further edges along which blocks are cut. Raises SolverError: a ring
+    has no line on a mirror.
     """
     blocks = base_complex(mesh, more)
     ring = bool(images) and any(len(distinct(block[[0, 0, -1], [0, -1, 0]])) < 3 for block in blocks.blocks)
