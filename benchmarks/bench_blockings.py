@@ -25,8 +25,8 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.layout.from_grid import layout_of
 from meshonet.geometry.quality.blocks import block_figures
 from meshonet.geometry.quality.checkmesh import faces
-from meshonet.solvers.smoothing.layers import thin_heights
 from meshonet.solvers.smoothing.smooth import smooth
+from meshonet.solvers.smoothing.wanted_lengths import thin_heights
 
 ROUNDING = 1e-6
 HEAD = ("cells", "non-orthogonality", "skewness", "deviation", "growth across", "first cells", "s")

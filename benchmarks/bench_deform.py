@@ -25,9 +25,9 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.threads import limited_to
 from meshonet.kernels._native import blend_motions
 from meshonet.solvers.deformation.deform import deform
-from meshonet.solvers.deformation.follow import areas_of
 from meshonet.solvers.deformation.motions import Turning, affine, turns_in_plane
 from meshonet.solvers.deformation.outer import NodeTable, elements_of, first_heights
+from meshonet.solvers.deformation.sources import areas_of
 from meshonet.solvers.deformation.targets import NewWall, targets_of
 
 HEAD = """# Deformed grids: folded cells, first-cell heights, time

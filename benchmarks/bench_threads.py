@@ -39,8 +39,8 @@ from meshonet.solvers.hyperbolic.march import hyperbolic
 from meshonet.solvers.hyperbolic.volume.march import VolumeMarch, march_surface
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
-from meshonet.solvers.volumes.tfi import arc_laws
-from meshonet.solvers.volumes.tfi import interpolate as fill
+from meshonet.solvers.volumes.interpolate import arc_laws
+from meshonet.solvers.volumes.interpolate import interpolate as fill
 from meshonet.solvers.volumes.tfi import tfi as volume_tfi
 from meshonet.solvers.volumes.variational import variational
 from meshonet.solvers.volumes.winslow import winslow

@@ -26,8 +26,9 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.neural.volumes.network import infer_volume
 from meshonet.solvers.solution import Solution
+from meshonet.solvers.volumes.interpolate import arc_laws, interpolate, mean_laws, uniform_laws
 from meshonet.solvers.volumes.refine import refine_volume, spline_of
-from meshonet.solvers.volumes.tfi import arc_laws, interpolate, mean_laws, tfi, uniform_laws
+from meshonet.solvers.volumes.tfi import tfi
 from meshonet.solvers.volumes.variational import optimum, variational
 from meshonet.solvers.volumes.winslow import winslow
 

@@ -42,9 +42,10 @@ from pathlib import Path
 import numpy as np
 
 from meshonet.formats.aircraft_surface import surface_body, surface_wing
+from meshonet.formats.fin_table import fin_of, fin_table
 from meshonet.formats.rows.points import point_blocks
 from meshonet.formats.source import Source, open_source, printable
-from meshonet.formats.stack_table import fin_of, fin_table, stack_table
+from meshonet.formats.stack_table import stack_table
 from meshonet.formats.toml_table import Table, toml_table
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.aircraft.axes import FILE_AXES, AircraftAxes

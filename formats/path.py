@@ -1,4 +1,4 @@
-"""What is swept, and paths in space: points x, y, z, one per line, or lines and arcs in TOML.
+"""Paths in space for sweeping: points x, y, z, one per line, or lines and arcs in TOML.
 
 ::
 
@@ -17,19 +17,15 @@ A path through points is a smooth curve; it is closed if its last point equals t
 """
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
-from meshonet.formats.registry import format_of, is_designation, read_grids, read_shapes
 from meshonet.formats.source import Source, open_source
 from meshonet.formats.text.rows import decode, read_lines, table
 from meshonet.formats.toml_table import Table, toml_table
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.path import Bend, Path, PiecedPath, SplinePath
 from meshonet.geometry.errors import InputError, in_source
-from meshonet.geometry.shapes.shape import Shape
 
 MOST_POINTS = 100_000
 """Largest number of points; a longer path is taken for a mistake."""
@@ -73,17 +69,3 @@ def _piece(row: Table) -> Bend:
     row.only("arc", "radius", "towards")
     degrees, radius = row.positive("arc"), row.positive("radius")
     return Bend(math.radians(degrees) * radius, radius, row.vector("towards"))
-
-
-def read_sections(text: str, fmt: str | None = None) -> Iterator[Grid | Shape]:
-    """Yield the planar grids of a file if its format contains grids, otherwise the shapes that it describes.
-
-    `text` is a path or a designation such as ``naca:0012`` or ``circle:0.5``; designations and layouts yield
-    shapes. `fmt` is the name of the file's format; None: it is recognised by the file's name and content.
-    Raises InputError: a file that cannot be read.
-    """
-    if not is_designation(text):
-        record = format_of(open_source(text), fmt)
-        if record.read_grids is not None and record.name != "layout":
-            return iter(read_grids(text, fmt))
-    return iter(read_shapes(text, fmt))

@@ -1,18 +1,13 @@
 """The sections of a wing, fin, blade or duct in a table of TOML (see `meshonet.formats.stack`)."""
 
 import math
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from meshonet.formats.registry import is_designation, read_shapes
-from meshonet.formats.source import printable
+from meshonet.formats.section_shape import section_shape
 from meshonet.formats.toml_table import Table
-from meshonet.geometry.aircraft.fin import Fin
 from meshonet.geometry.sections.section import MOST_CANT, MOST_NODES, QUARTER, Cant, Section
 from meshonet.geometry.sections.stack import BETWEEN, KINDS, TIPS, Stack
-from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
-from meshonet.geometry.shapes.outline import Outline
 
 _SPACINGS = "tip_spacing", "le_spacing", "te_spacing"
 _STEEPEST = 85.0
@@ -107,52 +102,3 @@ def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) 
     if abs(degrees) > _STEEPEST:
         raise row.error(angle, f"{degrees:g} degrees", f"use -{_STEEPEST:g} to {_STEEPEST:g}")
     return float(getattr(before[-1], direct) + (z - before[-1].z) * math.tan(math.radians(degrees)))
-
-
-def section_shape(row: Table, folder: Path) -> Airfoil | Outline:
-    """Return the shape of the file or designation in the table of a section; paths are relative to `folder`.
-
-    Raises InputError: not exactly one of the keys is given; a file without an airfoil or closed curve.
-    """
-    keys = [key for key in ("airfoil", "outline") if key in row.data]
-    remedy = "name one file, or a designation such as naca:2412"
-    if len(keys) != 1:
-        problem = "stands beside outline" if keys else "is missing"
-        raise row.error("airfoil", problem, remedy)
-    text = row.text(keys[0])
-    if not is_designation(text) and (folder / text).exists() and not (folder / text).is_file():
-        raise row.error(keys[0], f"{printable(text)} is no regular file", remedy)
-    with row.in_file_of(keys[0]):
-        shapes = list(read_shapes(text if is_designation(text) else str(folder / text)))
-    if len(shapes) != 1 or not isinstance(shapes[0], Airfoil | Outline):
-        raise row.error(keys[0], f"{printable(text)} is not one airfoil or closed curve", remedy)
-    shape = shapes[0]
-    shape.notes = tuple(type(note)(f"{printable(text)}: {note}") for note in shape.notes)
-    return shape
-
-
-def fin_table(data: Table, folder: Path, more: tuple[str, ...]) -> Fin:
-    """Return the fin of a table, which may also have the keys `more`; paths are relative to `folder`.
-
-    Raises InputError: a section that is not symmetric; see also `meshonet.formats.stack_table.stack_table`.
-    """
-    options = stack_options(data, "fin", more)
-    sections: list[Section] = []
-    for row in data.rows("sections", least=2):
-        sections.append(_fin_section(row, sections, folder))
-    return Fin(tuple(sections), **options)
-
-
-def fin_of(wing: Stack, name: str) -> Fin:
-    """Return a wing as a fin, whose span is along y; `name` is that of the fin."""
-    values = {field.name: getattr(wing, field.name) for field in fields(wing)}
-    return Fin(**(values | {"name": name}))
-
-
-def _fin_section(row: Table, before: list[Section], folder: Path) -> Section:
-    row.only("airfoil", "chord", "y", "x", "sweep")
-    y = row.number("y")
-    if before and not y > before[-1].z:
-        remedy = "give sections upwards; fins below a body are not made"
-        raise row.error("y", f"{y:g} is not above {before[-1].z:g}", remedy)
-    return Section(section_shape(row, folder), row.positive("chord"), y, along(row, "x", "sweep", y, before))

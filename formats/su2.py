@@ -23,7 +23,7 @@ from meshonet.formats.source import Source, printable
 from meshonet.formats.text.number_table import parsed, write_rows
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.motion import screw_of
+from meshonet.geometry.blocks.screw import screw_of
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 

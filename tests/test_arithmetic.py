@@ -31,8 +31,8 @@ POWERS = (
     "solvers/energy/quad_problem.py",
     "solvers/hyperbolic/default_spacing.py",
     "solvers/hyperbolic/front.py",
-    "solvers/neural/quad/operator.py",
-    "solvers/volumes/repair.py",
+    "solvers/neural/quad/canonical_frame.py",
+    "solvers/volumes/planes_descent.py",
 )
 """Where powers are of single or complex numbers: the C library's, one by one."""
 EXACT = (2, 0.5, -1)

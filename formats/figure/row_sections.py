@@ -21,7 +21,7 @@ import numpy as np
 from meshonet.formats.figure.slices import Cut, cut_where
 from meshonet.geometry.arrays import Floats, arc_lengths, norms
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.motion import screw_of
+from meshonet.geometry.blocks.screw import screw_of
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.linear import symmetric_eigen

@@ -14,8 +14,9 @@ from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.domain.loop import Loop, arc_at, cells_at
+from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
+from meshonet.geometry.domain.places_on_loops import arc_at, cells_at
 from meshonet.geometry.errors import InputError, in_place, in_source
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import Indices
-from meshonet.geometry.domain.loop import Loop, place_at
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.places_on_loops import place_at
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
 

@@ -11,12 +11,11 @@
 """
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.block import PLACES
 
 Indices = NDArray[np.int64]
@@ -66,22 +65,3 @@ def _around(number: Indices) -> list[Indices]:
 def _flat(corners: list[Indices]) -> Indices:
     """Return one row per cell, the first index fastest."""
     return np.stack([corner.ravel(order="F") for corner in corners], axis=-1)
-
-
-_ROWS = 16
-"""Number of rows copied at a time, so that source and destination stay in the cache."""
-
-
-def first_fastest(values: NDArray[Any], dtype: str | np.dtype[Any]) -> NDArray[Any]:
-    """Return `values` (ni, nj) or (ni, nj, nk) as a flat array of type `dtype`, i fastest."""
-    return np.ascontiguousarray(values.T, dtype).reshape(-1)
-
-
-def nodes_of(coordinates: Sequence[NDArray[Any]]) -> Floats:
-    """Return float64 nodes (..., d) from d coordinates, in planar layout (`meshonet.geometry.arrays`)."""
-    nodes = np.empty((len(coordinates), *coordinates[0].shape))
-    for row, values in zip(nodes, coordinates, strict=True):
-        for start in range(0, values.shape[1], _ROWS):
-            part = slice(start, start + _ROWS)
-            row[:, part] = values[:, part]
-    return np.moveaxis(nodes, 0, -1)

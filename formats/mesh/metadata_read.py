@@ -8,7 +8,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from meshonet.formats.mesh.cell_faces import nodes_of
+from meshonet.formats.mesh.axis_order import nodes_of
 from meshonet.formats.mesh.metadata import Facts
 from meshonet.formats.mesh.recover_topology import known_topology, recovered, usable
 from meshonet.formats.mesh.slices import planar

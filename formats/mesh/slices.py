@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.mesh.cell_faces import nodes_of
+from meshonet.formats.mesh.axis_order import nodes_of
 from meshonet.formats.mesh.recover_topology import is_left_handed
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.handedness import signed_volume

@@ -22,10 +22,11 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.shapes.domain_shape import DomainShape, itself
 from meshonet.geometry.shapes.named_edges import Labelled, runs
 from meshonet.geometry.shapes.outline import Outline
-from meshonet.geometry.shapes.polygon_shape import PolygonRing, closed_curve, domain_or_body, polygon_shape
+from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, polygon_shape
 from meshonet.geometry.shapes.shape import Shape
 
 MOST_EDGES = 400_000

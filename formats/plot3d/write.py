@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.format import Options, at_least_one
-from meshonet.formats.mesh.cell_faces import first_fastest
+from meshonet.formats.mesh.axis_order import first_fastest
 from meshonet.formats.output import PART_SUFFIX, final_name, whole_file
 from meshonet.formats.plot3d.nmf import write_map
 from meshonet.formats.text.number_table import write_rows

@@ -28,9 +28,10 @@ from meshonet.geometry.arrays import ends_meet, extent_of
 from meshonet.geometry.domain.nesting import nested
 from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.shapes.edges import DrawnEdge, channel, four_edges
 from meshonet.geometry.shapes.outline import Outline
-from meshonet.geometry.shapes.polygon_shape import PolygonRing, closed_curve, domain_or_body, polygon_shape
+from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, polygon_shape
 from meshonet.geometry.shapes.shape import Shape
 
 AnyOutline = TypeVar("AnyOutline", bound=Outline | Airfoil)

@@ -11,22 +11,19 @@ from itertools import chain, count, groupby
 from pathlib import Path, PurePosixPath
 from typing import Any, TypeAlias
 
-import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.format import at_least_one, only_one
+from meshonet.formats.format import at_least_one
 from meshonet.formats.mesh.metadata import facts_of
 from meshonet.formats.mesh.structured import FileBlock, described_grids, grids_of_file
 from meshonet.formats.output import final_name, whole_folder
 from meshonet.formats.source import Source, printable
-from meshonet.formats.vtk import escaped, vtm
+from meshonet.formats.vtk import escaped
 from meshonet.formats.vtk.vts import write
 from meshonet.formats.vtk.vts_read import read_block
 from meshonet.geometry.blocks.extrude import plane_of_extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, in_place
-from meshonet.geometry.quality.measure import folded_cells, per_cell_of_blocks
-from meshonet.geometry.quality.metrics import metrics_of as metrics_of_cells
 
 CellData: TypeAlias = Callable[[Grid], Sequence[Mapping[str, NDArray[Any]]]]
 """Function from a grid to cell values of each block, by name (`meshonet.formats.vtk.vts.write`)."""
@@ -127,28 +124,3 @@ def _read(folder: Path, name: str, title: str) -> FileBlock:
     with in_place(shown):
         coordinates, facts = read_block(Source(printable(str(path)), path=path))
         return FileBlock(coordinates, printable(title or parts.stem), shown, facts=facts)
-
-
-def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> None:
-    """Write the only grid of `grids` to `path`, a ``.vts`` file, or with `many` a ``.vtm`` file.
-
-    Raises InputError: a grid of several blocks for a ``.vts`` file.
-    """
-    if many:
-        vtm.write_grids(path, grids, cell_data=metrics_of)
-        return
-    grid = only_one(grids, "a .vts file")
-    if len(grid.blocks) > 1 or (grid.form == "plane" and grid.topology == "blocks"):
-        raise InputError(f"a .vts file holds one block, not {len(grid.blocks)}", "name it FILE.vtm")
-    write(path, grid, metrics_of(grid)[0])
-
-
-def metrics_of(grid: Grid) -> list[dict[str, NDArray[Any]]]:
-    """Return for each block the metrics and ``folded`` of its cells (ni-1, nj-1[, nk-1]), by name."""
-    every = {metric.name: per_cell_of_blocks(grid, metric.name) for metric in metrics_of_cells(grid)}
-    of_blocks: list[dict[str, NDArray[Any]]] = []
-    for number, block in enumerate(grid.blocks):
-        folded = np.zeros([count - 1 for count in block.counts], dtype=np.int8)
-        folded[tuple(folded_cells(block.nodes).T)] = 1
-        of_blocks.append({**{name: cells[number] for name, cells in every.items()}, "folded": folded})
-    return of_blocks

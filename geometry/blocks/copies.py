@@ -19,7 +19,8 @@ import numpy as np
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.motion import Motion, Screw, screw_of
+from meshonet.geometry.blocks.motion import Motion
+from meshonet.geometry.blocks.screw import Screw, screw_of
 from meshonet.geometry.blocks.shared_nodes import node_table, with_equal_nodes
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError

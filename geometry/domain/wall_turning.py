@@ -1,4 +1,4 @@
-"""Curvature and turning angles of walls between two points, the corners there, and gradual cell sizes."""
+"""Curvature and turning angles of walls between two points, and the corners there."""
 
 from functools import lru_cache
 
@@ -77,19 +77,3 @@ def wall_bend(loop: Loop, arcs: Floats, window: int) -> Floats:
     step = np.diff(arcs, append=arcs[0] + loop.length)
     around = np.arange(-window, len(arcs) + window) % len(arcs)
     return running_sums(turn[around], 2 * window + 1) / running_sums(step[around], 2 * window + 1)
-
-
-def graded(sizes: Floats, arcs: Floats, length: float, slope: float) -> Floats:
-    """Return the largest sizes (n,) that nowhere exceed `sizes` and change by at most `slope` per arc length.
-
-    The `sizes` (n,) are given at ascending `arcs` (n,) along a closed curve of this `length`.
-
-    >>> graded(np.array([1.0, 9.0, 9.0, 9.0]), np.array([0.0, 1.0, 2.0, 3.0]), 4.0, 1.0).tolist()
-    [1.0, 2.0, 3.0, 2.0]
-    """
-    n = len(sizes)
-    along = np.concatenate([arcs - length, arcs, arcs + length])
-    size = np.tile(sizes, 3)
-    ahead = np.minimum.accumulate(size - slope * along) + slope * along
-    behind = np.minimum.accumulate((size + slope * along)[::-1])[::-1] - slope * along
-    return np.asarray(np.minimum(ahead, behind)[n : 2 * n])

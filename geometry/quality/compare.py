@@ -1,9 +1,6 @@
-"""Distances between the nodes of two grids of the same size, and pairs of grids of two sets."""
+"""Distances between the nodes of two grids of the same size."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import repeat
-from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -95,61 +92,3 @@ def _beside(values: Floats, patch: Patch, part: float) -> Floats:
 
 def _root_mean_square(values: Floats) -> float:
     return float(np.sqrt(np.mean(values**2)))
-
-
-Pairing: TypeAlias = Literal["auto", "name", "order"]
-
-
-class GridMatcher:
-    """Finds for each of many grids its partner in a reference set, which is read only as far as needed.
-
-    Grids are paired by ``name`` or by ``order``. ``auto``: a single reference grid serves for all; several
-    are paired by name if they have different names, one of which is that of the first grid, else by order.
-    """
-
-    def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:
-        self._grids = grids
-        self._pairing = pairing
-        self._passed: list[Grid] = []
-
-    def match(self, name: str) -> Grid:
-        """Return the partner of the next grid; `name` is the name of this grid.
-
-        Raises InputError: the reference set has no grid of this name, or no further grid.
-        """
-        if self._pairing == "auto":
-            self._pairing = self._decided(name)
-        if self._pairing == "name":
-            grid = self._named(name)
-        else:
-            grid = self._passed.pop(0) if self._passed else next(self._grids, None)
-        if grid is None:
-            remedy = "compare with one grid, or with as many"
-            if self._pairing == "name":
-                remedy = f"compare with one that is called {name!r}, or use {{pair}} order"
-            raise InputError("there is no grid to compare it with", remedy)
-        return grid
-
-    def _decided(self, name: str) -> Pairing:
-        self._passed = [grid for _, grid in zip(range(2), self._grids, strict=False)]
-        names = [grid.name for grid in self._passed]
-        if len(names) == 1:
-            self._grids = repeat(self._passed.pop())
-            return "order"
-        if not all(names) or names[0] == names[1]:
-            return "order"
-        match = self._named(name)
-        if match is None:
-            return "order"
-        self._passed.insert(0, match)
-        return "name"
-
-    def _named(self, name: str) -> Grid | None:
-        for k, grid in enumerate(self._passed):
-            if grid.name == name:
-                return self._passed.pop(k)
-        for grid in self._grids:
-            if grid.name == name:
-                return grid
-            self._passed.append(grid)
-        return None

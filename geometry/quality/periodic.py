@@ -12,7 +12,8 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.motion import Motion, Screw, screw_of
+from meshonet.geometry.blocks.motion import Motion
+from meshonet.geometry.blocks.screw import Screw, screw_of
 from meshonet.geometry.elementary import arctan2
 
 _ALIKE = 1e-9

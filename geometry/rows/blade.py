@@ -4,15 +4,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, middle
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.elementary import cos
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.notes import Change
-from meshonet.geometry.polygon.corners import SHARP
 from meshonet.geometry.rows.channel import Channel
+from meshonet.geometry.rows.common_corners import alike, common_corners
 from meshonet.geometry.rows.profile import BladeProfile
 from meshonet.geometry.rows.thick_edge import LEAST_EDGE, pointed, thick_edged
+from meshonet.geometry.rows.whole_pitches import whole_pitches
 from meshonet.kernels._native import spline_crossings
 
 MOST_EXTENDED = 0.2
@@ -207,71 +208,3 @@ def clustered(count: int) -> Floats:
     half = count // 2
     side = 0.25 * (1.0 - cos(_HALF_TURN * np.arange(half) / half))
     return np.concatenate([side, 0.5 + side])
-
-
-_WHOLE = 0.2
-"""Largest difference, in pitches, between a displacement and whole pitches; a larger one is lean of the
-blade.
-"""
-
-
-def whole_pitches(angles: Floats, heights: Floats, pitch: float) -> Floats:
-    """Return the numbers (p,) of pitches between each profile and the blade to which most profiles belong.
-
-    Blades may lean by more than a pitch. A step from one profile to the next therefore counts as a
-    displacement only if it exceeds the lean between other profiles by whole pitches.
-
-    Parameters
-    ----------
-    angles : (p,) mean theta of each profile in radians.
-    heights : (p,) positions of the profiles along the span, ascending.
-    pitch : angle from blade to blade.
-    """
-    steps, rises = np.diff(angles), np.diff(heights)
-    away = np.zeros(len(angles))
-    for k, step in enumerate(steps):
-        lean = np.append(np.delete(steps / rises, k) * rises[k], 0.0)
-        off = (step - lean)[np.abs(step - lean).argmin()] / pitch
-        whole = np.rint(off)
-        if abs(off - whole) < _WHOLE:
-            away[k + 1 :] += whole
-    return np.asarray(away - np.sort(away)[(len(away) - 1) // 2])
-
-
-BASE_TURN = 0.7
-"""The two points with the largest turns at an edge are the corners of a base if their turns are at least this
-fraction of all turns at the edge.
-"""
-
-
-def alike(profiles: Sequence[BladeProfile]) -> list[BladeProfile]:
-    """Return the profiles with equal numbers of corners at each edge, and equal places u of these corners.
-
-    Whether a turn counts as a corner depends on the points around it, so that profiles of one blade may
-    differ: lines of equal places would then jump along the span.
-    """
-    counts = np.array([profile.corner_counts for profile in profiles])
-    if not (counts == counts[0]).all():
-        same = [_count(profiles, counts[:, k], bool(k)) for k in (0, 1)]
-        profiles = [profile.cornered(same) for profile in profiles]
-    places = common_corners(profiles)
-    return [profile.aligned(places) for profile in profiles] if len(places) else list(profiles)
-
-
-def _count(profiles: Sequence[BladeProfile], counts: Floats, trailing: bool) -> int:
-    """Return how many corners an edge has; `counts` (p,) are those of each profile."""
-    if (counts == counts[0]).all():
-        return int(counts[0])
-    turn, part = np.array([profile.sharpness(trailing) for profile in profiles]).T
-    return 2 if middle(part) > BASE_TURN else int(middle(turn) > SHARP)
-
-
-def common_corners(profiles: Sequence[BladeProfile]) -> Floats:
-    """Return the median places u (c,), from -0.25 to 0.75, of the corners of profiles.
-
-    Empty if the profiles have no corners, or different numbers of corners.
-    """
-    places = [profile.corner_places() for profile in profiles]
-    if len({len(each) for each in places}) != 1 or not len(places[0]):
-        return np.empty(0)
-    return np.array([middle(column) for column in np.array(places).T])

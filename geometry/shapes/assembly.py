@@ -20,10 +20,10 @@ from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.section_curve import DEPARTURE, departure_note, edge_notes
+from meshonet.geometry.shapes.annulus import Annulus
 from meshonet.geometry.shapes.domain_shape import DomainShape, itself, loops_extent
 from meshonet.geometry.shapes.named_edges import Labelled
 from meshonet.geometry.shapes.outline import Outline
-from meshonet.geometry.shapes.polygon_shape import Annulus
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 

@@ -1,23 +1,20 @@
 """Closed curves and polygons with holes as shapes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Topology, ends_meet
-from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import with_periodic_sides
 from meshonet.geometry.domain.ring import ring_loop
-from meshonet.geometry.elementary import product
-from meshonet.geometry.errors import InputError, in_place
-from meshonet.geometry.polygon.area import polygon_area
-from meshonet.geometry.polygon.corners import find_corners, turning
+from meshonet.geometry.errors import in_place
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.annulus import Annulus
+from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.shapes.domain_shape import (
     DomainShape,
     convex_corners,
@@ -25,12 +22,9 @@ from meshonet.geometry.shapes.domain_shape import (
     in_far_field,
     itself,
 )
-from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.shapes.named_edges import Labelled
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.shape import Shape
-from meshonet.geometry.spacing.along_curve import stretch_arcs
-from meshonet.geometry.spacing.sampling import Sampling
 
 
 @dataclass(frozen=True)
@@ -121,68 +115,3 @@ def _labelled(shape: Shape, loops: Sequence[Loop]) -> Shape:
         knots = np.append(loop.curve.knots, loop.length)
         names += [loop.name_at(float(middle)) for middle in 0.5 * (knots[1:] + knots[:-1])]
     return Labelled(shape, np.concatenate(ends), names)
-
-
-def closed_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Outline | Airfoil:
-    """Return the airfoil or the outline through `points` (n, 2), without repeated neighbours.
-
-    `places` are the places of the points in their source, for messages.
-    """
-    keep = np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])
-    if ends_meet(points):
-        keep[-1] = len(points) < 3
-    points, places = points[keep], [place for place, kept in zip(places, keep, strict=False) if kept]
-    if len(points) < 3:
-        raise InputError(f"{len(points)} points", "a closed curve needs at least 3")
-    if _ends_in_one_edge(points):
-        return Airfoil(points, name, places)
-    return Outline(points, name, places=places)
-
-
-def _ends_in_one_edge(points: Floats) -> bool:
-    """Return whether a curve (n, 2) is slender, with one corner, or the two of a base, at one end."""
-    if len(points) < 10:
-        return False
-    turn = np.abs(turning(points, closed=True))
-    corners = find_corners(points, closed=True, few=0)
-    sharp = corners[turn[corners] > np.radians(60.0)]
-    if not 1 <= len(sharp) <= 2 or turn[sharp].sum() < np.radians(120.0):
-        return False
-    edge = points[sharp].mean(axis=0)
-    length = float(np.hypot(*(points - edge).T).max())
-    base = float(np.hypot(*np.ptp(points[sharp], axis=0)))
-    area = abs(polygon_area(points))
-    return base < 0.25 * length and area < 0.5 * length**2
-
-
-class Annulus:
-    """A body and the closed, clockwise curve of its far field."""
-
-    topology: Topology = "o"
-
-    def __init__(self, body: Shape, outer: Curve, name: str = "") -> None:
-        self.body, self.outer, self.name = body, outer, name
-
-    def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the O boundary: the body sampled as usual, with the given far field in place of a circle.
-
-        Raises InputError: another topology, or a setting that does not apply to the body.
-        """
-        if sampling.topology not in ("auto", "o"):
-            raise InputError("a body in a far field makes an O grid", "use {topology} o", source=self.name)
-        boundary = self.body.boundary(replace(sampling, topology="o"))
-        north = self._around(boundary.north)
-        cut = straight(boundary.south[0], north[0], boundary.nj)
-        return replace(boundary, north=north, west=cut, east=cut)
-
-    def _around(self, circle: Floats) -> Floats:
-        """Return nodes (n, 2) of the outer curve in nearly equal steps, from where the circle begins."""
-        middle = 0.5 * (circle.max(axis=0) + circle.min(axis=0))
-        wanted = (circle[0] - middle) / np.hypot(*(circle[0] - middle))
-        arcs = np.linspace(0.0, self.outer.length, 2049)[:-1]
-        off = self.outer.at(arcs) - middle
-        first = float(arcs[int(np.argmax(product(off, wanted) / np.hypot(*off.T)))])
-        steps = stretch_arcs(self.outer, first, first, len(circle) - 1, "uniform")
-        nodes = self.outer.at(steps % self.outer.length)
-        nodes[-1] = nodes[0]
-        return nodes

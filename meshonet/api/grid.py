@@ -19,8 +19,9 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import InputError, meant
 from meshonet.geometry.families.draw import draws
 from meshonet.geometry.shapes.assembly import assembled
+from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.shapes.domain_shape import DomainShape
-from meshonet.geometry.shapes.polygon_shape import closed_curve, domain_or_body
+from meshonet.geometry.shapes.polygon_shape import domain_or_body
 from meshonet.geometry.shapes.shape import Shape, SpatialShape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.make_grid import make_grid

@@ -138,7 +138,7 @@ class Destination:
     def part_files(self, make: object, size: int) -> PartFiles:
         """Return the files of a dataset in parts of `size` inputs, whose results `make` computes."""
         from meshonet.formats.hdf5.parts import PartFiles, digest_of
-        from meshonet_cli.batch.provenance import described
+        from meshonet_cli.batch.settings_text import described
 
         request = digest_of(self.kind, str(size), described(make))
         return PartFiles(Path(self.text), request, size)

@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from meshonet.formats.hdf5.names import UniqueNames
-from meshonet.formats.hdf5.parts import Failed, Input, OtherPartsError, PartFiles, State, digest_of
-from meshonet.formats.inputs import is_dataset
-from meshonet.formats.registry import is_designation
-from meshonet.formats.source import open_source
+from meshonet.formats.hdf5.parts import Failed, OtherPartsError, PartFiles, State
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet.solvers.stages import stage
 from meshonet_cli.batch.destination import same_size
+from meshonet_cli.batch.input_digests import digests_of
 from meshonet_cli.batch.item import Item, Make, made
+from meshonet_cli.batch.keys import Keys
 from meshonet_cli.batch.sources import records
 from meshonet_cli.terminal.errors import explained
 
 if TYPE_CHECKING:
     from meshonet.formats.registry import Kind
-    from meshonet.geometry.blocks.boundary import Boundary
-    from meshonet.geometry.blocks.grid import Grid
     from meshonet.geometry.families.draw import Draw
     from meshonet_cli.report.timed import Timed
     from meshonet_cli.terminal.session import Session
@@ -168,57 +162,3 @@ def _report(done: PartDone, index: str, session: Session, written: Callable[[Any
             session.fail(item.label, item.source, outcome)
         else:
             written(outcome, index)
-
-
-class Keys:
-    """The keys of the samples that a dataset, or a part of one, has so far."""
-
-    def __init__(self) -> None:
-        self._names = UniqueNames()
-
-    def named(self, item: Item[Any], what: Any) -> Any:
-        """Return the grid or boundary `what` with its key as name.
-
-        A different earlier name becomes its title.
-        """
-        if not isinstance(what, Grid | Boundary):
-            return what
-        key = self._names.add(item.stem if _of_file(item) else what.name)
-        if key == what.name:
-            return what
-        return replace(what, name=key, origin=replace(what.origin, title=what.origin.title or what.name))
-
-
-def _of_file(item: Item[Any]) -> bool:
-    """Return whether a member is all of a file that is no dataset, whose samples have keys of their own."""
-    source = item.source
-    if not item.only or source == "-" or is_designation(source) or is_dataset(source):
-        return False
-    return bool(item.called or Path(source).suffix) or Path(source).is_file()
-
-
-def digests_of(entry: str | InputError | Draw) -> list[Input]:
-    """Return the input with a digest of its name and content; for a dataset one digest per sample.
-
-    For an input that cannot be read, the digest is that of the reason.
-    """
-    if isinstance(entry, InputError):
-        return [Input(entry.source, digest_of(entry.source, str(entry)))]
-    if not isinstance(entry, str):
-        facts = entry.low, entry.high, entry.seed, entry.index, entry.split
-        return [Input(entry.kind, digest_of(entry.kind, repr(facts)))]
-    if is_designation(entry):
-        return [Input(entry, digest_of(entry))]
-    try:
-        return _contents(entry)
-    except InputError as error:
-        return [Input(entry, digest_of(entry, str(error)))]
-
-
-def _contents(text: str) -> list[Input]:
-    from meshonet.formats.inputs import samples_in
-
-    samples = samples_in(text)
-    if samples is None:
-        return [Input(text, digest_of(text, hashlib.sha256(open_source(text).read_bytes()).hexdigest()))]
-    return [Input(text, digest_of(samples.name, digest)) for digest in samples.digests()]

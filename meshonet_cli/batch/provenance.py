@@ -1,17 +1,10 @@
-"""Provenance of a file: version and command, stored in the file; and settings as text."""
+"""Provenance of a file: version and command, stored in the file."""
 
-import dataclasses
-import functools
-import hashlib
 import shlex
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from itertools import groupby
-from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from meshonet import __version__
 
@@ -55,42 +48,3 @@ def _command(words: tuple[str, ...]) -> str:
         elif not (word.startswith("--output=") or (word.startswith("-o") and len(word) > 2)):
             kept.append(word)
     return shlex.join(kept)
-
-
-WITHOUT_EFFECT = ("threads", "percentiles", "history", "criteria", "detailed")
-"""Fields of settings on which no node depends."""
-_MODEL = ".safetensors"
-"""Extension of model files."""
-
-
-def described(value: object) -> str:
-    """Return `value`, which consists of dataclasses, containers, arrays and plain values, as text.
-
-    Models are described by the content of their files, objects of other classes by their attributes.
-
-    >>> described({"b": (1, 2.5), "a": None})
-    "{'a': None, 'b': (1, 2.5,)}"
-    """
-    if isinstance(value, str) and value.endswith(_MODEL) and Path(value).is_file():
-        return f"{value!r} {hashlib.sha256(Path(value).read_bytes()).hexdigest()}"
-    if value is None or isinstance(value, bool | int | float | complex | str | bytes):
-        return repr(value)
-    if isinstance(value, np.ndarray):
-        return f"{value.dtype}{value.shape}{hashlib.sha256(value.tobytes()).hexdigest()}"
-    if isinstance(value, Mapping):
-        return "{" + ", ".join(sorted(f"{described(k)}: {described(v)}" for k, v in value.items())) + "}"
-    if isinstance(value, tuple | list):
-        return "(" + "".join(f"{described(each)}, " for each in value).strip(" ") + ")"
-    if isinstance(value, functools.partial):
-        return f"{described(value.func)}{described(value.args)}{described(_effective(value.keywords))}"
-    if isinstance(value, type) or (callable(value) and hasattr(value, "__qualname__")):
-        return f"{value.__module__}.{value.__qualname__}"
-    if dataclasses.is_dataclass(value):
-        facts = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
-    else:
-        facts = vars(value) if hasattr(value, "__dict__") else {"value": str(value)}
-    return f"{type(value).__qualname__}{described(_effective(facts))}"
-
-
-def _effective(facts: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: fact for name, fact in facts.items() if name not in WITHOUT_EFFECT}

@@ -158,7 +158,7 @@ class Batch:
 
     def _streamed(self, pairs: Iterator[Pair], destination: Destination, written: Written) -> Iterator[Any]:
         """Yield the results for a single file; each is reported when the next one is requested."""
-        from meshonet_cli.batch.parts import Keys
+        from meshonet_cli.batch.keys import Keys
 
         size, keys = "", Keys()
         for item, outcome in pairs:
@@ -202,7 +202,7 @@ class MemberWork:
                 elif self.destination is not None:
                     try:
                         if self.destination.is_dataset:
-                            from meshonet_cli.batch.parts import Keys
+                            from meshonet_cli.batch.keys import Keys
 
                             what = Keys().named(item, what)
                             report.item = replace(bare, name=what.name)

@@ -10,11 +10,11 @@ from meshonet.formats.figure.report.report import QualityPage
 from meshonet.formats.inputs import Inputs
 from meshonet.formats.output import whole_file
 from meshonet.formats.registry import format_for_output, picture_format, read_grids
-from meshonet.formats.vtk.vtm import write_metrics
+from meshonet.formats.vtk.metrics import write_metrics
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.compare import GridMatcher, Pairing
 from meshonet.geometry.quality.criteria import Criteria
 from meshonet.geometry.quality.gates import Gate
+from meshonet.geometry.quality.match_grids import GridMatcher, Pairing
 from meshonet.solvers.stages import reached, stage
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.sources import members_of

@@ -5,8 +5,9 @@ from functools import partial
 from typing import Any
 
 from meshonet.api.grid import domain_parameters
+from meshonet.formats.cross_section import read_sections
 from meshonet.formats.format import Space
-from meshonet.formats.path import path_of, read_sections
+from meshonet.formats.path import path_of
 from meshonet.formats.stack import stack_of
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.blocks.grid import Grid

@@ -19,6 +19,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.halves import with_image
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
+from meshonet.geometry.curves.sampled_lines import sampled
 from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.body_plane import level_patches
 from meshonet.solvers.aircraft.exact_cells import at_height, between_walls
@@ -27,7 +28,6 @@ from meshonet.solvers.aircraft.plan import AircraftPlan, plan_of
 from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.aircraft.tip_cells import arcs_beyond, last_cells
 from meshonet.solvers.aircraft.wall_normals import across_tip, off_body, off_tip, off_wing
-from meshonet.solvers.algebraic.resample.spline import sampled
 from meshonet.solvers.rows.columns import resampled, with_first
 from meshonet.solvers.rows.span_lines import SpanLines
 from meshonet.solvers.rows.span_spacing import (

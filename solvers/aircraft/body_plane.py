@@ -18,93 +18,18 @@ section.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.elementary import arctan2, cos, sin
-from meshonet.geometry.surface.pole_core import PoleCore, core_of
+from meshonet.solvers.aircraft.body_end import BodyEnd
 from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.collar_level import FEWEST, WIDEST, CollarPlan, Hole
 from meshonet.solvers.aircraft.column import ColumnLevel, ColumnPlan, planned_column
 from meshonet.solvers.aircraft.level_lines import Points, Side, lines_between, ways_between
-from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
-
-_POLE_CELL = 0.5
-"""Ratio of the cells at nose and tail to the cells beside the collar."""
-
-
-@dataclass(frozen=True, eq=False)
-class BodyEnd:
-    """The part of the grid at nose or tail, whose nodes have the same s and theta on all levels.
-
-    A level is a surface of nodes around the body; the first one is the body itself.
-
-    Parameters
-    ----------
-    theta : (n,) angles of the lines that leave the pole.
-    core : core that replaces the pole, in the plane with the polar coordinates s, theta.
-    at : s at which the rows of cells around the core end.
-    step : the last step of s in these rows.
-    cells : number of cells from the rows around the core to the next collar.
-    """
-
-    theta: Floats
-    core: PoleCore
-    at: float
-    step: float
-    cells: int
-
-    @classmethod
-    def of(cls, points: Points, sides: Sequence[Side]) -> BodyEnd:
-        """Return the end next to a column, given the `sides` of this column on some levels.
-
-        The first of these levels is the body. s is counted from the pole, the tip of the nose or of the tail.
-        """
-        nodes, cells = sides[0]
-        way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))
-        theta = np.linspace(0.0, np.pi, len(sides[0][1]))
-        pole = _POLE_CELL * last
-        count = smooth_cells(way, (pole, last), WIDEST, 2 * FEWEST)
-        s = smooth_arcs(np.array([way]), (pole, last), count)[0]
-        polar = np.stack(
-            [s * cos(theta)[:, None], s * sin(theta)[:, None], np.zeros((len(theta), len(s)))], axis=-1
-        )
-        core = core_of(polar, 2, max(count // 2, 3), even=True)
-        end = cls(theta, core, float(s[core.at]), float(s[core.at + 1] - s[core.at]), 0)
-        lines = [end._lines(*side) for side in sides]
-        begin, side, first, cells = (np.concatenate(each) for each in zip(*lines, strict=True))
-        return replace(
-            end, cells=smooth_cells(*ways_between(points, begin, side, (first, cells)), WIDEST, FEWEST)
-        )
-
-    def _lines(self, side: Floats, last: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return places (n, 3) where lines to a `side` (n, 3) begin and end, and cells (n,) there in s."""
-        zeta = 0.5 * float(side[0, 2] + side[-1, 2])
-        begin = np.stack([np.full(len(side), self.at), self.theta, np.full(len(side), zeta)], axis=1)
-        return begin, side, np.full(len(side), self.step), last
-
-    def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
-        """Return rows and core, (., ., 3) each, between the pole and the `side` (n, 3) of a column.
-
-        `last` (n,) are the lengths of the cells at the side. All are places s, theta, zeta with s counted
-        from the pole; `points` takes such places to space.
-        """
-        begin, end, *sizes = self._lines(side, last)
-        lines = lines_between(points, begin, end, (sizes[0], sizes[1]), self.cells)
-        zeta = float(begin[0, 2])
-        rows = _polar(self.core.rows[:-1, :, :2], zeta).swapaxes(0, 1)
-        rows[0, :, 1], rows[-1, :, 1] = 0.0, np.pi
-        return np.concatenate([rows, lines], axis=1), _polar(self.core.nodes[..., :2], zeta)
-
-
-def _polar(nodes: Floats, zeta: float) -> Floats:
-    x, y = nodes[..., 0], nodes[..., 1]
-    theta = arctan2(np.where(np.abs(y) < 1e-15, 0.0, y), x)
-    return np.stack([np.sqrt(x * x + y * y), theta, np.full(x.shape, zeta)], axis=-1)
-
+from meshonet.solvers.rows.span_spacing import smooth_cells
 
 _EVEN = 1.6
 """Beside a fin: largest ratio of the cells next to a collar to the mean cell towards keel and crown. As many

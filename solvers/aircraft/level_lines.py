@@ -6,7 +6,7 @@ from typing import TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, arc_lengths, smooth_step
-from meshonet.solvers.algebraic.resample.spline import sampled
+from meshonet.geometry.curves.sampled_lines import sampled
 from meshonet.solvers.rows.span_spacing import smooth_arcs
 
 _FINE = 65

@@ -11,19 +11,18 @@ points of each panel. The points of a row are::
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
-from itertools import repeat
 from typing import Self, TypeAlias
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats, read_only
+from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.conformal.lift import Lift
-from meshonet.geometry.elementary import cos, exp, modulus, product, sin
+from meshonet.geometry.elementary import exp, modulus, product
 from meshonet.geometry.polygon.mirror import Axis
 from meshonet.geometry.threads import threads_for
-from meshonet.kernels._native import fourier_columns, lift_bisect, strip_rows
+from meshonet.kernels._native import strip_rows
 from meshonet.solvers.conformal.chebyshev import panels
+from meshonet.solvers.conformal.fourier_sums import SHARPNESS, columns
 from meshonet.solvers.conformal.strip import MODES, interpolation, wavenumbers
 
 FAINT = 1e-12  # a wall's high modes are followed until their sum is below this (radians in the strip)
@@ -158,90 +157,3 @@ class _HighModes:
             octaves.append((int(np.searchsorted(depth, felt)), end))
             begin = end
         return octaves[::-1]
-
-
-TAPS = 14  # as in kernels/conformal/strip_rows.h
-LANES = 8  # as in lanes.h
-SHARPNESS = 2.30 * TAPS  # b
-FEWEST = 256  # columns
-
-
-def columns(modes: Complexes) -> Floats:
-    """Return values f (Q, 2, width), whose windowed sums equal the sums of Fourier modes.
-
-    `modes` (m, 2 K + 1) are in the order k = 0 .. K, -K .. -1.
-
-    An FFT over the nodes around a body is slow if their number has large prime factors, like 799 = 17 x 47.
-    Here a sum of modes |k| < Q/4 costs one FFT of Q columns, Q a power of two. Each node is a weighted sum of
-    the `TAPS` columns around it. The weights are a window w, and the modes are first divided by its
-    transform::
-
-        sum_k c_k exp(i k theta) = sum_q w(theta - theta_q) f_q,      f_q = sum_k c_k / v_k exp(i k theta_q)
-        w(x) = exp(b (sqrt(1 - x^2) - 1)),  |x| < 1,  x in half windows
-        v_k = sum_q w(theta_q) exp(-i k theta_q)
-
-    The error is about exp(-pi TAPS sqrt(1/2)) = 3e-14 of the largest mode. Barnett, Magland & af Klinteberg,
-    SIAM J. Sci. Comput. 41 (2019) C479.
-
-    Real parts precede imaginary parts, columns from m on are zero; the width is a multiple of `LANES`.
-    """
-    count, wide = len(modes), -(-len(modes) // LANES) * LANES
-    highest = modes.shape[1] // 2
-    gain, unit = _transform(max(FEWEST, 1 << (4 * highest + 3).bit_length()))  # Q >= 4 highest + 4
-    samples = np.zeros((2 * len(unit), 2, wide))
-    if count:
-        fourier_columns(np.ascontiguousarray(modes), gain, unit, samples)
-    return samples
-
-
-@lru_cache(maxsize=16)
-def _transform(count: int) -> tuple[Floats, Complexes]:
-    """Return 1 / v_k for k = 0 .. count / 4 by the trapezoidal rule, whose error is exp(-b)."""
-    steps = 8 * TAPS
-    x = np.arange(-steps, steps + 1) / steps
-    window = exp(SHARPNESS * (np.sqrt(np.maximum(1.0 - x * x, 0.0)) - 1.0))
-    angle = np.pi * TAPS / count * np.outer(np.arange(count // 4 + 1), x)
-    unit = exp(2j * np.pi * np.arange(count // 2) / count)
-    gain: Floats = steps / (0.5 * TAPS) / product(cos(angle), window)
-    return read_only(gain), read_only(unit)
-
-
-CELLS = 4.0  # reach of a shift, in cells either way; with 3 some cells fold
-LARGEST = 0.4  # of a cell's width: beyond it the neighbours would suffer
-SWEEPS = 3  # over the corners, which influence each other a little
-
-
-def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Return the weights (n, corners) of each corner's shift along the wall, and the shifts of phi.
-
-    The two cells at a corner with the exterior angle A have angles there whose sum is A; the larger one is
-    smallest if both are A/2. Solutions of Winslow's equations approach this only as the cells shrink. A local
-    shift of phi near the first node of the line achieves it directly, and decays within a few cells.
-
-    With these shifts the first grid lines at `corners` are bisectors in the plane. `wall` (n,) are nodes in
-    the plane, counter-clockwise, and `corners` indices into it.
-    """
-    n, step = len(wall), 2.0 * np.pi / len(wall)
-    between = np.subtract.outer(corners, corners) % n
-    apart = np.minimum(between, n - between) + n * np.eye(len(corners))
-    width = np.minimum(CELLS, 0.5 * apart.min(axis=0))
-    first = grid.at(corners, 1)
-    beside = grid.at((np.add.outer(corners, (-1, 1)) % n).ravel().tolist(), 1).reshape(-1, 2)
-    cells = np.abs(np.remainder((beside - first[:, None]).imag + np.pi, 2.0 * np.pi) - np.pi).min(axis=1)
-    limit = LARGEST * np.maximum(cells, step)  # evenly spaced walls have wide cells at an edge
-    offset = np.subtract.outer(np.arange(n), corners)
-    reach = exp(-((sin(np.pi * offset / n) / (np.pi * width / n)) ** 2))
-    at = np.array(corners)
-    pull = reach[at]
-    shift = np.zeros(len(corners))
-    for _ in range(SWEEPS):
-        moved = first + 1j * (product(pull, shift) - shift)  # by the other corner alone
-        nodes = wall[at], wall[(at + 1) % n], wall[at - 1]
-        shift = np.array(list(map(lift_bisect, repeat(lift), *nodes, moved, shift, limit)))
-    return reach, shift
-
-
-def fading(eta: Floats, first: float) -> Floats:
-    """Return the fraction of a shift that applies at `eta`: 1 at the level `first`, 0 at both walls."""
-    cells = eta / first
-    return np.asarray(cells * exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - first))

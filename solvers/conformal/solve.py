@@ -22,7 +22,8 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.conformal.evaluate import StripGrid, fading, shifts
+from meshonet.solvers.conformal.bisector import fading, shifts
+from meshonet.solvers.conformal.evaluate import StripGrid
 from meshonet.solvers.conformal.strip import across, harmonic, modes, picard
 from meshonet.solvers.conformal.walls import StripWalls, is_rough, sharp_turns, walls
 from meshonet.solvers.solution import Solution

@@ -175,7 +175,7 @@ def _on(wall: Floats, shape: Any, name: str) -> tuple[Floats, tuple[str, ...]]:
             return _in_order(wall, shape, closed=closed), ()
         if not closed:
             return on_line(wall, shape)
-        from meshonet.geometry.shapes.polygon_shape import closed_curve
+        from meshonet.geometry.shapes.closed_curve import closed_curve
 
         return on_outline(wall, closed_curve(shape, name))
     if isinstance(shape, Boundary):

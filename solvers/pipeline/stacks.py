@@ -18,7 +18,8 @@ from meshonet.solvers.keywords import refuse_given
 from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.pipeline.wall_facts import wall_facts
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.stacking.request import StackRequest, with_counts
+from meshonet.solvers.stacking.cell_count import with_counts
+from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.wing_surface import wing_surface
 from meshonet.solvers.stages import stage
 

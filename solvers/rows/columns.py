@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, arc_parts, norms, smooth_step
+from meshonet.geometry.curves.sampled_lines import sampled
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.layout import Layout
-from meshonet.solvers.algebraic.resample.spline import sampled
 
 _NEWTON, _SETTLED = 12, 1e-12  # steps at the most, and a step after which others would be rounding
 _STRAIGHT, _MARCHED = 0.5, 1.5

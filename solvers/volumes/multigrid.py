@@ -16,7 +16,7 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import combine_along, winslow_residual, winslow_room, winslow_smooth
-from meshonet.solvers.volumes.tfi import interpolate, uniform_laws
+from meshonet.solvers.volumes.interpolate import interpolate, uniform_laws
 
 COARSEST = 9  # nodes along a direction that is not coarsened any more
 ALIKE = 1.6  # a direction is coarsened when its steps are at most so many times the shortest

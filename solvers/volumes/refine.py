@@ -15,7 +15,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import solve
-from meshonet.solvers.volumes.tfi import Laws, Spline, interpolate, uniform_laws
+from meshonet.solvers.volumes.interpolate import Laws, Spline, interpolate, uniform_laws
 
 
 def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws: Laws) -> Floats:

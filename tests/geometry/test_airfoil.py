@@ -11,7 +11,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
-from meshonet.geometry.shapes.polygon_shape import closed_curve
+from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.spacing.sampling import Sampling
 
 FORMULA = np.linspace(0, 1, 150) ** 2

@@ -5,8 +5,8 @@ import pytest
 
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.annulus import Annulus
 from meshonet.geometry.shapes.outline import Outline
-from meshonet.geometry.shapes.polygon_shape import Annulus
 from meshonet.geometry.spacing.sampling import Sampling
 
 T = np.linspace(0, -2 * np.pi, 80, endpoint=False)

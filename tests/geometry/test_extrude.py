@@ -11,8 +11,9 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.extrude import extruded, plane_of_extruded
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.motion import Motion, screw_of
+from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.screw import screw_of
 from meshonet.geometry.errors import InputError
 
 HEIGHTS = (0.5, 1.0, 3.0)

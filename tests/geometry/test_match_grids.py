@@ -7,7 +7,7 @@ import pytest
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.compare import GridMatcher
+from meshonet.geometry.quality.match_grids import GridMatcher
 
 SQUARE = np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from meshonet.geometry.layout.to_grid import shared, shared_in_part
+from meshonet.geometry.layout.shared_sides import shared, shared_in_part
 
 
 def test_a_side_that_meets_itself_is_joined_from_its_ends() -> None:

@@ -6,8 +6,8 @@ from solver_shapes import arch, bump, hexagon, l_shape, spike, wrench
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.polygon.corners import find_corners
-from meshonet.solvers.elliptic import multigrid as patches
-from meshonet.solvers.elliptic.multigrid import reentrant
+from meshonet.solvers.elliptic import corner_relaxation as patches
+from meshonet.solvers.elliptic.corner_relaxation import reentrant
 from meshonet.solvers.elliptic.solve import solve
 
 

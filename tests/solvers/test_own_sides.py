@@ -9,7 +9,7 @@ from random_quads import random_quad
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.algebraic.tfi import tfi
-from meshonet.solvers.neural.quad.operator import Element, canonical
+from meshonet.solvers.neural.quad.canonical_frame import Element, canonical
 from meshonet.solvers.neural.registry import load
 
 

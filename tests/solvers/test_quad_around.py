@@ -16,8 +16,8 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.kernels._native import activate, upsample
 from meshonet.solvers.neural.quad.encoding import features
+from meshonet.solvers.neural.quad.inside_point import inside
 from meshonet.solvers.neural.quad.network import Network, shapes
-from meshonet.solvers.neural.quad.o_grids import inside
 from meshonet.solvers.neural.quad.picard import approach
 from meshonet.solvers.neural.quad.unrolled import TURN, even, middles, rolled, unrolled
 from meshonet.solvers.neural.registry import load

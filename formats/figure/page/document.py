@@ -1,15 +1,7 @@
-"""HTML documents that consist of a single file, and integers as compressed text in them."""
+"""HTML documents that consist of a single file."""
 
-import base64
 import html
-import zlib
-from dataclasses import dataclass
 from importlib.resources import files
-
-import numpy as np
-from numpy.typing import NDArray
-
-from meshonet.geometry.arrays import Floats
 
 _PAGE = """<!doctype html>
 <html lang="en">
@@ -37,59 +29,3 @@ def document(title: str, style: str, body: str) -> str:
 def file_text(package: str, name: str) -> str:
     """Return the content of a text file in a package."""
     return (files(package) / name).read_text(encoding="utf-8")
-
-
-_PARTS = 256
-"""Number of rounding steps in the shortest edge."""
-_MOST = 2.0**50
-"""Largest integer coordinate; differences of such numbers are exact in JavaScript."""
-
-
-@dataclass(frozen=True)
-class Packed:
-    """Base64 text of integers, their number, and the number of bytes of each."""
-
-    text: str
-    count: int
-    width: int
-
-
-def packed(numbers: NDArray[np.integer]) -> Packed:
-    """Return integers (n,) in packed form; their magnitude must be below 2^50.
-
-    Neighbouring values of a grid differ little, so their differences are stored; ``unpack.js`` restores
-    them::
-
-        numbers -> differences -> unsigned (0, -1, 1, -2 ... as 0, 1, 2, 3 ...) -> bytes of equal significance
-        together -> deflate -> base64
-
-    >>> packed(np.array([5, 6, 7])).width
-    1
-    """
-    steps: NDArray[np.int64] = np.diff(numbers.astype(np.int64), prepend=np.int64(0)).astype(np.int64)
-    plain = ((steps << 1) ^ (steps >> 63)).astype("<u8")
-    most = int(plain.max(initial=0))
-    width = max(1, (most.bit_length() + 7) // 8)
-    planes = plain.view(np.uint8).reshape(-1, 8)[:, :width].T
-    text = base64.b64encode(zlib.compress(planes.tobytes(), 6)).decode("ascii")
-    return Packed(text, len(numbers), width)
-
-
-def rounding_step(shortest: float, extent: float) -> float:
-    """Return the step to which coordinates are rounded, a fraction of the `shortest` edge of a grid."""
-    smallest = extent / _MOST
-    return max(2.0 ** np.floor(np.log2(max(shortest / _PARTS, smallest, 1e-300))), smallest)
-
-
-def shortest_edge(nodes: Floats, extent: float) -> float:
-    """Return the length of the shortest edge of `nodes` (..., d).
-
-    Edges of zero length, as at a pole, are ignored.
-    """
-    least = extent
-    for axis in range(nodes.ndim - 1):
-        step = np.diff(nodes, axis=axis)
-        length = np.sqrt(np.square(step, out=step).sum(axis=-1))
-        length = length[length > 1e-14 * extent]
-        least = min(least, float(length.min(initial=extent)))
-    return least

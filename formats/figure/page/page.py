@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.formats.figure.page.document import Packed, document, file_text
+from meshonet.formats.figure.page.document import document, file_text
+from meshonet.formats.figure.page.packing import Packed
 from meshonet.formats.figure.page.scene import Scene, scene_of
 from meshonet.formats.figure.slices import Slice, cut, layers
 from meshonet.formats.figure.view import SEEN_FROM, View, check_flat

@@ -21,7 +21,7 @@ from meshonet.formats.figure.page.cells import (
     scale_of,
     worst_places,
 )
-from meshonet.formats.figure.page.document import Packed, packed, rounding_step, shortest_edge
+from meshonet.formats.figure.page.packing import Packed, packed, rounding_step, shortest_edge
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch

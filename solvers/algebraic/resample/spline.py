@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import power, product
-from meshonet.kernels._native import sampled_lines
 
 
 @lru_cache(maxsize=16)
@@ -107,15 +106,3 @@ def spline_matrix(m: int, n: int, periodic: bool = False) -> Floats:
     matrix[rows, first + 1] += weights[:, 1]
     matrix += weights[:, 2:3] * bends[first] + weights[:, 3:] * bends[first + 1]
     return matrix
-
-
-def sampled(lines: Floats, arc: Floats, at: Floats) -> Floats:
-    """Return points (k, n, ...) at the arc lengths `at` (k, n) of lines (k, m, ...), on piecewise cubics.
-
-    The tangents of the cubics at nodes are those of parabolas through three nodes. `arc` (k, m) are the arc
-    lengths of the nodes. Arc lengths in `at` that exceed the length of a line give its last node.
-    """
-    points = np.empty((*at.shape, lines.shape[2]))
-    lines, arc, at = (np.ascontiguousarray(each) for each in (lines, arc, np.minimum(at, arc[:, -1:])))
-    sampled_lines(lines, arc, at, points)
-    return points

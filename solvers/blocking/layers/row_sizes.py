@@ -11,7 +11,8 @@ from meshonet.geometry.arrays import Floats, distinct, shortest_ways, turned_lef
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import gaps_in_front, wall_points
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.domain.wall_turning import SAMPLES, graded, sizes_by_bend
+from meshonet.geometry.domain.wall_turning import SAMPLES, sizes_by_bend
+from meshonet.geometry.spacing.gradual_sizes import graded
 from meshonet.solvers.blocking.layers.layer_rows import last_layers
 from meshonet.solvers.blocking.layers.marched import GAP_PART, SLOPE, check_room
 from meshonet.solvers.blocking.layers.rings import COLUMNS, place

@@ -7,7 +7,8 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.domain.wall_turning import graded, wall_bend
+from meshonet.geometry.domain.wall_turning import wall_bend
+from meshonet.geometry.spacing.gradual_sizes import graded
 
 TURN = np.radians(4.0)
 """Largest angle by which the wall turns along one cell."""

@@ -5,7 +5,8 @@ import numpy as np
 from meshonet.geometry.arrays import turned_left
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
-from meshonet.geometry.domain.wall_turning import graded, sizes_by_bend
+from meshonet.geometry.domain.wall_turning import sizes_by_bend
+from meshonet.geometry.spacing.gradual_sizes import graded
 from meshonet.solvers.refinement.size_metric import SizeMetric
 
 TURN = np.radians(20.0)

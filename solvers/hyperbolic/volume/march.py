@@ -29,13 +29,14 @@ from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
 from meshonet.geometry.threads import MANY_VISITS, threads_for
 from meshonet.kernels._native import respace_lines, surface_march
-from meshonet.solvers.hyperbolic.volume.blocks import blocks_of, check_parts, volume_grid
+from meshonet.solvers.hyperbolic.volume.blocks import blocks_of, volume_grid
 from meshonet.solvers.hyperbolic.volume.graph import MarchGraph, march_graph
 from meshonet.solvers.hyperbolic.volume.limited_growth import (
     growth_of_levels,
     limit_growth,
     slower_steps,
 )
+from meshonet.solvers.hyperbolic.volume.parts import check_parts
 from meshonet.solvers.hyperbolic.volume.settings import Smoothing, VolumeMarch, attempts_for
 from meshonet.solvers.hyperbolic.volume.symmetry import in_planes, symmetry_of
 from meshonet.solvers.solution import Solution, timed

@@ -12,7 +12,8 @@ from torch import Tensor
 
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.conformal import strip
-from meshonet.solvers.conformal.evaluate import LARGEST, StripGrid, fading, shifts
+from meshonet.solvers.conformal.bisector import LARGEST, fading, shifts
+from meshonet.solvers.conformal.evaluate import StripGrid
 from meshonet.solvers.conformal.strip import MODES, across, wavenumbers
 from meshonet.solvers.neural.differentiable.arguments import batched, check_sides
 from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls

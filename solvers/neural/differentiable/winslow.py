@@ -10,7 +10,9 @@ from meshonet.solvers.elliptic.winslow import left_side
 from meshonet.solvers.neural.differentiable.gmres import gmres
 from meshonet.solvers.neural.differentiable.implicit import bordered, inner
 from meshonet.solvers.neural.differentiable.members import MemberError, check_finite
-from meshonet.solvers.neural.differentiable.resample import arc_lengths, between, interpolated
+from meshonet.solvers.neural.differentiable.resample import between
+from meshonet.solvers.neural.differentiable.separable import Separable
+from meshonet.solvers.neural.differentiable.transfinite import arc_lengths, interpolated
 
 TOL = 1e-12  # preconditioned residual at which a grid is converged, relative to its extent
 ROUGH = 1e-3  # the same on coarse copies
@@ -172,44 +174,3 @@ def _fixed_point(nodes: Tensor) -> Tensor:
         left, alpha, gamma = residual(nodes)
         nodes = nodes - bordered(DAMPING * Separable(alpha, gamma).solve(left))
     return nodes
-
-
-class Separable:
-    """The inverse of the separable operator near α u_ξξ + γ u_ηη, for `alpha`, `gamma` (batch, 1, mi, mj).
-
-    Divided by α the operator has one coefficient, γ/α, which a product p(ξ) q(η) replaces; eigenvectors in
-    both directions diagonalise u_ξξ / p + q u_ηη. It represents cells that are stretched along one direction
-    or both, as towards a wall. Lynch, Rice and Thomas, Numer. Math. 6 (1964) 185-199.
-    """
-
-    def __init__(self, alpha: Tensor, gamma: Tensor) -> None:
-        ratio = torch.log(gamma / alpha)
-        mean = 0.5 * ratio.mean((2, 3), keepdim=True)
-        p = torch.exp(ratio.mean(3, keepdim=True) - mean)
-        q = torch.exp(ratio.mean(2, keepdim=True) - mean)
-        self._scale = 1.0 / (alpha * p)
-        self._xi, self._from_xi, along = _eigenvectors(1.0 / p[:, 0, :, 0])
-        self._eta, self._from_eta, across = _eigenvectors(q[:, 0, 0])
-        self._values = (along[:, :, None] + across[:, None, :])[:, None]
-
-    def solve(self, right: Tensor) -> Tensor:
-        """Return the solutions (batch, 2, mi, mj) for `right` of the same shape."""
-        modes = (self._from_xi @ (right * self._scale) @ self._from_eta.mT) / self._values
-        return self._xi @ modes @ self._eta.mT
-
-    def solve_transposed(self, right: Tensor) -> Tensor:
-        """Return the solutions (batch, 2, mi, mj) of the transposed system."""
-        modes = (self._xi.mT @ right @ self._eta) / self._values
-        return self._scale * (self._from_xi.mT @ modes @ self._from_eta)
-
-
-def _eigenvectors(factor: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-    """Return eigenvectors, their inverse (batch, 1, m, m) and eigenvalues (batch, m) of diag(`factor`) D².
-
-    D² is the second difference with zero values beyond both ends; `factor` (batch, m) is positive.
-    """
-    root = factor.sqrt()
-    beside = root[:, 1:] * root[:, :-1]
-    matrix = torch.diag_embed(-2.0 * factor) + torch.diag_embed(beside, 1) + torch.diag_embed(beside, -1)
-    values, vectors = torch.linalg.eigh(matrix)
-    return (root[:, :, None] * vectors)[:, None], (vectors / root[:, :, None]).mT[:, None], values

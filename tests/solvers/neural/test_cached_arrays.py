@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from meshonet.solvers.conformal import evaluate, strip
+from meshonet.solvers.conformal import fourier_sums, strip
 from meshonet.solvers.neural.models.fourier import _waves
 from meshonet.solvers.neural.quad import network, picard
 
@@ -16,7 +16,7 @@ from meshonet.solvers.neural.quad import network, picard
     [
         lambda: vars(strip.across()).values(),
         lambda: [strip.interpolation(np.linspace(0.0, 1.0, 5).tobytes())],
-        lambda: evaluate._transform(256),
+        lambda: fourier_sums._transform(256),
         lambda: [network.rim_factor(9, 9, False)],
         lambda: picard._padded(9, False),
         lambda: picard._transform(9, True),

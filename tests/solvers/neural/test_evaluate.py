@@ -6,7 +6,8 @@ import pytest
 from meshonet.geometry.arrays import planar_nodes
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.conformal.evaluate import SHARPNESS, TAPS, StripGrid, columns
+from meshonet.solvers.conformal.evaluate import StripGrid
+from meshonet.solvers.conformal.fourier_sums import SHARPNESS, TAPS, columns
 from meshonet.solvers.conformal.strip import MODES, across, harmonic, interpolation, modes, wavenumbers
 from meshonet.solvers.conformal.walls import walls
 

@@ -11,7 +11,7 @@ from families import arches, rings
 
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.fit.loop import Progress
-from meshonet.solvers.neural.fit.operators import PhysicsTask
+from meshonet.solvers.neural.fit.physics_task import PhysicsTask
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.fit.train import train

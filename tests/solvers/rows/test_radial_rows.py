@@ -15,7 +15,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.checkmesh import faces
 from meshonet.geometry.rows.row import Row
-from meshonet.solvers.pipeline.stacked import make_row
+from meshonet.solvers.pipeline.rows import make_row
 from meshonet.solvers.rows.request import RowRequest
 
 FIRST = 1e-3

@@ -7,7 +7,7 @@ import pytest
 from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.rows.row import Row
-from meshonet.solvers.pipeline.stacked import make_row
+from meshonet.solvers.pipeline.rows import make_row
 from meshonet.solvers.rows.middle_section import folded_section
 from meshonet.solvers.rows.request import RowRequest
 from meshonet.solvers.rows.section_plane import SectionPlane

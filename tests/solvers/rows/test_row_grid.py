@@ -12,7 +12,7 @@ import radial_rows
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.rows.row import Row
-from meshonet.solvers.pipeline.stacked import make_row
+from meshonet.solvers.pipeline.rows import make_row
 from meshonet.solvers.rows.key_tables import key_tables
 from meshonet.solvers.rows.request import RowRequest, row_request
 

@@ -1,0 +1,47 @@
+"""Places on a loop relative to its corners, which carry over to other loops with as many corners."""
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.domain.loop import Loop
+
+
+def place_at(loop: Loop, arc: Floats) -> Floats:
+    """Return the places (n,) of points of a `loop` at the arc lengths `arc` (n,).
+
+    The integer part of a place is the number of the corner before the point. The fractional part is the
+    distance from this corner, divided by the arc length to the next corner; it is exactly 0 at a corner. The
+    same place can therefore be found on another loop with as many corners. On a loop without corners a place
+    is the arc length from its first point, divided by the length of the loop.
+    """
+    arc = np.mod(arc, loop.length)
+    if not loop.corners:
+        return np.asarray(arc / loop.length)
+    begins, lengths = _stretches(loop)
+    number = (np.searchsorted(begins, arc, side="right") - 1) % len(begins)
+    part = np.mod(arc - begins[number], loop.length) / lengths[number]
+    return np.asarray(number + np.minimum(part, np.nextafter(1.0, 0.0)))
+
+
+def arc_at(loop: Loop, place: Floats) -> Floats:
+    """Return the arc lengths (n,), in [0, length), of places (n,)."""
+    if not loop.corners:
+        return np.asarray(np.mod(place, 1.0) * loop.length)
+    begins, lengths = _stretches(loop)
+    number = np.floor(place).astype(np.intp)
+    arc = begins[number % len(begins)] + (place - number) * lengths[number % len(begins)]
+    return np.asarray(np.where(arc >= loop.length, arc - loop.length, arc))
+
+
+def cells_at(loop: Loop, place: Floats) -> Indices:
+    """Return the number (n,) of cells that should meet at each of the places (n,); 0 except at corners."""
+    number = np.floor(place).astype(np.intp)
+    if not loop.corners:
+        return np.zeros(len(place), dtype=np.intp)
+    return np.where(place == number, loop.corner_cells[number % len(loop.corners)], 0)
+
+
+def _stretches(loop: Loop) -> tuple[Floats, Floats]:
+    """Return the arc lengths at which the stretches between corners begin, and their lengths."""
+    begins = loop.corner_arcs
+    return begins, np.diff(begins, append=begins[0] + loop.length)

@@ -1,0 +1,47 @@
+"""Corners of profiles, the same ones along the span."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, middle
+from meshonet.geometry.polygon.corners import SHARP
+from meshonet.geometry.rows.profile import BladeProfile
+
+BASE_TURN = 0.7
+"""The two points with the largest turns at an edge are the corners of a base if their turns are at least this
+fraction of all turns at the edge.
+"""
+
+
+def alike(profiles: Sequence[BladeProfile]) -> list[BladeProfile]:
+    """Return the profiles with equal numbers of corners at each edge, and equal places u of these corners.
+
+    Whether a turn counts as a corner depends on the points around it, so that profiles of one blade may
+    differ: lines of equal places would then jump along the span.
+    """
+    counts = np.array([profile.corner_counts for profile in profiles])
+    if not (counts == counts[0]).all():
+        same = [_count(profiles, counts[:, k], bool(k)) for k in (0, 1)]
+        profiles = [profile.cornered(same) for profile in profiles]
+    places = common_corners(profiles)
+    return [profile.aligned(places) for profile in profiles] if len(places) else list(profiles)
+
+
+def _count(profiles: Sequence[BladeProfile], counts: Floats, trailing: bool) -> int:
+    """Return how many corners an edge has; `counts` (p,) are those of each profile."""
+    if (counts == counts[0]).all():
+        return int(counts[0])
+    turn, part = np.array([profile.sharpness(trailing) for profile in profiles]).T
+    return 2 if middle(part) > BASE_TURN else int(middle(turn) > SHARP)
+
+
+def common_corners(profiles: Sequence[BladeProfile]) -> Floats:
+    """Return the median places u (c,), from -0.25 to 0.75, of the corners of profiles.
+
+    Empty if the profiles have no corners, or different numbers of corners.
+    """
+    places = [profile.corner_places() for profile in profiles]
+    if len({len(each) for each in places}) != 1 or not len(places[0]):
+        return np.empty(0)
+    return np.array([middle(column) for column in np.array(places).T])

@@ -1,0 +1,33 @@
+"""Profiles of one blade that are a whole pitch or a whole turn apart around the axis."""
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+
+_WHOLE = 0.2
+"""Largest difference, in pitches, between a displacement and whole pitches; a larger one is lean of the
+blade.
+"""
+
+
+def whole_pitches(angles: Floats, heights: Floats, pitch: float) -> Floats:
+    """Return the numbers (p,) of pitches between each profile and the blade to which most profiles belong.
+
+    Blades may lean by more than a pitch. A step from one profile to the next therefore counts as a
+    displacement only if it exceeds the lean between other profiles by whole pitches.
+
+    Parameters
+    ----------
+    angles : (p,) mean theta of each profile in radians.
+    heights : (p,) positions of the profiles along the span, ascending.
+    pitch : angle from blade to blade.
+    """
+    steps, rises = np.diff(angles), np.diff(heights)
+    away = np.zeros(len(angles))
+    for k, step in enumerate(steps):
+        lean = np.append(np.delete(steps / rises, k) * rises[k], 0.0)
+        off = (step - lean)[np.abs(step - lean).argmin()] / pitch
+        whole = np.rint(off)
+        if abs(off - whole) < _WHOLE:
+            away[k + 1 :] += whole
+    return np.asarray(away - np.sort(away)[(len(away) - 1) // 2])

@@ -1,0 +1,39 @@
+"""Keys of the samples of a dataset: stems of files, each once."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from meshonet.formats.hdf5.names import UniqueNames
+from meshonet.formats.inputs import is_dataset
+from meshonet.formats.registry import is_designation
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet_cli.batch.item import Item
+
+
+class Keys:
+    """The keys of the samples that a dataset, or a part of one, has so far."""
+
+    def __init__(self) -> None:
+        self._names = UniqueNames()
+
+    def named(self, item: Item[Any], what: Any) -> Any:
+        """Return the grid or boundary `what` with its key as name.
+
+        A different earlier name becomes its title.
+        """
+        if not isinstance(what, Grid | Boundary):
+            return what
+        key = self._names.add(item.stem if _of_file(item) else what.name)
+        if key == what.name:
+            return what
+        return replace(what, name=key, origin=replace(what.origin, title=what.origin.title or what.name))
+
+
+def _of_file(item: Item[Any]) -> bool:
+    """Return whether a member is all of a file that is no dataset, whose samples have keys of their own."""
+    source = item.source
+    if not item.only or source == "-" or is_designation(source) or is_dataset(source):
+        return False
+    return bool(item.called or Path(source).suffix) or Path(source).is_file()

@@ -1,0 +1,64 @@
+"""Aircraft: the grid around a body with its wings, measured."""
+
+import math
+
+from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.aircraft.dimensions import aircraft_dimensions
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.threads import limited_to
+from meshonet.solvers.aircraft.request import AircraftRequest, aircraft_request
+from meshonet.solvers.pipeline.result import Result, judged
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.stages import stage
+
+_REMEDY = "use more nodes {around}, or a larger {first_cell}"  # where cells fold
+
+_HIGHEST = 0.1
+"""Largest height of first cells, in chords of the smallest section."""
+
+_REACH = 0.8
+"""Largest distance of the tip of a wing from the middle of the body, relative to that of the far field."""
+
+
+def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) -> Result:
+    """Return the grid around an aircraft or its half, with its quality.
+
+    Raises InputError: a wing that does not begin in the body, does not leave it or reaches the far field.
+    Raises NoValidGridError: cells are folded, unless folded cells are allowed.
+    """
+    request = request or aircraft_request()
+    seconds: dict[str, float] = {}
+    sizes = aircraft_dimensions(aircraft, request.height(), request.far_field)
+    _refuse_thick_cells(aircraft, sizes.first_cell)
+    _refuse_far_tip(aircraft, sizes.far_field)
+    with limited_to(request.threads):
+        with stage("load", seconds):
+            from meshonet.solvers.aircraft.aircraft_grid import planned_grid
+        with stage("grid", seconds):
+            grid, growth, notes = planned_grid(aircraft, request)
+        note = request.height_note(f"on a chord of {sizes.chord:.6g}", sizes.chord)
+        notes = (*notes, *[note] * bool(note))
+        solution = Solution(grid, "aircraft", notes=notes, dimensions=sizes, growth=growth)
+        return judged(solution, seconds, request, remedy=_REMEDY)
+
+
+def _refuse_thick_cells(aircraft: Aircraft, first: float) -> None:
+    """Raise InputError for first cells that are high beside a section of a wing."""
+    shortest = min(float(wing.chords.min()) for wing in aircraft.wings)
+    if first > _HIGHEST * shortest:
+        problem = f"first cells are {first:g} high at a wing with a chord of {shortest:g}"
+        raise InputError(problem, f"use at most {_HIGHEST:g} of it", parameter="first_cell")
+
+
+def _refuse_far_tip(aircraft: Aircraft, far: float) -> None:
+    """Raise InputError for a wing whose tip is not far enough from a far field at this distance."""
+    body = aircraft.body
+    middle = 0.5 * float(body.meridian[0, 0] + body.meridian[-1, 0])
+    for wing, (name, _) in zip(aircraft.wings, aircraft.patches, strict=True):
+        x, y, z = wing.end
+        away = math.hypot(x - middle, y - body.y, z)
+        if away > _REACH * far:
+            at = f"the tip of the {name} is {away:.6g} from the middle of the body"
+            raise InputError(
+                f"{at}, and the far field {far:.6g}", "put it further away", parameter="far_field"
+            )

@@ -1,0 +1,66 @@
+"""Target lengths of the edges of a given grid: its own, with jumps evened out."""
+
+import math
+
+import numpy as np
+
+from meshonet.geometry.arrays import Bools, Floats
+from meshonet.geometry.elementary import exp, log
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.kernels._native import line_neighbours
+
+THIN = 3.0
+"""Aspect ratio above which a boundary cell belongs to layers, whose heights are kept."""
+
+_ROUNDS = 200  # of diffusion, at the most
+
+_SHARE = 0.17
+"""Fraction of the excess ratio between two edges by which each changes in a round; an edge has up to four
+neighbours.
+"""
+
+
+def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
+    """Return target lengths (e,) of `mesh.edges` whose neighbours differ by about the factor `most` at most.
+
+    ::
+
+        given    o---o---o---o---o-o-o-o-o-o      if neighbours differ by more than a factor, the
+        target   o---o---o--o--o-o-o-o-o-o-o      excess is diffused along and across grid lines
+
+    Only ratios of neighbours matter. Edges that leave thin first cells at the boundary, and edges of a
+    boundary with fixed nodes, keep their lengths.
+
+    Nodes of the boundary are fixed unless they `slide`.
+    """
+    own = log(mesh.edge_lengths)
+    cap, stays = math.log(most), thin_heights(mesh)
+    if not slide:
+        stays |= mesh.on_wall
+    numbers = np.arange(len(mesh.nodes)), np.arange(len(mesh.edges))
+    beside, _ = line_neighbours(
+        np.ascontiguousarray(mesh.quads), np.ascontiguousarray(mesh.edge_of), *numbers
+    )
+    moving = np.flatnonzero(~stays)
+    beside = beside[moving]
+    for _ in range(_ROUNDS):
+        step = own[beside] - own[moving, None]
+        excess = step - np.clip(step, -cap, cap)
+        if not excess.any():
+            break
+        own[moving] += _SHARE * excess.sum(axis=1)
+    return exp(own)
+
+
+def thin_heights(mesh: QuadMesh) -> Bools:
+    """Return a mask (e,) of the edges that lead from the boundary across a thin cell.
+
+    Such a cell is `THIN`, and short in the direction of the edge.
+    """
+    cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
+    ratio = mesh.aspects(mesh.edge_lengths)[cell]
+    thin = np.where(side % 2 == 0, ratio < 1.0 / THIN, ratio > THIN)
+    beside = mesh.edge_of[cell[:, None], (side[:, None] + [1, 3]) % 4][thin]
+    heights = np.zeros(len(mesh.edges), dtype=bool)
+    heights[beside.ravel()] = True
+    return np.asarray(heights & (mesh.wall_nodes[mesh.edges].sum(axis=1) == 1))
