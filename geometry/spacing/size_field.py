@@ -16,6 +16,9 @@ HURRY = 1.3
 """Factor on the growth if nodes are few; only if this is not enough, curvature and nose are resolved more
 coarsely.
 """
+RUSH = math.log(1.18) / GROWTH
+"""Factor on the growth from the corners of a base on, whose cells are small, if nodes are few."""
+_LONGEST = 2.5  # largest cell between the corners of a base, in mean cells
 _SCARCE = 5.0  # coarsening of curvature and nose beyond which growth is increased again
 _RAMP = 3.0  # cells over which growth sets in behind a trailing edge with a prescribed size
 _EDGE = 0.025  # fraction of the wall at either end where curvature asks for no cell below the edge's size
@@ -37,6 +40,7 @@ def arcs_by_curvature(
     exact: tuple[bool, bool],
     hurried: bool = True,
     at_edge: float = 0.0,
+    based: bool = False,
 ) -> Floats:
     """Return arc lengths (cells + 1,) from one end of the trailing edge around the nose to the other.
 
@@ -46,7 +50,9 @@ def arcs_by_curvature(
     number of cells. If cells are too few for the first three, those of curvature and of the leading edge are
     increased, and growth is up to `HURRY` times as fast (with `hurried`, as for C grids, whose wake takes
     half of the nodes). If these are more than `_SCARCE` times as large, growth increases again, and in the
-    end all sizes are scaled up.
+    end all sizes are scaled up. With `based`, cells are also too few if the largest size exceeds `_LONGEST`
+    mean cells; unless `at_edge` is given, growth from the trailing edge on is then up to `RUSH` times as
+    fast, before other sizes change.
 
     Parameters
     ----------
@@ -58,14 +64,22 @@ def arcs_by_curvature(
         unless twelve corrections of the sizes near the edge do not suffice.
     hurried : whether growth may be `HURRY` times as fast if cells are too few.
     at_edge : logarithm of the growth factor of cells from the trailing edge on, if larger than `GROWTH`.
+    based : whether the ends are corners of a base, at which cells are small.
     """
     lower, nose, upper = stations
     s = _samples(stations, steps)
     size = TURN / _bend(curve, s, chord)
     hurry = HURRY if hurried else 1.0
-    known = _affordable(
-        cells, s, lambda fewer: _known(s, size, stations, steps, exact[0], fewer, hurry, at_edge)
-    )
+    most = RUSH if based and not at_edge else 1.0
+    least = _quartic(np.full_like(s, _LONGEST * (upper - lower) / cells)) if based else 0.0
+
+    def wanted(factor: float) -> Floats:
+        rush = min(factor, most)
+        return least + _known(
+            s, size, stations, steps, exact[0], factor / rush, hurry, at_edge or rush * GROWTH
+        )
+
+    known = _affordable(cells, s, wanted)
     mend = np.zeros(2)
     away = np.minimum(s - lower, upper - s), np.abs(s - nose)
     for _ in range(12):

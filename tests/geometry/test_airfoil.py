@@ -197,8 +197,10 @@ def test_a_base_that_takes_most_wall_nodes_has_a_note() -> None:
     rounding = [[1.0, 0.1], [0.9997, 0.1005], [0.998, 0.104]]
     upper = np.concatenate([upper[upper[:, 0] < 0.99], rounding[::-1]])
     section = Airfoil(np.concatenate([upper[::-1], (upper * [1, -1])[1:]]))
-    crowded = Sampling(129, 65, "o", "curvature")
+    crowded = Sampling(129, 65, "o", "curvature", te_spacing=1e-6)
     (note,) = (n for n in section.boundary(crowded).notes if "wall nodes lie on the base" in n)
     spacing = float(re.search(r"use \{te_spacing\} (\S+) or more nodes", note)[1])  # type: ignore[index]
     notes = section.boundary(replace(crowded, te_spacing=spacing)).notes
     assert not [n for n in notes if "wall nodes lie on the base" in n]
+    notes = section.boundary(replace(crowded, te_spacing=None, base_nodes=81)).notes
+    assert [n for n in notes if n.endswith("use fewer {base_nodes}")]

@@ -106,3 +106,19 @@ def test_the_angles_of_a_base_are_those_of_the_outline_in_coarsened_grids(ni: in
             edge = ring[k + step] - ring[k]
             lean = np.degrees(np.arctan2(edge[0] * way[1] - edge[1] * way[0], (edge * way).sum()))
             assert abs(lean) < 1.0
+
+
+@pytest.mark.parametrize(("base", "rounding"), [(0.2, 3e-4), (3e-4, 0.0)])
+def test_a_base_leaves_enough_nodes_to_the_nose_and_the_sides(base: float, rounding: float) -> None:
+    """Cells at its corners are tiny: corners of the wide base are rounded, the other base is thin."""
+    x = 0.5 * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 161)))
+    half = (0.6 if rounding else 0.3) * (np.sqrt(x) - x) + 0.5 * base * x**2
+    half -= 20.0 * rounding * np.exp((x - 1.0) / (4.0 * rounding)) if rounding else 0.0
+    body = Airfoil(np.concatenate([np.stack([x, half], axis=1)[::-1], np.stack([x, -half], axis=1)[1:]]))
+    wall = body.boundary(Sampling(257, 60, "o", "curvature")).south
+    steps = np.diff(wall, axis=0)
+    lengths = np.hypot(*steps.T)
+    assert lengths.max() < 3.0 * lengths.mean()
+    nose = wall[1:-1, 0] < 0.3
+    turns = np.diff(np.unwrap(np.arctan2(steps[:, 1], steps[:, 0])))
+    assert np.degrees(np.abs(turns[nose]).max()) < 10.0

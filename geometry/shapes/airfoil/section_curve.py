@@ -160,12 +160,13 @@ def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
     return ()
 
 
-def base_note(wall: Floats, corner: Floats, base: float, chord: float) -> tuple[str, ...]:
+def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, asked: bool) -> tuple[str, ...]:
     """Return a note if a base takes most nodes, or if cell sizes jump at its lower corner.
 
     The upper corner mirrors the lower one.
 
-    `wall` (n, 2) runs from the middle of the base, which has length `base` and ends at `corner` (2,).
+    `wall` (n, 2) runs from the middle of the base, which has length `base` and ends at `corner` (2,); the
+    number of its nodes may be `asked` for.
     """
     steps = norms(np.diff(wall, axis=0))
     arcs = np.cumsum(steps)
@@ -175,8 +176,8 @@ def base_note(wall: Floats, corner: Floats, base: float, chord: float) -> tuple[
         usual = 0.25 * arcs[-1] / len(arcs) / chord
         return (
             f"{crowd} of {len(wall)} wall nodes lie on the base or within {BESIDE:g} chords of it, and the "
-            f"longest cell elsewhere has {steps.max() / chord:.2g} chords: use {{te_spacing}} {usual:.1g} or "
-            "more nodes",
+            f"longest cell elsewhere has {steps.max() / chord:.2g} chords: use "
+            + ("fewer {base_nodes}" if asked else f"{{te_spacing}} {usual:.1g} or more nodes"),
         )
     k = int(np.argmin(np.hypot(*(wall[: len(wall) // 2] - corner).T)))
     if k == 0:

@@ -48,7 +48,9 @@ _BASE_JUMP = 4.0
 fold.
 """
 _ROUND_CELLS = 14  # fewest cells on half a rounded base, if there are 16 times as many in total
-_BASE_SHARE = 0.35  # largest fraction of all cells on the base
+_CROWDED, _BASE_SHARE = 0.2, 0.3
+"""Fraction of all cells on a base from which on they may grow by `_CROWDED_GROWTH`, and the largest one."""
+_CROWDED_GROWTH = 1.25
 _LEAN = math.radians(0.8)
 """Largest angle between a surface at a corner of the base and its first cells, also in the grid coarsened
 by four.
@@ -85,6 +87,7 @@ def planned_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
             steps=(plan.te, plan.le),
             exact=(sampling.te_spacing is not None or plan.half > 0, sampling.le_spacing is not None),
             hurried=sampling.te_spacing is not None,
+            based=plan.half > 0,
         )
     else:
         q = np.arange(1, math.ceil(plan.cells)) / plan.cells
@@ -117,6 +120,7 @@ def arcs_to_corners(body: Airfoil, cells: int, sampling: Sampling, first: float,
         steps=(te, le),
         exact=(True, sampling.le_spacing is not None),
         at_edge=math.log(ratio),
+        based=True,
     )
     return on_corners(arcs, body.inner_corners, (), sampling.corner_steps(cells)[0])
 
@@ -244,11 +248,17 @@ def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tu
         return half, half_base / half
     from meshonet.geometry.spacing.tanh_law import TanhLaw
 
-    for half in range(4, most):
-        # cell sizes vary like sech², whose ratio is largest at the corner
+    def growth(half: int, step: float) -> float:
+        """Return the logarithm at the corner, where it is largest, as cell sizes vary like sech²."""
         d = TanhLaw(2 * half * 0.5 * step / half_base, 2 * half * 0.5 * step / half_base).stretch
-        if d / half * math.tanh(0.5 * d) < math.log(_BASE_GROWTH):
+        return d / half * math.tanh(0.5 * d)
+
+    for half in range(4, most):
+        limit = _BASE_GROWTH if 2 * half <= _CROWDED * cells else _CROWDED_GROWTH
+        if growth(half, step) < math.log(limit):
             return half, step
+    while not fixed and growth(most, step) > math.log(_CROWDED_GROWTH):
+        step *= 1.1
     return most, step
 
 
