@@ -46,6 +46,27 @@ MESHONET_INLINE int divisible(double *pivot, const int b)
     return pivot[0] != 0.0 && isfinite(pivot[0]) && pivot[b * b - 1] != 0.0 && isfinite(pivot[b * b - 1]);
 }
 
+/* Two doubles in a register; see lanes.h. */
+typedef double Pair __attribute__((vector_size(16), aligned(8), may_alias));
+#define PAIR(p) (*(Pair *)(p))
+#define PAIR_OF(p) (*(const Pair *)(p))
+
+/* y -= yi l^T for each of `count` blocks l (b, b) of a column, in columns, and the block y of its row. */
+MESHONET_INLINE void subtract(const double *restrict l, const int *restrict row, ptrdiff_t count,
+                              const double *yi, const int b, double *restrict y)
+{
+    for (ptrdiff_t p = 0; p < count; p++, l += b * b) {
+        double *to = y + (ptrdiff_t)row[p] * b * b;
+        if (b == 1) {
+            to[0] -= l[0] * yi[0];
+        } else {
+            const Pair left = PAIR_OF(l), right = PAIR_OF(l + 2);
+            PAIR(to) = PAIR(to) - left * yi[0] - right * yi[1];
+            PAIR(to + 2) = PAIR(to + 2) - left * yi[2] - right * yi[3];
+        }
+    }
+}
+
 MESHONET_INLINE ptrdiff_t factor(const SparsePattern *a, const double *values, const int b, int *lower_row,
                                  double *lower, double *pivots)
 {
@@ -79,13 +100,7 @@ MESHONET_INLINE ptrdiff_t factor(const SparsePattern *a, const double *values, c
                 y[i * size + s] = 0.0;
             }
             divide(pivots + i * size, yi, b, b, entry);
-            for (ptrdiff_t p = a->fill[i]; p < end[i]; p++) {
-                double *to = y + (ptrdiff_t)lower_row[p] * size;
-                for (int q = 0; q < b; q++)
-                    for (int r = 0; r < b; r++)
-                        for (int c = 0; c < b; c++)
-                            to[r * b + c] -= lower[p * size + q * b + c] * yi[r * b + q];
-            }
+            subtract(lower + a->fill[i] * size, lower_row + a->fill[i], end[i] - a->fill[i], yi, b, y);
             for (int q = 0; q < b; q++)
                 for (int r = 0; r < b; r++)
                     for (int c = 0; c < b; c++)
