@@ -111,7 +111,7 @@ def wrapped(parts: Floats, least: float = -0.5) -> Floats:
 
 
 def shortest_ways(ways: Floats, length: float | Floats) -> Floats:
-    """Return the shortest ways (...) between the same points of closed curves: at most half of each `length`.
+    """Return `ways` (...) along closed curves, each replaced by the shortest way between the same points.
 
     >>> shortest_ways(np.array([3.0, -3.0, 1.0]), 4.0).tolist()
     [-1.0, 1.0, 1.0]
@@ -133,12 +133,12 @@ def arc_parts(line: Floats) -> Floats:
 
 
 def smooth_step(t: Floats) -> Floats:
-    """Return t² (3 - 2 t): from 0 at 0 to 1 at 1, with slope 0 at both."""
+    """Return t² (3 - 2 t), which increases from 0 at t = 0 to 1 at t = 1, with slope 0 at both ends."""
     return np.asarray(t * t * (3.0 - 2.0 * t))
 
 
 def running_sums(values: Floats, count: int) -> Floats:
-    """Return the sums (n - count + 1,) of each `count` consecutive `values` (n,)."""
+    """Return the sums (n - count + 1,) of every `count` consecutive `values` (n,)."""
     last = len(values) - count + 1
     return np.asarray(sum(values[k : last + k] for k in range(count)))
 
@@ -195,7 +195,7 @@ def read_only(values: AnyArray) -> AnyArray:
 
 
 def array_like(values: NDArray[Any], like: Any, xp: Any) -> Any:
-    """Return `values` as an array of the module `xp` (numpy or torch), with device and precision of `like`.
+    """Return `values` as an array of `xp` (numpy or torch), on the device and in the precision of `like`.
 
     Complex values stay complex and real ones real, whatever `like` is.
     """

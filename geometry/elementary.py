@@ -60,7 +60,7 @@ def modulus(z: Any) -> Any:
 
 
 def times(a: Any, b: Any) -> Any:
-    """Return the product of complex numbers, in which each product and each sum of real numbers is rounded.
+    """Return the product of complex numbers; each real product and each real sum in it is rounded.
 
     On some processors NumPy uses fused multiply-adds instead. Real numbers and tensors are multiplied as
     usual.

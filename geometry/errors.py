@@ -26,7 +26,7 @@ class MeshonetError(Exception):
 
 
 class InputError(MeshonetError):
-    """Error for an input that cannot be used. The message has the form ``place: problem; remedy``.
+    """Error: an input cannot be used. The message has the form ``place: problem; remedy``.
 
     In `problem` and `remedy`, names of parameters are in braces, such as ``{far_field}``. In Python the
     message then contains ``far_field``, on the command line ``--far-field``.
@@ -124,7 +124,7 @@ _SHOWN = 3  # of the worst cells in a message
 
 
 class NoValidGridError(MeshonetError):
-    """Error if the grids of all methods that were tried have folded cells.
+    """Error: the grids of all methods that were tried have folded cells.
 
     Parameters
     ----------
@@ -151,6 +151,6 @@ class NoValidGridError(MeshonetError):
 
 
 class SolverError(MeshonetError):
-    """Error if an iteration diverges or stalls, also after repetition with other settings."""
+    """Error: an iteration diverges or stalls, also when it is repeated with other settings."""
 
     exit_code = 3

@@ -29,7 +29,7 @@ class _Jobs:
 
 
 class Helpers:
-    """At most `most` threads that help the thread which asks for them; they start when there are jobs."""
+    """At most `most` threads that help the calling thread; they start when there are jobs."""
 
     def __init__(self, most: int) -> None:
         self._most, self._idle = most, 0

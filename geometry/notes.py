@@ -29,7 +29,7 @@ def changes_in(notes: Iterable[str]) -> tuple[str, ...]:
 
 
 def change_facts(notes: Iterable[str]) -> dict[str, str]:
-    """Return the changes as an entry of a grid's provenance; an empty dict if there are none."""
+    """Return the changes among `notes` as an entry of a grid's provenance; an empty dict if none."""
     changes = changes_in(notes)
     return {"changes": "; ".join(changes)} if changes else {}
 

@@ -21,10 +21,10 @@ class Summary:
 
 @dataclass(frozen=True)
 class Quality:
-    """Quality of a grid: the number of cells and of folded cells, and every metric by name.
+    """Quality of a grid: the numbers of all cells and of folded cells, and every metric by name.
 
-    `bezier_folded` counts the cells of volumes with a Bezier coefficient of the Jacobian that is not
-    positive: those with folded corners, and those that may be folded inside. It is None in the plane and on
+    `bezier_folded` is the number of cells of volumes for which a Bezier coefficient of the Jacobian is not
+    positive: cells with folded corners, and cells that may be folded inside. It is None in the plane and on
     surfaces.
     """
 

@@ -54,9 +54,9 @@ def threads_for(nodes: int, visits: int = 1) -> int:
 def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made]:
     """Return the results of `work` for each of `items`, computed concurrently if threads are free.
 
-    This saves time if an item takes milliseconds, mostly in kernels or in loops of NumPy. `work` may use its
-    share of the threads itself; threads without an item help others. Items are begun in their order, so the
-    longest should be first.
+    This saves time if an item takes milliseconds, mostly in kernels or in loops of NumPy. `work` may itself
+    use its share of the threads; threads without an item help the others. Items are started in their order,
+    so that the longest should be first.
     """
     inside = _helpers.get()
     if len(items) < 2 or not (inside or thread_count() > 1):
@@ -80,10 +80,10 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
 
 
 def over_blocks(work: Callable[[Item], Made], items: Sequence[Item], nodes: Sequence[int]) -> list[Made]:
-    """Return what `work` returns for each of `items`; `nodes` are their numbers of nodes.
+    """Return the results of `work` for each of `items`; `nodes` are the numbers of nodes of the items.
 
-    Items with many nodes, whose kernels use all threads, are processed one after the other, the others
-    several at once.
+    Items with many nodes, whose kernels use all threads, are processed one after another; the other items are
+    processed several at a time.
     """
     many = [threads_for(count) > 1 for count in nodes]
     few = [item for item, alone in zip(items, many, strict=True) if not alone]

@@ -25,7 +25,7 @@ def less(a: float, b: float) -> bool:
 
 
 def first_least(items: Iterable[Item], key: Callable[[Item], float]) -> Item:
-    """Return the first item with the smallest `key`; keys that differ by rounding only are equal.
+    """Return the first item with the smallest `key`; keys that differ only by rounding count as equal.
 
     Raises ValueError: there are no items.
 
@@ -66,7 +66,7 @@ def ascending(values: Floats) -> Indices:
 def nearest_whole(values: Floats) -> Floats:
     """Return the integers nearest to positive `values`.
 
-    If two are equally near, to rounding, the smaller one.
+    If two integers are equally near, up to rounding, the smaller is returned.
 
     Examples
     --------
@@ -77,10 +77,10 @@ def nearest_whole(values: Floats) -> Floats:
 
 
 def made_unlike(costs: Floats) -> Floats:
-    """Return costs (..., n), perturbed so that hardly any sums of them are equal.
+    """Return costs (..., n), perturbed so that sums of different costs are hardly ever equal.
 
-    A linear programme with these costs then has only one solution. The relative change is far below real
-    differences; it depends on the index only and is computed from the digits of square roots.
+    A linear programme with these costs then has only one solution. The relative perturbation is far below
+    real differences; it depends only on the index, and is computed from the digits of square roots.
     """
     digits = np.mod(1e3 * np.sqrt(np.arange(costs.size) + 0.618), 1.0)
     return costs + _NOISE * np.abs(costs) * digits.reshape(costs.shape)

@@ -10,7 +10,7 @@ Request = TypeVar("Request")
 
 
 def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) -> Request:
-    """Return a request, a dataclass, with the parameters; ``wall_spacing`` is another name of ``first_cell``.
+    """Return a request of class `kind`; ``wall_spacing`` is another name of the field ``first_cell``.
 
     `what` is the name of the grid in messages, such as ``a row``.
 
@@ -23,7 +23,7 @@ def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) 
 
 
 def refuse_given(what: str, options: Mapping[str, object]) -> None:
-    """Raise InputError for the first of the `options`, by name, that is neither None nor False."""
+    """Raise InputError for the first of the named `options` whose value is neither None nor False."""
     for name, value in options.items():
         if value is not None and value is not False:
             raise InputError(f"{what} has no {{{name}}}", f"leave {{{name}}} out")

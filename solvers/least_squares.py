@@ -17,8 +17,8 @@ class Residuals:
     Parameters
     ----------
     derivatives : (k, m) derivatives of each residual with respect to its m unknowns.
-    weight : (k,) second derivatives of the sum with respect to the residuals.
-    slope : (k,) first derivatives of the sum with respect to the residuals.
+    weight : (k,) second derivatives of the total sum with respect to each residual.
+    slope : (k,) first derivatives of the total sum with respect to each residual.
     """
 
     derivatives: Floats
@@ -31,9 +31,10 @@ class NormalEquations:
 
     Parameters
     ----------
-    size : number of unknowns, n, or of pairs of them.
-    kinds : for each kind of residuals the indices (k, m) of the unknowns, -1 for values that are held fixed.
-    block : 2 if indices are of pairs of unknowns, 0 and 1, 2 and 3, ...; then derivatives are (k, 2 m).
+    size : number n of unknowns, or of pairs of unknowns.
+    kinds : for each kind of residuals, the indices (k, m) of the unknowns, -1 for values that are fixed.
+    block : 2 if an index is that of a pair of unknowns (0 and 1, 2 and 3, ...); then derivatives are (k, 2
+        m).
 
     >>> equations = NormalEquations(1, [np.array([[0], [0]])])
     >>> two = Residuals(np.array([[1.0], [1.0]]), np.ones(2), np.array([-1.0, -3.0]))
@@ -62,8 +63,8 @@ class NormalEquations:
     def step(self, residuals: Sequence[Residuals], diagonal: Floats, slope: Floats) -> Floats:
         """Return the changes of the unknowns, (n,) or (2 n,).
 
-        `diagonal` and `slope`, like them, are second and first derivatives of the terms that depend on a
-        single unknown. Raises SolverError: the equations are singular.
+        `diagonal` and `slope`, of the same shape, are the second and the first derivatives of those terms
+        that depend on a single unknown. Raises SolverError: the equations are singular.
         """
         size, block = self._shape
         values, right = np.zeros(self.pattern.entries * block**2), -slope.reshape(size, block)

@@ -99,7 +99,7 @@ class History:
     def of(self, solution: Solution) -> tuple[HistoryRow, ...]:
         """Return the rows of the method of `solution`.
 
-        For a method without cycles, one row with its result.
+        A method without cycles has a single row, with its result.
         """
         rows = tuple(row for row in self._rows if row.method == solution.method)
         if rows:

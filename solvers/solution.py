@@ -50,7 +50,8 @@ class Solution:
     path : stages after the method itself, such as ``("repair",)`` of the guard.
     seconds : wall-clock seconds by stage.
     notes : sentences for the user, for example about a restart.
-    boundary : boundary of the grid if it differs from the given one: marching ends at its own far field.
+    boundary : boundary of the grid if it differs from the given boundary, because marching ends at its own
+        far field.
     confidence : expected error of a network's answer.
     first_cells : prescribed first-cell heights by side, in the unit of the boundary.
     dimensions : dimensions of the blade row or of the aircraft, if the grid belongs to one.

@@ -21,14 +21,15 @@ class SparsePattern:
     Parameters
     ----------
     size : number of rows, n.
-    rows, columns : (m,) position of each entry. (i, j) includes (j, i), so only one of the two may be given.
-        Entries at the same position are added.
-    block : number of unknowns in a row, 1 or 2. Entries of 2 are matrices (2, 2), of 2 n unknowns.
+    rows, columns : (m,) position of each entry. An entry at (i, j) is also the entry at (j, i), so that only
+        one of the two may be given. Entries at the same position are added.
+    block : number of unknowns per row, 1 or 2. With 2, entries are matrices (2, 2), and there are 2 n
+        unknowns.
 
     Attributes
     ----------
     arrays : the pattern in the form of the kernels.
-    slot : (m,) number of the distinct entry to which each entry is added.
+    slot : (m,) index of the distinct entry to which each entry is added.
     entries : number of distinct entries.
 
     >>> pattern = SparsePattern(2, np.array([0, 0, 1]), np.array([0, 1, 1]))
@@ -44,7 +45,7 @@ class SparsePattern:
 
     @property
     def places(self) -> Indices:
-        """When each row (n,) is eliminated. An entry has the rows of the later of its two."""
+        """Position (n,) of each row in the elimination order."""
         order = self.arrays[0]
         places = np.empty(len(order), dtype=np.intp)
         places[order] = np.arange(len(order))
@@ -56,16 +57,16 @@ class SparsePattern:
         return int(self.arrays[4][-1])
 
     def matrix(self, values: Floats) -> SparseMatrix:
-        """Return the matrix with these values (m,) of the entries, in rows of one unknown."""
+        """Return the matrix with the `values` (m,) of the entries, for one unknown per row."""
         summed = np.bincount(self.slot, np.asarray(values, dtype=np.float64), self.entries)
         return SparseMatrix(self, np.asarray(summed, dtype=np.float64))
 
     def singular(self, row: int) -> SolverError:
-        """Return the error for a matrix whose pivot of a row is zero or not finite."""
+        """Return the error for a matrix whose pivot in row `row` is zero or not finite."""
         return SolverError(f"a system of {self.size} equations is singular in row {row}")
 
     def factor(self, values: Floats) -> Factor:
-        """Return the factors of the matrix with these values (m,) of the entries; see `SparseMatrix`."""
+        """Return the factors of the matrix with the `values` (m,) of the entries; see `SparseMatrix`."""
         return self.matrix(values).factor()
 
 
@@ -113,7 +114,7 @@ class Factor:
         return x.reshape(np.shape(right))
 
     def refine(self, matrix: SparseMatrix, right: Floats, steps: int) -> Floats:
-        """Return the solution for a matrix close to A, after `steps` of iterative refinement."""
+        """Return the solution for a `matrix` close to A, after `steps` steps of iterative refinement."""
         x = self.solve(right)
         for _ in range(steps):
             x += self.solve(right - matrix.times(x))

@@ -69,10 +69,10 @@ def stage(name: str, seconds: Timings) -> Iterator[None]:
 
 @contextlib.contextmanager
 def filling(name: str, unit: str, marks: Floats) -> Iterator[None]:
-    """Return a context in which a kernel overwrites the values of `marks` (steps,) one after the other.
+    """Return a context in which a kernel overwrites the values of `marks` (steps,) one after another.
 
-    Values that are not overwritten yet are NaN; watchers are called with the number of the others. The
-    context does not read `marks` after its end.
+    Values that are not yet overwritten are NaN; watchers are called with the number of overwritten values.
+    The context does not read `marks` after its end.
     """
     if not (watchers := _watchers.get()):
         yield

@@ -29,9 +29,9 @@ Row = tuple[Mapping[int, float], float, float]
 
 
 def difference(first: Iterable[int], second: Iterable[int], low: float = 0.0, high: float = 0.0) -> Row:
-    """Return the row that bounds the difference between the sums of two sets of numbers.
+    """Return the constraint that bounds the difference between the sums of two sets of numbers.
 
-    `first` and `second` are indices of numbers; an index in both cancels.
+    `first` and `second` are the indices of the numbers in the two sets; an index in both cancels.
     """
     row: dict[int, float] = {}
     for run, sign in ((first, 1.0), (second, -1.0)):

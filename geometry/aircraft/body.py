@@ -151,11 +151,10 @@ class Body:
         return np.asarray(s)
 
     def arcs_near(self, points: Floats) -> Floats:
-        """Return the arc lengths (n,) at which the meridian is nearest to points (n, 2), x and radius.
+        """Return the arc lengths (n,) at which the meridian is nearest to `points` (n, 2) of x and radius.
 
-        The points are in order from nose to tail.
-
-        At a blunt nose x does not change along the meridian; the arc length identifies a point there too.
+        The points are ordered from nose to tail. At a blunt nose x does not change along the meridian; an arc
+        length still identifies a point there.
         """
         s = arc_lengths(points)
         s *= self.length / s[-1]
@@ -166,7 +165,7 @@ class Body:
         return s
 
     def outside(self, points: Floats) -> Floats:
-        """Return the distances (n,) of points (n, 3) from the surface, along the radius.
+        """Return the distances (n,) of points (n, 3) from the surface, measured along the radius.
 
         Negative inside the body.
         """
@@ -174,7 +173,7 @@ class Body:
         return np.asarray(np.hypot(points[:, 1] - self.y, points[:, 2]) - r)
 
     def beside(self, point: Floats) -> str:
-        """Return as text the distance of a `point` (3,) from the axis, and the body's radius at that x."""
+        """Return a text: the distance of a `point` (3,) from the axis, and the body's radius at that x."""
         away, radius = np.hypot(point[1] - self.y, point[2]), float(np.interp(point[0], *self.meridian.T))
         return f"{away:.4g} from its axis, where its radius is {radius:.4g}"
 

@@ -44,9 +44,9 @@ class BodyCuts:
     Parameters
     ----------
     x : (n,) positions of the planes, ascending, without nose and tail.
-    points : for each plane (k, 2), y and z of the points of the cut from keel to crown.
+    points : for each plane, (k, 2) y and z of the points of the cut, ordered from keel to crown.
     nose, tail : x and y of the two ends of the body.
-    notes : sentences about the caps that were added to ends that are not points.
+    notes : sentences about caps that were added to the ends of the body that are not points.
     """
 
     x: Floats
@@ -57,7 +57,7 @@ class BodyCuts:
 
     @property
     def meridian(self) -> Floats | None:
-        """(n + 2, 2) x and radius from nose to tail.
+        """(n + 2, 2) x and radius of the body, ordered from nose to tail.
 
         None if this is no body of revolution about a line parallel to x.
         """
@@ -72,9 +72,9 @@ class BodyCuts:
 def body_cuts(patches: Sequence[Floats], name: str) -> BodyCuts:
     """Return cuts through the half z >= 0 of a body with the surface patches `patches` (ni, nj, 3).
 
-    There is a cut at the x of each surface node in the plane of symmetry z = 0, and there are further cuts
-    beside corners of keel and crown. An end of the body that is not a point gets a cap, half of an ellipsoid,
-    whose length is half the height of this end.
+    Cuts are made at the x of each surface node in the plane of symmetry z = 0, and also next to corners of
+    keel and crown. An end of the body that is not a point gets a cap: half an ellipsoid, whose length is half
+    the height of this end.
 
     Raises InputError: a surface with holes, or with fewer than 4 nodes in the plane of symmetry.
     """

@@ -29,7 +29,7 @@ coordinates.
 
 @dataclass(frozen=True, eq=False)
 class BodySection:
-    """A cross-section of a body, in a plane of constant x, symmetric to z = 0.
+    """A cross-section of a body in a plane of constant x; it is symmetric about z = 0.
 
     A section without width, height and points is a single point, the nose or the tail of the body.
 
@@ -37,15 +37,14 @@ class BodySection:
     ----------
     x : float
         Position of the plane.
-    y : float, optional
-        Height of the middle of a superellipse; `points` are displaced upwards by this value.
+    y : float, optional Height y of the centre of a superellipse; if `points` are given, they are displaced
+        upwards by this value.
     width, height : float, optional
         Size of a superellipse from side to side, and from keel (lowest point) to crown (highest point).
     exponent : float, optional
         Exponent of the superellipse: 2 gives an ellipse, a larger value a rectangle with rounded corners.
-    points : array, optional
-        Points (n, 2), y and z, of the half z >= 0, from keel to crown or from crown to keel. They replace
-        width, height and exponent.
+    points : array, optional Points (n, 2) of y and z on the half z >= 0, ordered from keel to crown or from
+        crown to keel. They replace width, height and exponent.
 
     Raises
     ------
@@ -110,9 +109,9 @@ class BodySection:
 
     @property
     def shape(self) -> Floats:
-        """Distances (ANGLES,) from the middle at equal angle steps from keel to crown; 1 for an ellipse.
+        """Distances (ANGLES,) from the middle, at equal steps of the angle from keel to crown; 1 if elliptic.
 
-        Angle and distance are measured after scaling half the width and half the height to 1.
+        Angles and distances are measured after half the width and half the height have been scaled to 1.
         """
         even = np.linspace(0.0, math.pi, ANGLES)
         if self.points is not None:

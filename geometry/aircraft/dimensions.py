@@ -14,8 +14,8 @@ class AircraftDimensions:
     Parameters
     ----------
     length, width, height : of the body.
-    diameter : the larger of width and height, which are the same for a body of revolution.
-    spans : distance from tip to tip of each wing, both halves together, by the name of its patch.
+    diameter : the larger of width and height, which are equal for a body of revolution.
+    spans : for each wing, by the name of its patch, the distance from tip to tip of both halves.
     fins : height y of the tip of each fin, by the name of its patch.
     chord : longest chord of the first wing, the unit of the options for first-cell height and far field.
     first_cell : height of the cells at the walls, in the unit of the file.
@@ -52,7 +52,7 @@ class AircraftDimensions:
 def aircraft_dimensions(aircraft: Aircraft, first_cell: float, far_field: float) -> AircraftDimensions:
     """Return the dimensions of an aircraft and of its grid.
 
-    `first_cell` and `far_field` are in longest chords.
+    `first_cell` and `far_field` are in units of the first wing's longest chord.
     """
     chord, body = aircraft.wing.chord, aircraft.body
     wings = [(name, wing) for (name, _), wing in zip(aircraft.patches, aircraft.wings, strict=True)]

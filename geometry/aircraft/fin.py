@@ -17,9 +17,10 @@ _POINTS = 65
 
 @dataclass(frozen=True, eq=False)
 class Fin(Stack):
-    """A fin: symmetric sections in the plane of symmetry of an aircraft, from the inside of the body upwards.
+    """A fin: symmetric sections above each other in the plane of symmetry, the first inside the body.
 
-    The parameters are those of `Stack`. The z of a section is the height, y in the axes of the aircraft.
+    The parameters are those of `Stack`. The z of a section is its height, which is y in the axes of the
+    aircraft.
 
     Raises
     ------

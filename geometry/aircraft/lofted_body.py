@@ -28,11 +28,11 @@ class LoftedBody(Body):
 
     The attributes ``meridian`` and ``y`` describe a similar body of revolution: the radius of a section is
     the mean of half the width and half the height, and the axis passes through the middle of the largest
-    section. Between sections that are far apart, the meridian has further points. At the arc length s of the
-    meridian and the angle theta, a point of the surface is
-    (x, middle - up * shape * cos(theta), across * shape * sin(theta)). Here ``across`` is half the width of
-    the section, ``up`` half the height, ``middle`` the y of the middle (see `sizes`), and ``shape`` is 1
-    for an ellipse. Next to the nose and the tail, cross-sections are ellipses.
+    section. Between sections that are far apart, the meridian has further points. The surface point at the
+    arc length s of the meridian and the angle theta is (x, middle - up * shape * cos(theta), across * shape *
+    sin(theta)). Here ``across`` is half the width of the section, ``up`` half the height, ``middle`` the y of
+    the middle (see `sizes`), and ``shape`` is 1 for an ellipse. Next to the nose and the tail, cross-sections
+    are ellipses.
 
     Parameters
     ----------
@@ -43,9 +43,8 @@ class LoftedBody(Body):
 
     Raises
     ------
-    InputError
-        Fewer than 4 sections; x that does not increase; a first or last section that is not a point, or
-        another section that is a point; very flat sections; sections so different and so far apart that the
+    InputError There are fewer than 4 sections; x does not increase; the first or last section is not a point,
+        or another section is one; a section is very flat; sections are so different and so far apart that the
         surface bulges between them.
 
     Examples
@@ -152,7 +151,7 @@ class LoftedBody(Body):
         return self.meridional(s)[:, 0]
 
     def sizes(self, s: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return half the width, half the height and the middle's y (n,) at arc lengths (n,)."""
+        """Return half the width, half the height, and the y of the middle, (n,) each, at arc lengths (n,)."""
         x, radius = self.meridional(s).T
         flatness = self._flatness(s)
         return radius * flatness, radius * (2.0 - flatness), self._middle(x)
@@ -183,10 +182,7 @@ class LoftedBody(Body):
         return np.stack([self.arc_position(arcs), y, z], axis=-1).reshape(*s.shape, 3)
 
     def outside(self, points: Floats) -> Floats:
-        """Return the distances (n,) of points (n, 3) from the surface, along rays from the middle.
-
-        Negative inside.
-        """
+        """Return distances (n,) of points (n, 3) from the surface, along rays from the middle; inside < 0."""
         s = self.arc_at(points[:, 0])
         across, up, middle = self.sizes(s)
         y, z = points[:, 1] - middle, np.abs(points[:, 2])
@@ -195,7 +191,7 @@ class LoftedBody(Body):
         return np.asarray(np.hypot(y, z) - shape * np.hypot(up * cos(angles), across * sin(angles)))
 
     def beside(self, point: Floats) -> str:
-        """Return as text where a `point` (3,) is, and how large the body's section at the same x is."""
+        """Return a text that says where a `point` (3,) is, and how large the body's section at its x is."""
         across, up, middle = (float(each[0]) for each in self.sizes(self.arc_at(point[:1])))
         low, high = middle - up, middle + up
         return f"where its section is from y={low:.4g} to {high:.4g} and {2.0 * across:.4g} wide"

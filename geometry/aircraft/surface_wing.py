@@ -84,7 +84,7 @@ class SurfaceWing:
 
     @classmethod
     def ending(cls, strips: tuple[Floats, ...], name: str = "wing") -> SurfaceWing:
-        """Return the wing with these `strips`, up to the last station or to where its tip begins to close.
+        """Return the wing with these `strips`, up to its last station or to where its tip begins to close.
 
         In the second case the wing has a note.
         """
@@ -108,7 +108,7 @@ class SurfaceWing:
 
     @property
     def z(self) -> Floats:
-        """(n,) heights z, from the lowest one that all lines along the span reach, up to the tip."""
+        """(n,) heights z, from the lowest height that all lines along the span reach to that of the tip."""
         begin = max(float(strip[0, :, 2].max()) for strip in self.strips)
         return np.linspace(begin, self.height, _LEVELS)
 
@@ -130,7 +130,7 @@ class SurfaceWing:
 
     @cached_property
     def arcs(self) -> Floats:
-        """(strips,) widths of the strips around the section half way along the span, in chords."""
+        """(strips,) width of each strip, measured around the section halfway along the span, in chords."""
         z = self.z[[_LEVELS // 2]]
         lengths = [float(norms(np.diff(at_heights(strip, z)[0], axis=0)).sum()) for strip in self.strips]
         return np.array(lengths) / self.sizes(z)[0]
@@ -151,9 +151,10 @@ class SurfaceWing:
         return number + float(way[int(apart[number].argmax())] / way[-1])
 
     def line(self, place: float) -> Floats:
-        """Return the line (stations, 3) along the span at a place around the section.
+        """Return the line (stations, 3) along the span at a position `place` around the section.
 
-        The integer part of `place` is the number of a strip, the fraction the position across this strip.
+        The integer part of `place` is the index of a strip, the fractional part the position across this
+        strip.
         """
         return self.lines(np.array([place]))[0]
 
@@ -167,9 +168,10 @@ class SurfaceWing:
         return out
 
     def arc(self, place: float) -> float:
-        """Return the length around the section from the upper corner of the base (the blunt edge) to a place.
+        """Return the length around the section from the upper corner of the base to a position `place`.
 
-        It is measured half way along the span, in chords there.
+        The length is measured on the section halfway along the span, in its chords. The base is the blunt
+        trailing edge.
         """
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
@@ -201,7 +203,7 @@ class SurfaceWing:
 
         A wing whose base is thinner gets a note.
 
-        The added thickness increases from 0 at the nose in proportion to the distance from the nose.
+        The thickness that is added is proportional to the distance from the nose.
         """
         thin = float(self.base(self.z).min())
         if thin >= least * (1.0 - 1e-9):

@@ -41,12 +41,12 @@ class _Strip:
 
 
 def wing_strips(patches: Sequence[Floats], name: str) -> tuple[tuple[Floats, ...], tuple[int, ...]]:
-    """Return strips (stations, n, 3) for `SurfaceWing`, and the indices of the patches that close the tip.
+    """Return the strips (stations, n, 3) of a `SurfaceWing`, and the indices of patches that close the tip.
 
-    `patches` (ni, nj, 3) are the surface of a wing in the half z >= 0. Patches of the base are left out: the
-    base lies between the last strip and the first.
+    `patches` (ni, nj, 3) form the surface of a wing in the half z >= 0. Patches on the base are left out,
+    because the base lies between the last strip and the first strip.
 
-    Raises InputError: patches that do not lie next to each other around the wing or along the span.
+    Raises InputError: patches are not next to each other around the wing or along the span.
     """
     turned = [_from_root(patch) for patch in patches]
     spans = np.array([float((nodes[-1, :, 2] - nodes[0, :, 2]).mean()) for nodes in turned])

@@ -41,8 +41,8 @@ class Block:
     """The nodes of one block; they are checked when it is made.
 
     `nodes` are (ni, nj, 2), (ni, nj, nk, 3), or (ni, nj, 3) on a surface, in any unit of length; they are
-    kept as float64 in planar layout (see `meshonet.geometry.arrays`). `finite` says that they are known to be
-    finite; this check is then left out, because it takes a tenth of the run time of some methods.
+    kept as float64 in planar layout (see `meshonet.geometry.arrays`). `finite` says that the nodes are known
+    to be finite; they are then not checked for it, which would take a tenth of the run time of some methods.
 
     Raises InputError: nodes of another shape, fewer than 2 along a direction, or not finite.
     """
@@ -85,7 +85,7 @@ def face_of(values: AnyArray, side: Side) -> AnyArray:
 
 
 def part_of(values: AnyArray, span: Range) -> AnyArray:
-    """Return a view of the entries of `values` (n, ...) or (n, m, ...) of a side in the range `span`."""
+    """Return a view of those `values` (n, ...) or (n, m, ...) of a side that are in the range `span`."""
     for axis, (first, last) in enumerate(span):
         values = values[(slice(None),) * axis + (slice(first, last + 1),)]  # type: ignore[assignment]
     return values

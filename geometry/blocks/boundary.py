@@ -49,11 +49,9 @@ class Boundary(Connected):
         (ni, 2) nodes along xi.
     west, east : array
         (nj, 2) nodes along eta.
-    topology : {'quad', 'o', 'c'}, optional
-        Kind of grid. The south side of a ``c`` boundary runs along the wake, around the body and back along
-        the wake; the nodes of the two wake parts coincide.
-    patches : tuple of Patch, optional
-        Named parts of the sides; empty: the patches of `default_patches`.
+    topology : {'quad', 'o', 'c'}, optional Kind of grid. The south side of a ``c`` boundary runs along the
+        wake to the body, around the body, and back along the wake; the nodes of the two wake parts coincide.
+    patches : tuple of Patch, optional Named parts of the sides; if empty, the patches of `default_patches`.
     name : str, optional
         Name of the shape in the input.
     wall : Curve, optional
@@ -125,7 +123,7 @@ class Boundary(Connected):
 
     @cached_property
     def corners(self) -> Mapping[str, Indices]:
-        """Indices of the corners inside each edge, by side; the two ends are left out (`polygon.corners`)."""
+        """By side, the indices of the corners of an edge without its two ends (see `polygon.corners`)."""
         return {side: read_only(find_corners(getattr(self, side))) for side in SIDES}
 
     def grid(

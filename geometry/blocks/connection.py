@@ -53,7 +53,7 @@ class Connection:
         return (self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range)
 
     def pairs(self, values: Sequence[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return the `values` at the nodes of the side and of the donor, as two views (n, 1) or (n, m, 1).
+        """Return views of the `values` at the nodes: of the side, and of the donor, (n, 1) or (n, m, 1) each.
 
         `values` has one array per block. Both views have the order of the side.
         """
@@ -106,7 +106,7 @@ class Connection:
         return f"the connection of {own} of block {self.block} to {donor} of block {self.donor}"
 
     def stretches(self, block: int) -> list[tuple[Side, int, int]]:
-        """Return the parts of the boundary of a planar block that are joined: side, first and last node."""
+        """Return the connected parts of a planar block's boundary: side, first and last node of each part."""
         return [(side, *nodes[0]) for number, side, nodes in self.ends if number == block]
 
 
@@ -115,7 +115,7 @@ def cells_at(connection: Connection, face: Face) -> tuple[NDArray[Any], NDArray[
 
     Both have the order of the side.
 
-    `face` returns the values of the cells at a side of a block.
+    `face` is a function that returns the values of the cells at a side of a block.
     """
     spans = [tuple((a, b - 1) for a, b in span) for span in (connection.range, connection.donor_range)]
     return replace(connection, range=spans[0], donor_range=spans[1], transform=None).nodes(face)
@@ -124,7 +124,7 @@ def cells_at(connection: Connection, face: Face) -> tuple[NDArray[Any], NDArray[
 def check_connections(connections: Sequence[Connection], counts: Sequence[tuple[int, ...]]) -> None:
     """Raise InputError if a connection names a block, side or node that does not exist.
 
-    `counts` are the numbers of nodes of each block along its directions.
+    `counts` are, for each block, the numbers of nodes along its directions.
     """
     for each in connections:
         for block, side, span in each.ends:
@@ -147,7 +147,7 @@ def o_seam(nj: int) -> Connection:
 
 
 def c_wake(ni: int, cells: int) -> Connection:
-    """Return the connection of the first `cells` cells of a C block's south side to the last ones."""
+    """Return the connection of the first `cells` cells of a C block's south side to its last `cells`."""
     return Connection(0, "south", ((0, cells),), 0, "south", ((ni - 1 - cells, ni - 1),), (-1,))
 
 
@@ -174,9 +174,9 @@ def wake_cells(connections: Sequence[Connection]) -> int:
 
 
 def wake_nodes(south: Floats) -> int:
-    """Return the number of nodes at the start of `south` (ni, 2) that are repeated in reverse at its end.
+    """Return how many nodes at the start of `south` (ni, 2) are repeated in reverse order at its end.
 
-    0 if all nodes are repeated.
+    The result is 0 if all nodes are repeated.
     """
     half = south[: len(south) // 2]
     differs = (half != south[::-1][: len(half)]).any(axis=1)
@@ -186,8 +186,8 @@ def wake_nodes(south: Floats) -> int:
 def connections_of(topology: Topology, south: Floats, nj: int) -> tuple[Connection, ...]:
     """Return the connections of a block of `topology` to itself: the seam of an O grid, the wake of a C grid.
 
-    `south` (ni, 2) holds the nodes of its south side, in which a wake is found; `nj` is its number of nodes
-    along eta. Raises InputError: an unknown topology; a C block without a wake.
+    `south` (ni, 2) holds the nodes of the south side, from which the wake is found; `nj` is the number of
+    nodes along eta. Raises InputError: an unknown topology; a C block without a wake.
     """
     if topology == "quad":
         return ()
@@ -222,8 +222,8 @@ class Connected:
 
     @property
     def wake(self) -> int:
-        """Number of wake cells at each end of south.
+        """Number of wake cells at each end of the south side.
 
-        For i up to this number, nodes (i, 0) and (ni-1-i, 0) coincide.
+        For all i up to this number, the nodes (i, 0) and (ni-1-i, 0) coincide.
         """
         return wake_cells(self.connections)

@@ -42,8 +42,7 @@ def copied(grid: Grid, copies: int | Sequence[int]) -> Grid:
 
     Raises
     ------
-    InputError
-        A grid that is not periodic; more or fewer numbers than the grid has periods; a number out of its
+    InputError The grid is not periodic; there are more or fewer numbers than periods; a number is out of its
         range.
     """
     counts = (copies,) if isinstance(copies, int) else tuple(copies)

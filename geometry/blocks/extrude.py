@@ -35,10 +35,10 @@ BACK, FRONT = "back", "front"
 def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
     """Return a planar `grid` as volumes, with its nodes repeated at each z of `heights`.
 
-    `heights` are at least two and increase. Patches and connections extend over all heights. A body that is a
-    wall only because of its position gets the kind wall. The sides `bottom` become the patch ``back`` and the
-    sides `top` the patch ``front``, both symmetry planes; a patch of `grid` with one of these names is
-    renamed.
+    `heights` are at least two and increase. Patches and connections extend over all heights. A body that
+    counts as a wall only because of its position gets the kind wall. The sides `bottom` of all blocks form
+    the patch ``back``, the sides `top` the patch ``front``; both are symmetry planes. If a patch of `grid`
+    already has one of these names, it is renamed.
 
     Raises InputError: blocks that are not planar, fewer than two heights, heights that do not increase.
     """
@@ -60,9 +60,9 @@ def thickened(
     """Return volumes with the patches and connections of a planar grid.
 
     `nodes` are the finite nodes (ni, nj, nk, 3) of each block. Patches and connections extend over all planes
-    of nodes. `ends` are name and kind of the patches at the first and at the last plane. If `ends` is None,
+    of nodes. `ends` are names and kinds of the patches at the first and at the last plane. If `ends` is None,
     the first plane of each block is connected to its last plane; `motion` is the periodic motion from the
-    first to the last, None if they coincide.
+    first plane to the last, None if the planes coincide.
 
     Raises InputError: blocks that are not planar; nodes that differ where blocks are connected.
     """
@@ -132,7 +132,7 @@ def _renamed(patches: Sequence[Patch], ends: Sequence[str]) -> list[Patch]:
 
 
 def thick(each: Connection, planes: int) -> Connection:
-    """Return a connection of planar blocks, extended over `planes` planes of nodes."""
+    """Return a connection of planar blocks as one of volumes, which extends over `planes` planes of nodes."""
     whole = (0, planes - 1)
     ranges = (*each.range, whole), (*each.donor_range, whole)
     motion = each.transform

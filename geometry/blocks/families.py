@@ -16,12 +16,12 @@ from meshonet.geometry.blocks.grid import Grid
 
 @dataclass(frozen=True)
 class Member:
-    """The grid lines along a direction `axis` (0 is xi, 1 eta) of a block, as a part of a family.
+    """The grid lines of a block along the direction `axis` (0 is xi, 1 is eta), as a part of a family.
 
-    A family contains all lines that continue each other from block to block. Lines are numbered by the index
-    of the other direction. If `aligned`, each line has the same number as its continuation in the family's
-    first block, or the number counted from the other end if `flipped`. If not `aligned`, only some lines of
-    this block continue into the family's first block.
+    A family contains all grid lines that continue each other from block to block. The index of a line is that
+    of its nodes in the other direction. If `aligned`, each line has the same index as its continuation in the
+    family's first block; if also `flipped`, the same index counted from the other end. If not `aligned`, only
+    some lines of this block continue into the family's first block.
     """
 
     block: int
@@ -39,7 +39,7 @@ def joins_whole_sides(grid: Grid, connection: Connection) -> bool:
 
 
 def families(grid: Grid) -> list[list[Member]]:
-    """Return the families of grid lines; each pair of block and direction belongs to exactly one.
+    """Return the families of grid lines; each pair of a block and a direction is in exactly one family.
 
     `flipped` has no meaning in volumes, where lines have two indices.
     """

@@ -50,7 +50,7 @@ class Origin:
     """Origin of a sample of a dataset.
 
     `parameters` are names and values of the parameters of the shape; `split` is ``train``, ``test`` or empty;
-    `title` is the name of the shape in its file, if the sample is named after the file.
+    `title` is the name of the shape inside its file, if the sample itself is named after the file.
     """
 
     parameters: tuple[tuple[str, float], ...] = ()
@@ -122,8 +122,8 @@ class Grid(Connected):
     ) -> Grid:
         """Return the grid of a single block (see `Block`); its connections are found from its nodes.
 
-        In the topology ``c``, the wake consists of the nodes at the start of the south side that its end
-        repeats in reverse. Without `patches`, the grid gets those of `default_patches`.
+        In the topology ``c``, the wake consists of those nodes at the start of the south side that its end
+        repeats in reverse order. Without `patches`, the grid gets those of `default_patches`.
 
         Returns
         -------
@@ -152,7 +152,7 @@ class Grid(Connected):
 
     @cached_property
     def topology(self) -> Topology:  # type: ignore[override]
-        """``quad``, ``o`` or ``c`` for a single planar block, by its connections; otherwise ``blocks``."""
+        """For a single planar block ``quad``, ``o`` or ``c``, by its connections; otherwise ``blocks``."""
         if self.form != "plane":
             return "blocks"
         return topology_of(list(map(_COUNTS, self.blocks)), self.connections)
@@ -164,7 +164,7 @@ class Grid(Connected):
 
     @cached_property
     def nodes(self) -> Floats:
-        """Nodes of a grid of one block: (ni, nj, 2), on a surface (ni, nj, 3), in a volume (ni, nj, nk, 3).
+        """Nodes of the only block: (ni, nj, 2), on a surface (ni, nj, 3), in a volume (ni, nj, nk, 3).
 
         Raises InputError: a grid of several blocks.
         """
@@ -185,7 +185,7 @@ class Grid(Connected):
 
     @property
     def x(self) -> Floats:
-        """The x coordinates of the nodes of a grid of one block: (ni, nj), in a volume (ni, nj, nk).
+        """The x coordinates of the nodes of the only block: (ni, nj), in a volume (ni, nj, nk).
 
         A C-contiguous view. Raises InputError: a grid of several blocks.
         """
@@ -193,7 +193,7 @@ class Grid(Connected):
 
     @property
     def y(self) -> Floats:
-        """The y coordinates of the nodes of a grid of one block: (ni, nj), in a volume (ni, nj, nk).
+        """The y coordinates of the nodes of the only block: (ni, nj), in a volume (ni, nj, nk).
 
         A C-contiguous view. Raises InputError: a grid of several blocks.
         """
@@ -238,7 +238,7 @@ class Grid(Connected):
         return outer
 
     def joined_ranges(self) -> list[list[tuple[Side, Range]]]:
-        """Return for each block a list of its connected parts: the side and the index range."""
+        """Return, for each block, the connected parts of its sides: the side and the index range of each."""
         inside: list[list[tuple[Side, Range]]] = [[] for _ in self.blocks]
         for each in self.connections:
             for block, side, span in each.ends:
@@ -246,7 +246,7 @@ class Grid(Connected):
         return inside
 
     def walls(self) -> list[Patch]:
-        """Return the patches that are walls: those of kind wall, and on a body those of unknown kind too.
+        """Return the patches that are walls: those of kind wall, and those of unknown kind on a body.
 
         If a four-sided grid of one block has no patch of kind wall, its walls are the patches of unknown kind
         on south and north. In a grid of several blocks only patches of kind wall, or with the name of a wall,
@@ -267,7 +267,7 @@ class Grid(Connected):
         return replace(self, blocks=(Block(nodes, finite),))
 
     def with_provenance(self, **facts: Any) -> Grid:
-        """Return the same grid with `facts` added to its provenance; those that are None are removed."""
+        """Return the same grid with `facts` added to its provenance; facts that are None are removed."""
         known = {**self.provenance, **facts}
         for name, fact in facts.items():
             if fact is None:

@@ -186,7 +186,7 @@ class _Group:
     orientation: tuple[int, ...]
 
     def rank(self, cells: _SideCells) -> tuple[bool, int, int, int]:
-        """Return a key that sorts groups that claim the same cells: those within one block come first."""
+        """Return the sort key of a group of cells; groups within one block come before the others."""
         a, b = self.own[0], self.donor[0]
         return bool(cells.block[a] != cells.block[b]), -len(self.own), int(a), int(b)
 
@@ -243,12 +243,12 @@ def _connection(cells: _SideCells, group: _Group, part: Indices) -> Connection:
 
 
 def rounding(values: Floats) -> Callable[[Floats], Floats]:
-    """Return a function that takes magnitudes (n,) of coordinates to the unit (n,) of their last digit.
+    """Return a function that maps magnitudes (n,) of coordinates to the units (n,) of their last digits.
 
-    The unit is estimated from `values` (m,), the coordinates of a file. These have single precision, a fixed
-    number of digits, or a fixed number of decimals. If two blocks of a file share a point that was computed
-    twice and then rounded, its two positions can differ by one unit of the last digit, which next to walls
-    can be a large part of a cell.
+    The units are estimated from `values` (m,), the coordinates of a file, which have single precision, a
+    fixed number of digits, or a fixed number of decimals. If a point that two blocks share was computed twice
+    and then rounded, its two positions can differ by one unit of the last digit; next to walls this can be a
+    large part of a cell.
 
     >>> unit = rounding(np.array([0.123457, 12.345679, 3.0]))  # written by %.6f
     >>> unit(np.array([1.0, 2.0])).tolist()

@@ -12,7 +12,7 @@ from meshonet.geometry.arrays import Floats
 
 @dataclass(frozen=True)
 class Motion:
-    """Rigid motion x -> `turn` x + `shift`, for example from one of two periodic sides to the other.
+    """Rigid motion x -> `turn` x + `shift`, for example from one side of a periodic pair to the other.
 
     Parameters
     ----------
@@ -40,9 +40,9 @@ class Motion:
 
     @property
     def rotation(self) -> tuple[float, Floats]:
-        """Angle in radians, counter-clockwise, and centre (2,) of a motion in the plane.
+        """Angle (radians, counter-clockwise) and centre (2,) of the rotation that a motion in the plane is.
 
-        Without a rotation the angle is 0 and the centre is the origin: the motion is its shift.
+        Without a rotation the angle is 0 and the centre the origin; the motion is then only `shift`.
         """
         if not self.turn:
             return 0.0, np.zeros(2)
@@ -55,9 +55,9 @@ class Motion:
     def alike(self, other: Motion, tolerance: float) -> bool:
         """Return whether two motions are equal to a relative `tolerance`.
 
-        Both motions are applied to the origin and to a point on each axis, at a distance L from the origin.
-        The results may differ by `tolerance` times L. L is the largest component of the shifts, and at least
-        1 if there is a rotation.
+        Both motions are applied to the origin and, on each axis, to the point at the distance L from the
+        origin. The images may differ by `tolerance` times L. L is the largest component of the two shifts,
+        and at least 1 if there is a rotation.
         """
         size = max(1e-300, *map(abs, (*self.shift, *other.shift, float(bool(self.turn or other.turn)))))
         dimension = max(2, *(len(rows) for rows in (self.shift, self.turn, other.shift, other.turn)))

@@ -31,9 +31,9 @@ def listed_sides(counts: tuple[int, ...]) -> tuple[Side, ...]:
 def owners_of(
     patches: Sequence[Patch], counts: tuple[int, ...], inside: Iterable[tuple[Side, Range]], side: Side
 ) -> NDArray[np.intp]:
-    """Return for each cell (n,) or (n, m) at a side the index in `patches` of its patch.
+    """Return, for each cell (n,) or (n, m) at a side, the index in `patches` of the patch that contains it.
 
-    If several patches contain a cell, the last of them counts.
+    If several patches contain a cell, the index is that of the last.
 
     `inside` lists the connected parts of the sides, each as its side and its index range. Cells in these
     parts get `JOINED`; other cells without a patch get `UNNAMED`.
@@ -55,11 +55,11 @@ def outer_patches(
     inside: Iterable[tuple[Side, Range]],
     block: int = 0,
 ) -> list[Patch]:
-    """Return patches that cover the outer boundary of block number `block`, each boundary cell once.
+    """Return patches that cover each cell of the outer boundary of block number `block` exactly once.
 
-    Where `patches` overlap, the later patch counts; cells without a patch get one with the name of their
-    side. `counts` are the numbers of nodes along each direction; `inside` lists the connected parts of the
-    sides, each as its side and its index range.
+    Where `patches` overlap, the later patch is used. Cells without a patch get a patch that is named after
+    their side. `counts` are the numbers of nodes along each direction; `inside` lists the connected parts of
+    the sides, each as its side and its index range.
     """
     own = [patch for patch in patches if patch.block == block]
     inside = list(inside)
@@ -72,10 +72,10 @@ def outer_patches(
 
 
 def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
-    """Yield rectangles of cells with one owner, which cover all cells of a side that are not `JOINED`.
+    """Yield rectangles that cover all cells of a side that are not `JOINED`; each has a single owner.
 
-    `owners` (n,) or (n, m) is the owner of each cell, from `owners_of`. Each rectangle is yielded as its
-    owner and the range of its nodes.
+    The owner of a cell is its value in `owners` (n,) or (n, m), the result of `owners_of`. A rectangle is
+    yielded as its owner and the range of its nodes.
     """
     cells = owners.reshape(len(owners), -1)
     left = cells != JOINED

@@ -26,7 +26,7 @@ _SIGNS: tuple[tuple[Kind, str], ...] = (
 
 
 def kind_of(name: str, otherwise: Kind = "other") -> Kind:
-    """Return the kind of boundary that the name of a patch suggests, or else `otherwise`.
+    """Return the kind of boundary that the name of a patch suggests, or `otherwise` if it suggests none.
 
     >>> kind_of("lower wall"), kind_of("slot 3")
     ('wall', 'other')
@@ -39,7 +39,7 @@ def kind_of(name: str, otherwise: Kind = "other") -> Kind:
 
 
 def may_be_wall(name: str, kind: Kind = "other") -> bool:
-    """Return whether a patch may be a wall, and have layers: neither its kind nor its name says the contrary.
+    """Return whether a patch may be a wall with layers: neither its kind nor its name says the contrary.
 
     >>> [may_be_wall(name) for name in ("wall", "ceiling", "inlet", "axis")]
     [True, True, False, False]
@@ -52,9 +52,10 @@ def may_be_wall(name: str, kind: Kind = "other") -> bool:
 class Patch:
     """Nodes ``start`` to ``stop``, both included, of one side of a block, with a name.
 
-    South and north count nodes along i, west and east along j. On a side of a volume, which has two
-    directions, `across` is the first and the last node along the second; None means all. The kind of boundary
-    is derived from the name unless it is set.
+    Nodes are counted along i on south and north, along j on west and east. On a side of a volume, which has
+    two directions, ``start`` and ``stop`` are along the first direction, and `across` has the first and the
+    last node along the second; None means all. The kind of boundary is derived from the name unless it is
+    given.
     """
 
     name: str
@@ -88,8 +89,8 @@ class Patch:
 def default_patches(topology: Topology, ni: int, nj: int, wake: int = 0) -> tuple[Patch, ...]:
     """Return the default patches of a block of `topology`.
 
-    ``quad`` has its four sides; ``o`` a wall and a far field (west and east are the seam); ``c`` a wall
-    between two stretches of `wake` cells, and a far field around them.
+    A ``quad`` block has its four sides as patches. An ``o`` block has a wall and a far field; west and east
+    are its seam. A ``c`` block has a wall between two stretches of `wake` cells, and a far field around them.
     """
     i, j = ni - 1, nj - 1
     if topology == "quad":
@@ -108,7 +109,7 @@ def default_patches(topology: Topology, ni: int, nj: int, wake: int = 0) -> tupl
 
 
 def check_patches(patches: Iterable[Patch], counts: Sequence[tuple[int, ...]]) -> None:
-    """Raise InputError for a patch without a name, of an unknown block or side, or past the end of its side.
+    """Raise InputError if a patch has no name, an unknown block or side, or exceeds its side.
 
     `counts` are the numbers of nodes of each block along its directions.
     """

@@ -23,11 +23,11 @@ _ACROSS: tuple[Side, Side] = ("west", "east")
 
 
 def resample_edge(nodes: Floats, m: int, *, closed: bool) -> Floats:
-    """Return `m` nodes (m, 2), at least 2, on the curve through `nodes` (n, 2), distributed as these are.
+    """Return `m` >= 2 nodes (m, 2) on the curve through `nodes` (n, 2), distributed like `nodes`.
 
-    The arc length, as a function of the index divided by the number of cells, is preserved. Corners of the
-    curve stay nodes if `m` is large enough; the end nodes are kept bitwise. A `closed` edge repeats its first
-    node at the end, both in `nodes` and in the result.
+    The arc length as a function of index / number of cells stays the same. Corners of the curve remain nodes
+    if `m` is large enough; the end nodes are kept bitwise. A `closed` edge repeats its first node at the end,
+    both in `nodes` and in the result.
 
     Raises InputError: the errors of `Curve`.
 
@@ -54,8 +54,8 @@ def resample_edges(
 ) -> dict[Side, Floats]:
     """Return the four `edges` of a block resampled to ni nodes along xi and nj along eta.
 
-    The south edge has `wake` cells of the wake at each of its two ends. These two parts of the edge keep
-    having the same nodes, and their share of the cells of the edge does not change.
+    The south edge has `wake` cells of the wake at each of its two ends. These two parts keep equal nodes, and
+    their share of the edge's cells stays the same.
 
     Raises InputError: too few nodes for a closed edge, or for the wall between the two sides of a wake.
     """
@@ -92,7 +92,7 @@ def _in_pieces(side: Floats, ends: tuple[int, ...], places: tuple[int, ...], clo
 def resample_patches(
     patches: tuple[Patch, ...], had: tuple[int, int], has: tuple[int, int], wake: int
 ) -> tuple[Patch, ...]:
-    """Return the patches of a boundary whose node counts along xi and eta change from `had` to `has`."""
+    """Return the patches of a boundary after its node counts (xi, eta) change from `had` to `has`."""
     along_xi, along_eta = _marks(had[0], has[0], wake), _marks(had[1], has[1], 0)
 
     def moved(patch: Patch) -> Patch:
@@ -106,7 +106,7 @@ def resample_patches(
 def patches_in_place(had: Boundary, has: Boundary) -> tuple[Patch, ...]:
     """Return the patches of `had`, transferred to `has`, a boundary with the same edges but other nodes.
 
-    The ends of a patch move to the nearest nodes, measured by the fraction of the length of the side.
+    Each end of a patch becomes the node that is nearest in terms of the fraction of the side's length.
     """
 
     def moved(patch: Patch) -> Patch:

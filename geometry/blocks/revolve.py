@@ -57,9 +57,8 @@ class Revolution:
     ----------
     degrees : float
         Angle from the first plane to the last, up to 360.
-    planes : int, optional
-        Number of planes of nodes, one more than the number of cells. None: 2 planes for an angle of up to 10
-        degrees, otherwise cells of at most 4 degrees.
+    planes : int, optional Number of planes of nodes, one more than the number of cells. If None: 2 planes for
+        an angle of up to 10 degrees, otherwise as many as make cells of at most 4 degrees.
     axis : AxisLine, optional
         Axis in the plane of the grid; by default the x axis.
 
@@ -98,7 +97,7 @@ class Revolution:
 
     @property
     def wedge(self) -> bool:
-        """Whether this is a wedge: a single cell, of at most 10 degrees."""
+        """Whether this is a wedge: a single cell around the axis, of at most 10 degrees."""
         return self.count == 2 and self.degrees <= WEDGE_DEG
 
     @property
@@ -121,9 +120,10 @@ def revolution(degrees: float | None, planes: int | None, axis: AxisLine | None)
 
 
 class AxisFrame(NamedTuple):
-    """Coordinates about an axis.
+    """Coordinates about an axis in the plane of a grid.
 
-    A point of the axis, its direction, and the direction from the axis to the grid, each (2,).
+    `point` is on the axis, `along` is its direction, `away` the direction from the axis to the grid, (2,)
+    each.
     """
 
     point: Floats
@@ -178,10 +178,10 @@ def frame_of(points: Floats, axis: AxisLine) -> AxisFrame:
 
 
 def revolved(grid: Grid, turn: Revolution, ends: tuple[End, End] | None = None) -> Grid:
-    """Return a planar grid revolved about an axis.
+    """Return a planar grid revolved about the axis of `turn`.
 
-    The ends of a wedge are the patches ``wedge1`` and ``wedge2``. The ends of a sector are periodic, or
-    patches with the names and kinds `ends`. A full revolution is connected to itself.
+    The first and last plane of a wedge are the patches ``wedge1`` and ``wedge2``; those of a sector are
+    periodic, or patches with the names and kinds `ends`; those of a full revolution are connected.
 
     Raises InputError: blocks that are not planar; periodic connections; nodes on both sides of the axis, or
     all on the axis.
@@ -223,7 +223,8 @@ def _with_axis(grid: Grid, frame: AxisFrame) -> Grid:
 def bent(nodes: Sequence[Floats], turn: Revolution) -> list[Floats]:
     """Return volumes (ni, nj, nk, 3) bent about the axis of `turn`.
 
-    z becomes the angle about the axis; the range of z over all `nodes` becomes `turn.degrees`.
+    z becomes the angle about the axis: the range of z over all `nodes` is mapped linearly to 0 to
+    `turn.degrees`.
 
     Raises InputError: nodes on both sides of the axis.
     """

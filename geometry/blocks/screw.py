@@ -17,9 +17,9 @@ _NEARLY_HALF = 3.1
 class Screw(NamedTuple):
     """A rotation by `angle` radians about the unit `axis` (3,) through `centre` (3,), then a `shift` (3,).
 
-    If there is a rotation, the shift is along the axis, and the centre is the point of the axis nearest to
-    the origin. If there is none, the angle is 0, the axis z and the centre the origin. `angles` (3,) are the
-    angles of successive rotations about x, y and z that give the same rotation.
+    With a rotation, the shift is along the axis, and the centre is the point of the axis nearest to the
+    origin. Without a rotation, the angle is 0, the axis is z and the centre is the origin. `angles` (3,) are
+    the angles of three successive rotations, about x, y and z, that give the same rotation.
     """
 
     angle: float
@@ -32,8 +32,8 @@ class Screw(NamedTuple):
 def screw_of(motion: Motion) -> Screw:
     """Return a motion of the plane z = 0 or of space as a screw (Chasles' theorem).
 
-    The largest coordinate of the axis is positive; the angle may be negative. The axis comes from the
-    antisymmetric part of the rotation R; at half a turn it is the longest column of R + 1.
+    The component of the axis that is largest in magnitude is positive; the angle may be negative. The axis is
+    computed from the antisymmetric part of the rotation R; at half a turn it is the longest column of R + 1.
     """
     turn, shift = np.eye(3), np.zeros(3)
     shift[: len(motion.shift)] = motion.shift

@@ -27,11 +27,11 @@ def shared_nodes(
     counts: Sequence[tuple[int, ...]], connections: Sequence[Connection], *, periodic: bool = False,
     order: Literal["C", "F"] = "C",
 ) -> tuple[Indices, ...]:  # fmt: skip
-    """Return global numbers, from 0, of the nodes of blocks with `counts` nodes along their directions.
+    """Return the global numbers, from 0, of the nodes of blocks; `counts` are their nodes per direction.
 
-    Nodes that connections join, directly or through others, have one number. Numbers ascend in the order in
-    which nodes first appear, block after block, the last index fastest, or the first one in `order` F. The
-    two sides of a periodic connection have separate numbers unless `periodic`.
+    Nodes that connections join, directly or through other nodes, have the same number. Numbers ascend in the
+    order in which nodes first appear: block after block, within a block with the last index fastest (in
+    `order` F the first). The two sides of a periodic connection have separate numbers unless `periodic`.
     """
     ends, numbers = numbered(counts, order)
     joined = [each.pairs(numbers) for each in connections if periodic or each.transform is None]
@@ -44,9 +44,9 @@ def shared_nodes(
 def numbered(
     counts: Sequence[tuple[int, ...]], order: Literal["C", "F"] = "C"
 ) -> tuple[Indices, list[Indices]]:
-    """Return the number of the first node of each block, with the total, and the node numbers of each block.
+    """Return the number of each block's first node, then the total; and the node numbers of each block.
 
-    Nodes are numbered block after block; joined nodes have several numbers.
+    Nodes are numbered block after block, so that nodes that connections join have several numbers.
     """
     ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
     parts = zip(ends, ends[1:], counts, strict=False)
@@ -56,7 +56,7 @@ def numbered(
 def node_table(
     blocks: Sequence[Block], connections: Sequence[Connection]
 ) -> tuple[Floats, tuple[Indices, ...]]:
-    """Return all nodes (n, d) of `blocks`, joined nodes once, and the numbers of the nodes of each block."""
+    """Return all nodes (n, d), joined nodes only once, and for each block the indices of its nodes."""
     numbers = shared_nodes([block.counts for block in blocks], connections)
     if len(blocks) == 1 and not connections:
         return np.ascontiguousarray(blocks[0].nodes.reshape(-1, blocks[0].nodes.shape[-1])), numbers
@@ -69,7 +69,7 @@ def node_table(
 def places_among(
     pairs: Sequence[tuple[Indices, Indices]],
 ) -> tuple[Indices, list[tuple[Indices, Indices]]]:
-    """Return the distinct numbers in `pairs`, ascending, and the pairs as indices into these numbers."""
+    """Return the distinct numbers in `pairs`, ascending, and `pairs` with numbers replaced by indices."""
     flat = [nodes.ravel() for pair in pairs for nodes in pair]
     used, where = np.unique(np.concatenate(flat), return_inverse=True)
     parts = np.split(where.ravel(), np.cumsum([len(nodes) for nodes in flat])[:-1])
@@ -79,7 +79,7 @@ def places_among(
 def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indices:
     """Return a label for each of `count` nodes, from 0 in the order in which they first appear.
 
-    Nodes that arrays of pairs join, directly or through others, have the same label.
+    Nodes that `pairs` join, directly or through other nodes, have the same label.
     """
     rows = [np.stack([own.ravel(), donor.ravel()], axis=1) for own, donor in pairs]
     label, _ = joined_classes(np.concatenate([np.empty((0, 2), np.intp), *rows]), count)
@@ -89,8 +89,8 @@ def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indic
 def with_equal_nodes(blocks: Sequence[Block], connections: Sequence[Connection]) -> tuple[Block, ...]:
     """Return `blocks` with the nodes that `connections` join made bitwise equal.
 
-    Joined nodes get the coordinates of the first node. Nodes of the second of two periodic sides get the
-    coordinates of the first side, moved by the periodic motion.
+    Joined nodes get the coordinates of the first of them. Nodes of the second side of a periodic pair get
+    those of the first side, moved by the periodic motion.
     """
     if not connections:
         return tuple(blocks)

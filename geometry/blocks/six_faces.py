@@ -30,7 +30,7 @@ FACES: tuple[Side, ...] = tuple(PLACES)
 
 @dataclass(frozen=True, eq=False)
 class SixFaces:
-    """Nodes of the six faces of a volume, in any unit of length; they are checked when this is made.
+    """Nodes of the six faces of a volume, in any unit of length; they are checked on construction.
 
     Parameters
     ----------
@@ -85,13 +85,13 @@ class SixFaces:
         return self.west, self.east, self.south, self.north, self.bottom, self.top
 
     def edge(self, side: Side, second: Side) -> Floats:
-        """Return a view of the nodes (n, 3) of the edge that two faces share, as stored in the first one."""
+        """Return a view of the nodes (n, 3) of the edge that two faces share, as stored in face `side`."""
         return edge_of(getattr(self, side), side, second)
 
     def steps_inwards(self, side: Side, second: Side) -> Floats:
-        """Return the steps (n, 3) between two rows of nodes of the face at `side`, by ascending index.
+        """Return the steps (n, 3) from the lower to the higher index between two rows of the face at `side`.
 
-        The rows are the edge that this face shares with the face `second`, and the row next to it.
+        The rows are the edge that this face shares with the face `second`, and the row next to this edge.
         """
         axis, end = PLACES[second]
         rows = np.moveaxis(getattr(self, side), axis - (axis > PLACES[side][0]), 0)
@@ -105,10 +105,10 @@ class SixFaces:
         return math.hypot(*(high - low))
 
     def edges_along(self, axis: int) -> list[Floats]:
-        """Return the four block edges (n, 3) along a direction.
+        """Return the four edges (n, 3) of the volume along the direction `axis`.
 
-        They lie at the (low, low), (high, low), (low, high) and (high, high) ends of the other two
-        directions.
+        With respect to the other two directions they are in the order (low, low), (high, low), (low, high),
+        (high, high).
         """
         first, second = (
             [side for side in FACES if PLACES[side][0] == each] for each in range(3) if each != axis
@@ -122,7 +122,7 @@ class SixFaces:
         return Grid((block,), patches, (), self.name, provenance or {})
 
     def resampled(self, counts: tuple[int, int, int]) -> SixFaces:
-        """Return the faces with other node counts, interpolated by cubic splines.
+        """Return the faces with other node counts, interpolated by cubic splines in the same distribution.
 
         The node distributions stay the same.
 
@@ -140,8 +140,8 @@ class SixFaces:
     def at(self, knots: list[Floats], places: list[Floats]) -> SixFaces:
         """Return the faces interpolated at other parameters.
 
-        `knots` are the parameters of the present nodes in each direction, `places` those of the new nodes.
-        Both increase from 0 to 1. Corners are kept, and nodes of an edge stay on that edge.
+        `knots` are, for each direction, the parameters of the present nodes; `places` are those of the new
+        nodes. Both increase from 0 to 1. Corners are kept, and nodes of an edge stay on that edge.
         """
         made: dict[Side, Floats] = {}
         for side in FACES:
@@ -173,7 +173,7 @@ def edges() -> Iterator[tuple[Side, Side]]:
 
 
 def edge_of(face: Floats, side: Side, second: Side) -> Floats:
-    """Return a view of the nodes (n, 3) of the edge that `face`, at `side`, shares with the face `second`."""
+    """Return a view of the nodes (n, 3) of the edge that `face` (at `side`) shares with face `second`."""
     axis, end = PLACES[second]
     return np.asarray(np.moveaxis(face, axis - (axis > PLACES[side][0]), 0)[end])
 

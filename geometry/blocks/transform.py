@@ -37,7 +37,7 @@ _COUNTED_BACK = ("south", "north")
 
 
 def coarser_grid(grid: Grid, k: int) -> Grid:
-    """Return the grid of every `k`-th node along all directions, with its patches.
+    """Return the grid that consists of every `k`-th node along all directions, with its patches.
 
     In a multi-block grid every block is coarsened, and its connections are kept.
 
@@ -65,7 +65,7 @@ def coarser_grid(grid: Grid, k: int) -> Grid:
 
 
 def coarser_boundary(boundary: Boundary, k: int) -> Boundary:
-    """Return the boundary of every `k`-th node, with its patches (see `coarser_grid`)."""
+    """Return the boundary that consists of every `k`-th node, with its patches (see `coarser_grid`)."""
     _check((boundary.ni, boundary.nj), k)
     sides = ((side, 0, getattr(boundary, side), boundary.periodic) for side in SIDES)
     _check_corners(_corners_of(sides), k, math.gcd(boundary.ni - 1, boundary.nj - 1))
@@ -171,8 +171,8 @@ def normalised(grid: Grid) -> Grid:
     """Return `grid` moved and scaled to unit size and, around a body, rotated.
 
     In an O or C grid the trailing edge, where xi begins on the body, is moved to (1, 0), and the node of the
-    body that is farthest from the trailing edge to (0, 0). In any other grid the lower left corner of the
-    bounding box is moved to the origin, and the longest side of the box gets length 1.
+    body farthest from it is moved to (0, 0). In any other grid the lower left corner of the bounding box is
+    moved to the origin, and the longest side of the box gets length 1.
 
     Raises InputError: the body has no length.
     """
@@ -207,7 +207,7 @@ def _normalised_blocks(grid: Grid) -> Grid:
 
 
 def scaled(grid: Grid, factor: float) -> Grid:
-    """Return `grid` in another unit: nodes, periods and first-cell heights are multiplied by `factor`.
+    """Return `grid` in another unit: nodes, periodic shifts, first-cell heights are multiplied by `factor`.
 
     Raises InputError: a factor that is not positive, or beyond 1e-12 to 1e12.
     """
@@ -273,7 +273,7 @@ def turned_boundary(boundary: Boundary) -> Boundary:
 
 
 def turned_patch(patch: Patch, last: int) -> Patch:
-    """Return a patch rotated as `turned` does; `last` is the index of the last node of its block along xi."""
+    """Return the patch of a grid after `turned`; `last` is the last index along xi of the patch's block."""
     side, (start, stop) = _turned_stretch(patch.side, (patch.start, patch.stop), last)
     return replace(patch, side=side, start=start, stop=stop)
 

@@ -22,11 +22,11 @@ from meshonet.geometry.blocks.shared_nodes import shared_nodes
 
 @dataclass(frozen=True, eq=False)
 class Vertices:
-    """The nodes of a grid of planar blocks, each once; periodic sides count as one.
+    """The distinct nodes of a grid of planar blocks; nodes of periodic pairs of sides are identified.
 
     Parameters
     ----------
-    numbers : (ni, nj) of each block, the number of each of its nodes.
+    numbers : for each block, (ni, nj) the indices of its nodes among the n distinct nodes.
     valence : (n,) number of cells that meet at each node.
     outer : (n,) whether the node is on the boundary.
     """
@@ -37,12 +37,12 @@ class Vertices:
 
     @cached_property
     def regular(self) -> Bools:
-        """(n,) whether a node is regular: four cells meet in the interior, two on the boundary."""
+        """(n,) whether a node is regular: four cells meet there, or two if it is on the boundary."""
         return np.asarray(self.valence == np.where(self.outer, 2, 4))
 
     @cached_property
     def irregular(self) -> Indices:
-        """Numbers of the inner nodes where the number of cells is not four."""
+        """Indices of the inner nodes at which other than four cells meet."""
         return np.flatnonzero((self.valence != 4) & ~self.outer)
 
     def place(self, node: int) -> tuple[int, int, int]:

@@ -30,7 +30,7 @@ class CadEdge:
 
     Parameters
     ----------
-    ends : numbers of the first and the last vertex; they are equal for a closed curve or a pole.
+    ends : indices of the first and the last vertex; they are equal for a closed curve or a pole.
     points : function from parameters (n,), 0 to 1, to points (n, 3) of the curve; None for a pole.
     """
 
@@ -44,8 +44,8 @@ class EdgeUse:
 
     Parameters
     ----------
-    edge : number of the edge.
-    forward : whether the loop goes along it from its first vertex.
+    edge : index of the edge.
+    forward : whether the loop goes along the edge from the edge's first vertex to its last.
     trace : function from parameters (n,) of the edge to coordinates (n, 2) on the face.
     """
 
@@ -62,7 +62,8 @@ class CadFace:
     ----------
     uses : edges of the outer loop, in order, counter-clockwise in the coordinates on the face.
     points : function from coordinates (n, 2) on the face to points (n, 3) of the surface.
-    inside_out : whether the cross product of the derivatives by the two coordinates points into the body.
+    inside_out : whether the normal (cross product of the derivatives with respect to the two coordinates)
+        points into the body.
     holes : number of loops besides the outer one.
     """
 

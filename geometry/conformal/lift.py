@@ -39,7 +39,7 @@ SECOND_PRONG = 0.25  # as in kernels/conformal/lift.c
 class Corner:
     """The map of Karman and Trefftz that straightens one corner, whose exterior angle is k pi.
 
-    It takes v to v' by ((v-p)/(v-q))^(1/k) = (v'-P)/(v'-Q), and so the points p and q to P and Q. All
+    It maps v to v' by ((v-p)/(v-q))^(1/k) = (v'-P)/(v'-Q), and therefore the points p and q to P and Q. All
     attributes are numbers or torch tensors.
     """
 
@@ -96,9 +96,9 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
     """Return the lift of a body, its wall (n,) in the strip, and the indices of its trailing corners.
 
     `wall` (n,) runs counter-clockwise from the trailing edge and does not repeat its first node; the
-    imaginary part phi of the strip coordinate rises from 0 along it. `swap` removes the second corner of a
-    blunt edge first. The two removals do not commute: with swapped corners, a mirrored body is lifted to the
-    mirrored strip.
+    imaginary part phi of the strip coordinate rises from 0 along it. With `swap`, the second corner of a
+    blunt edge is removed before the first. The two removals do not commute: only with swapped corners is the
+    strip of a mirrored body the mirrored strip.
 
     Raises InputError: fewer than 8 nodes, or a wall that does not wind once around the pole.
     """
@@ -122,5 +122,5 @@ def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
 
 
 def removable(k: float) -> bool:
-    """Return whether the map straightens a corner with exterior angle k pi."""
+    """Return whether the map can straighten a corner with exterior angle k pi."""
     return 0.55 < k < 0.995 or 1.03 < k < 1.9

@@ -40,11 +40,11 @@ def conformal_knots(
 ) -> Floats:
     """Return arc lengths (count,) on a closed curve at equal steps of an angle.
 
-    The angle is that on the circle to which the curve is mapped conformally. The curve is clockwise; arc
-    length 0 is at the first node, which is repeated as the last. `marks` (m,) are rising arc lengths in (0,
-    length) that become nodes; the angles between them are divided smoothly. The indices of the nodes at the
-    marks are `at` (m,). Without `at`, they are multiples of the first number in `steps` that does not exceed
-    the index of the first mark.
+    It is the angle on the circle to which the curve is mapped conformally. The curve is clockwise; arc length
+    0 is at the first node, which is repeated as the last. `marks` (m,) are ascending arc lengths in (0,
+    length) at which there must be nodes; the angles between them are divided smoothly. `at` (m,) are the
+    indices of these nodes. Without `at`, the indices are multiples of a step, which is the first of `steps`
+    that does not exceed the index of the first mark.
 
     Raises InputError: the wall in the strip is not a function of phi, or the iteration does not converge.
     """

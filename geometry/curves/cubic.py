@@ -8,11 +8,12 @@ from meshonet.kernels._native import solve_tridiagonal
 
 
 class CubicTable:
-    """The cubic spline through `values` (n, ...) at rising `knots` (n,).
+    """The cubic spline through `values` (n, ...) at ascending `knots` (n,).
 
-    Not-a-knot: the third derivative is continuous at the second and at the last but one knot. 2 knots give a
-    straight line, 3 a parabola. Values at knots are bitwise kept. Beyond the first and the last knot the
-    outer cubics are continued. de Boor, A Practical Guide to Splines (1978), chapter IV.
+    The end condition is not-a-knot: the third derivative is continuous at the second and at the last but one
+    knot. 2 knots give a straight line, 3 knots a parabola. Values at knots are bitwise kept. Beyond the first
+    and the last knot the outer cubics are continued. de Boor, A Practical Guide to Splines (1978), chapter
+    IV.
     """
 
     def __init__(self, values: Floats, knots: Floats) -> None:
@@ -39,7 +40,7 @@ class CubicTable:
         return np.concatenate([np.zeros_like(self.values[:1]), np.cumsum(pieces, axis=0)])
 
     def unit_cubics(self) -> Floats:
-        """Return coefficients (4, n - 1, ...) of the pieces as cubics in t, 0 to 1, lowest power first."""
+        """Return coefficients (4, n - 1, ...) of the pieces as cubics in t (0 to 1), lowest power first."""
         h = np.diff(self.knots).reshape(-1, *(1,) * (self.values.ndim - 1))
         begin, end = self.bends[:-1] * h**2, self.bends[1:] * h**2
         rise = np.diff(self.values, axis=0)
@@ -56,7 +57,7 @@ class CubicTable:
 
 
 def cubic_piece(h: Floats, t: Floats, start: Floats, stop: Floats, begin: Floats, end: Floats) -> Floats:
-    """Return the values of cubic pieces of length `h` at t, 0 to 1.
+    """Return the values of cubic pieces of length `h` at t (0 to 1).
 
     `start` and `stop` are the values at the two ends, `begin` and `end` the second derivatives there. All
     arrays broadcast.
@@ -67,7 +68,7 @@ def cubic_piece(h: Floats, t: Floats, start: Floats, stop: Floats, begin: Floats
 
 
 def cubic_spline(values: Floats, knots: Floats, places: Floats) -> Floats:
-    """Return the cubic spline (p, ...) through `values` (n, ...) at rising `knots` (n,), at `places` (p,).
+    """Return the cubic spline (p, ...) at `places` (p,), through `values` (n, ...) at ascending `knots` (n,).
 
     See `CubicTable`.
 
@@ -105,13 +106,13 @@ def _bends(values: Floats, knots: Floats) -> Floats:
 
 
 class LimitedSpline:
-    """The cubic spline through `values` (n, ...) at rising `knots` (n,), with slopes limited to be monotone.
+    """The cubic spline through `values` (n, ...) at ascending `knots` (n,), limited to be monotone.
 
     Hyman, SIAM J. Sci. Stat. Comput. 4 (1983) 645-654.
 
-    Slopes at knots are the slopes of `CubicTable`, limited to three times the slopes of the straight lines on
-    both sides, and 0 at extrema. Values in an interval therefore lie between the values at its ends. Unlike
-    `monotone.monotone_cubic`, this does not change the spline of smooth data where the spline is monotone.
+    Slopes at knots are those of `CubicTable`, limited to three times the slopes of the straight lines on both
+    sides, and 0 at extrema. Values in an interval therefore lie between the values at its ends. Unlike
+    `monotone.monotone_cubic`, this spline equals `CubicTable` where that is monotone and the data are smooth.
     """
 
     def __init__(self, values: Floats, knots: Floats) -> None:

@@ -22,13 +22,13 @@ _EDGES = np.arange(_STEPS + 1) / _STEPS  # ends of the parts
 
 
 class Curve:
-    """A smooth curve bitwise through given points, a cubic per interval (`meshonet.geometry.curves.spline`).
+    """A smooth curve through given points (bitwise), one cubic per interval (`geometry.curves.spline`).
 
-    There are at least 2 `points` (n, 2), for a closed curve 3, in any unit of length; neighbours must differ.
-    A closed curve may repeat its first point at the end. At `corners`, indices of points, the tangent may
-    jump; if None, corners are detected (`meshonet.geometry.polygon.corners`). Intervals with a true value in
-    `straight` (intervals,) are straight; where a straight interval is long and lies between rounded corners,
-    the rounded corners are tangent to it (`meshonet.geometry.polygon.straights`).
+    An open curve has at least 2 `points` (n, 2), a closed curve 3, in any unit of length; neighbours must
+    differ. A closed curve may repeat its first point at the end. At `corners`, indices of points, the tangent
+    may jump; if None, corners are detected (`meshonet.geometry.polygon.corners`). Intervals in the mask
+    `straight` (intervals,) are straight. A long straight interval between rounded corners is tangent to these
+    (`meshonet.geometry.polygon.straights`).
 
     Raises InputError: too few points; a point that is not finite or equals its neighbour; a corner out of
     range.
@@ -143,7 +143,7 @@ class Curve:
     def tangent(self, s: Floats) -> Floats:
         """Return unit tangents (m, 2) at arc lengths `s` (m,).
 
-        At a corner the tangent of the interval after it.
+        At a corner it is the tangent of the interval after the corner.
         """
         i, t = self._locate(s)
         d = np.empty((len(t), 2))
@@ -151,7 +151,7 @@ class Curve:
         return np.asarray(d / np.hypot(d[:, 0], d[:, 1])[:, None])
 
     def polyline(self, places: Floats) -> Floats:
-        """Return points of every interval, at its parameters `places` (k,) in [0, 1).
+        """Return points of every interval, each at the parameters `places` (k,) in [0, 1).
 
         The result has the shape (intervals * k, 2), and one more row for the end point of an open curve.
         """

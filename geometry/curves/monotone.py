@@ -9,7 +9,7 @@ from meshonet.geometry.arrays import Floats
 
 
 def inner_slopes(h: Floats, delta: Floats) -> Floats:
-    """Return slopes (n-1, ...) at the inner points of n intervals of lengths `h` and slopes `delta`.
+    """Return slopes (n-1, ...) at the inner points between n intervals of lengths `h` and slopes `delta`.
 
     They are weighted harmonic means of neighbouring `delta`, and 0 where `delta` changes its sign, so that
     cubics do not overshoot.
@@ -21,10 +21,10 @@ def inner_slopes(h: Floats, delta: Floats) -> Floats:
 
 
 def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = False) -> Floats:
-    """Return values (m, ...) at `at` (m,) of the curve through `values` (n, ...) at increasing `x` (n,).
+    """Return, at `at` (m,), values (m, ...) of the curve through `values` (n, ...) at ascending `x` (n,).
 
     The curve is piecewise cubic, monotone in each interval and flat at extrema; with `linear`, piecewise
-    linear. The slopes at the two ends are those of parabolas through three points, limited.
+    linear. The slopes at the two ends are those of parabolas through three points, limited to be monotone.
     """
     h = np.diff(x)
     i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(h) - 1)
@@ -40,7 +40,7 @@ def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = Fals
 
 
 def hermite_piece(t: Floats, low: Floats, high: Floats, a: Floats, b: Floats) -> Floats:
-    """Return the values of cubic pieces at t, 0 to 1.
+    """Return the values of cubic pieces at t (0 to 1).
 
     `low` and `high` are the values at both ends, `a` and `b` the derivatives with respect to t there. All
     arrays broadcast.

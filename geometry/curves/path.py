@@ -159,7 +159,7 @@ class PiecedPath:
     def at(self, s: Floats) -> PathPoints:
         """Return points, tangents and curvature at arc lengths `s` (n,).
 
-        At a joint those of the piece after it.
+        At a joint, they are those of the piece after the joint.
         """
         s = np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length)
         k = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._radius) - 1)

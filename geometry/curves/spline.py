@@ -29,10 +29,10 @@ def spline_slopes(
 ) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, 2) at the start and at the end of each interval.
 
-    Between `corners`, indices of points (n, 2), the curve is the cubic spline with continuous tangent and
+    Between `corners` (indices of points), the curve is the cubic spline with continuous tangent and
     curvature, parabolic in the intervals next to a corner; overshoots are then removed (`limited`). A closed
-    curve does not repeat its first point. Intervals of a closed curve for which `tangent` (n,) is true are
-    straight lines, and the splines beside them begin and end in their directions.
+    curve does not repeat its first point. Intervals of a closed curve in the mask `tangent` (n,) are straight
+    lines, and the splines next to them begin and end in the directions of these lines.
     """
     if tangent is not None and tangent.any():
         return _beside_lines(points, corners, tangent)
@@ -73,7 +73,7 @@ def _beside_lines(points: Floats, corners: Indices, tangent: Bools) -> tuple[Flo
 
 
 def cubics(start: Floats, chord: Floats, first: Floats, last: Floats) -> Floats:
-    """Return the coefficients (4, n, d) of cubics in t, 0 to 1, with end slopes `first` and `last`."""
+    """Return the coefficients (4, n, d) of cubics in t (0 to 1) with end slopes `first` and `last`."""
     return np.stack([start, first, 3 * chord - 2 * first - last, first + last - 2 * chord])
 
 
@@ -84,7 +84,7 @@ def checked_points(points: Floats, what: str, point: str, dimension: int, *, clo
 
     Parameters
     ----------
-    points : (n, d) points, at least 2, for a closed curve 3 different ones.
+    points : (n, d) points, at least 2, or at least 3 different points for a closed curve.
     what : name of the curve in messages.
     point : name of a point in messages, with a field for its index, such as ``point {}``.
     dimension : number of coordinates d.
@@ -119,9 +119,10 @@ def open_slopes(
 
     There is a separate spline between each two neighbouring `stops`, indices of points that include the first
     and the last. `chord` (intervals, d) are the vectors between points and `h` (intervals,) their lengths.
-    All splines are solved as one tridiagonal system: a stop has two unknowns, one for each side, and their
-    rows are not coupled. The first and the last interval of each spline is a parabola, m_0 + m_1 = 2 delta_0,
-    or has the slope `held` (2, intervals, d) at its start or end, where that is a number.
+    All splines are solved as one tridiagonal system: a stop has two unknowns, one for each side, whose rows
+    are not coupled. At the ends of a spline, the slope is `held` (2, intervals, d), at the start or at the
+    end of the interval, where that is a number; otherwise the first and the last interval are parabolas, m_0
+    + m_1 = 2 delta_0.
     """
     delta = chord / h[:, None]
     doubled = np.zeros(len(h) + 1, dtype=np.intp)
@@ -174,10 +175,10 @@ def limited(
 ) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, 2) `start` and `stop` of each interval, limited to avoid overshoots.
 
-    Each tangent is kept near the angle between the chords before and after its point. `corners` are indices
-    of `points` (n, 2) at which the tangent may jump. At a corner the chord of the next interval says nothing:
-    there the tangent may deviate from the chord of its own interval by as much as the polygon turns at the
-    other end of this interval. A closed curve does not repeat its first point.
+    Each tangent is kept near the range of directions between the chords before and after its point. `corners`
+    are the indices of `points` (n, 2) at which the tangent may jump. At a corner, only the chord of the own
+    interval is known; there the tangent may deviate from this chord by as much as the polygon turns at the
+    other end of the interval. A closed curve does not repeat its first point.
     """
     n = len(points)
     chord = rolled(points, -1) - points  # the last of an open curve is not used

@@ -22,9 +22,9 @@ _SAME = 1e-13
 def check_domain(domain: Domain) -> None:
     """Raise InputError, with the place, if the polygons of the loops do not bound a region.
 
-    Checked in this order: repeated points; a loop without area; a loop that crosses or touches itself or
-    another, or runs the wrong way round; a hole outside of the outer loop or inside of another hole. Loops
-    that are splines are checked as the polygons through their points.
+    The checks, in this order: points are repeated; a loop has no area; a loop crosses or touches itself or
+    another loop, or has the wrong orientation; a hole is outside the outer loop or inside another hole. A
+    loop that is a spline is checked as the polygon through its points.
     """
     check_extent(domain.extent)
     for number, loop in enumerate(domain.loops):
@@ -40,7 +40,7 @@ def check_domain(domain: Domain) -> None:
 
 
 def describe(domain: Domain, number: int) -> str:
-    """Return the number and the names of a loop as text, for messages.
+    """Return the index and the names of a loop as text, for messages.
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> describe(Domain.of_polygons([square]), 0)

@@ -33,9 +33,9 @@ class Domain:
         Notes on parts of the file that were ignored.
     periodic : tuple of Periodic, optional
         Pairs of periodic parts of the outer loop.
-    heights, counts : mapping, optional
-        Prescribed first-cell heights and numbers of cells, by the name of a part of a loop. A line of
-        symmetry of the domain is used only if it takes each part to a part with the same values.
+    heights, counts : mapping, optional Prescribed first-cell heights and numbers of cells, by the name of a
+        part of a loop. A mirror of the domain is used only if the image of each part has the same prescribed
+        values.
 
     Raises
     ------
@@ -113,7 +113,7 @@ class Domain:
         return np.array([loop.length for loop in self.loops])
 
     def at(self, loop: Indices, arc: Floats) -> Floats:
-        """Return the points (n, 2) at arc lengths `arc` (n,) on the loops with the numbers `loop` (n,)."""
+        """Return the points (n, 2) at arc lengths `arc` (n,) on the loops with the indices `loop` (n,)."""
         points = np.empty((len(loop), 2))
         for number, each in enumerate(self.loops):
             points[loop == number] = each.at(arc[loop == number])
@@ -121,10 +121,10 @@ class Domain:
 
     @cached_property
     def layered_loops(self) -> range:
-        """Numbers of the loops that get layers if no wall is named: the holes.
+        """Indices of the loops that get layers if no wall is named: the holes.
 
-        If there are no holes: the outer loop, provided that the name of one of its parts says that it is no
-        wall.
+        Without holes, it is the outer loop, provided that the name of one of its parts says that this part is
+        no wall.
         """
         channel = (
             len(self.loops) == 1 and not self.periodic and not all(map(may_be_wall, self.loops[0].names))

@@ -27,7 +27,7 @@ _SAMPLES = 2000  # points on all walls together
 
 
 def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
-    """Return the distances (n,) from points of a loop to the nearest wall in front, infinite without one.
+    """Return the distances (n,) from points of a loop to the nearest wall in front of them, else infinity.
 
     The points are at arc lengths `arcs` (n,). A wall, which may be part of the same loop, is in front if its
     direction deviates from the inward normal by at most 53 degrees. Near a corner at which two cells meet,

@@ -21,8 +21,8 @@ are no longer than that would grow too fast beside longer ones.
 def with_kinks(domain: Domain) -> Domain:
     """Return a domain whose polygons have corners at kinks too.
 
-    Kinks are those of `find_kinks` between two corners, with a turn that makes no corner of itself. Between
-    nodes a cell would cut them off, by several first cells where layers are thin.
+    Kinks are found by `find_kinks` between each two corners; their turns are too small for corners. If a kink
+    were not a node, a cell would cut it off, by several first-cell heights where layers are thin.
     """
     held = 1 if domain.periodic else 0  # periodic sides are matched already
     loops = domain.loops

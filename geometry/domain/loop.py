@@ -28,11 +28,12 @@ class Loop:
 
     Parameters
     ----------
-    curve : closed; its `points` (n, 2) are those of the input. Arc lengths are measured from the first point.
-        A polygon is followed exactly (``Curve(..., straight=...)``), an airfoil is a spline between corners.
+    curve : closed curve; its `points` (n, 2) are those of the input. Arc lengths are measured from the first
+        point. The curve of a polygon is the polygon itself (``Curve(..., straight=...)``), that of an airfoil
+        is a spline between corners.
     corners : ascending indices of the points that are corners. A grid has a node at each.
     names : one name for the whole loop, or one for each stretch between corners.
-    cells : number of cells that should meet at each corner; empty: the number follows from the angle.
+    cells : number of cells that should meet at each corner; if empty, the numbers follow from the angles.
 
     Raises InputError: a corner index that is out of range; the wrong number of names.
     """
@@ -78,7 +79,7 @@ class Loop:
 
     @cached_property
     def corner_angles(self) -> Floats:
-        """Interior angles (c,) of the domain at the corners, in degrees, 0 to 360; re-entrant above 180."""
+        """Angles (c,) of the domain at the corners in degrees, 0 to 360; above 180 at re-entrant corners."""
         turn = np.degrees(turning(self.curve.points, closed=True))
         return np.asarray(180.0 - turn[list(self.corners)])
 
@@ -100,7 +101,7 @@ class Loop:
     def tangent(self, arc: Floats) -> Floats:
         """Return unit tangents (m, 2) at arc lengths (m,).
 
-        At a corner the tangent of the stretch after it.
+        At a corner it is the tangent of the stretch after the corner.
         """
         return self.curve.tangent(np.mod(arc, self.length))
 

@@ -9,7 +9,7 @@ from meshonet.geometry.polygon.area import contains, polygon_area
 
 
 def nested(polygons: Sequence[Floats]) -> list[tuple[int, list[int]]]:
-    """Return for each outer polygon its index and the indices of its holes, in the order of `polygons`.
+    """Return, for each outer polygon, its index and the indices of its holes, in the order of `polygons`.
 
     A polygon inside a hole is an outer polygon. Whether a polygon lies inside another is decided by its first
     point.

@@ -25,7 +25,7 @@ _BITS = 50  # of coordinates that are kept where sums of them have to be exact
 
 @dataclass(frozen=True)
 class Periodic:
-    """Two parts of the outer loop; the second is the first moved by `shift`."""
+    """Two parts of the outer loop (ranges of arc length); the second is the first moved by `shift`."""
 
     first: tuple[float, float]
     """Arc lengths where the first stretch starts and ends, in the direction of the loop."""
@@ -50,14 +50,13 @@ def rounded(values: Floats, domain: Domain) -> Floats:
 def with_periodic_sides(domain: Domain, pairs: Sequence[tuple[str, str]]) -> Domain:
     """Return the domain with periodic `pairs` of sides of its outer loop, each given by two names.
 
-    Points of a periodic side at which it turns by less than 45 degrees are no corners any more, so that the
-    nodes there can move.
+    Points at which a periodic side turns by less than 45 degrees are no longer corners, so that nodes can
+    move there.
 
     Raises
     ------
-    InputError
-        A name that no part of the outer loop has, or that is given twice; sides that are not translated
-        copies of each other (the message gives the distance).
+    InputError No part of the outer loop has one of the names; a name is given twice; the sides of a pair are
+        not translated copies of each other (the message gives the distance).
     """
     if not pairs:
         return domain

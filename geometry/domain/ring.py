@@ -20,18 +20,18 @@ def ring_loop(
     names: Sequence[str] = ("outer",),
     places: Sequence[str] = (),
 ) -> Loop:
-    """Return the loop that follows a polygon exactly, the domain on its left.
+    """Return the loop that follows a polygon exactly, with the domain on its left.
 
     Parameters
     ----------
-    points : (n, 2), of either orientation; repeated neighbours are removed.
+    points : (n, 2) of either orientation; points that repeat their neighbour are removed.
     hole : whether the domain is outside the polygon.
     corners : indices of the points that are corners; None detects them by their turning angles.
     names : one name, or one for each stretch between corners, in the order of `corners`.
     places : position of each point in its source, for messages.
 
-    Raises InputError: fewer than three points, no area, a polygon that crosses or touches itself, corner
-    indices out of range, the wrong number of names.
+    Raises InputError: there are fewer than three points or no area; the polygon crosses or touches itself; a
+    corner index is out of range; the number of names is wrong.
     """
     points, number, places = _distinct(points, places)
     check_extent(extent_of(points))

@@ -27,7 +27,7 @@ def _table(loop: Loop) -> tuple[Floats, Floats]:
 def turning_between(loop: Loop, first: Floats, last: Floats) -> Floats:
     """Return the angles in degrees (k,) by which a loop turns, in absolute value, from `first` to `last`.
 
-    Corners are not included.
+    The turning at corners is not included.
     """
     arcs, turned = _table(loop)
     return _turned(loop, last, arcs, turned) - _turned(loop, first, arcs, turned)
@@ -64,10 +64,10 @@ def sizes_by_bend(loop: Loop, largest: float, turn: float) -> tuple[Floats, Floa
 
 
 def wall_bend(loop: Loop, arcs: Floats, window: int) -> Floats:
-    """Return the absolute curvature (n,) of a loop at ascending arc lengths (n,), in radians per unit length.
+    """Return the absolute curvature (n,) of a loop at ascending arc lengths (n,), in radians per length.
 
-    Each value is an average over `window` arc lengths on either side. The turning at corners of the loop does
-    not count; the corners must be among `arcs`.
+    Each value is an average over `window` of the `arcs` on both sides. The turning at corners of the loop
+    does not count; the corners must be among `arcs`.
     """
     along = loop.tangent(arcs)
     direction = arctan2(along[:, 1], along[:, 0])

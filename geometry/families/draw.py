@@ -63,7 +63,7 @@ class Draw:
 
 @dataclass(frozen=True)
 class Draws(Sequence[Draw]):
-    """A sequence of `length` members of a family, each made at its first use, and their splits."""
+    """A sequence of `length` members of a family, and their splits; members are made at their first use."""
 
     first: Draw
     length: int

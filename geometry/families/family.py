@@ -60,10 +60,10 @@ def family(name: str) -> Family:
 
 
 def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
-    """Return n nodes (n, 2) along straight pieces, in nearly equal steps; every corner is bitwise a node.
+    """Return n nodes (n, 2) along a polyline, in nearly equal steps; every corner is bitwise a node.
 
-    `like` is another polyline with as many corners; if it is given, each corner gets the same node index as
-    in `like`.
+    If `like`, another polyline with equally many corners, is given, each corner gets the node index that it
+    has in `like`.
 
     >>> polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], 5).tolist()
     [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]]
@@ -116,9 +116,9 @@ def wrench(opening: float, ni: int, nj: int) -> Boundary:
         |     |________|     |    the domain is 270 degrees; elliptic grids fold there.
         '--------------------'
 
-    The kinks are on the same nodes for every opening: those that nearly equal steps give for an opening of
-    0.3. The boundary nodes thus depend smoothly on the opening, as interpolation between training cases
-    requires.
+    The corners have the same node indices for every opening: those that nearly equal steps give for an
+    opening of 0.3. The boundary nodes thus depend smoothly on the opening, as interpolation between training
+    cases requires.
     """
     south, north = polyline([(0.0, 0.0), (1.0, 0.0)], ni), polyline(_jaw(opening), ni, like=_jaw(0.3))
     return _upright(south, north, nj, f"wrench-{opening:.6g}")

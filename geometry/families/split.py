@@ -25,10 +25,11 @@ SHARE = 1 / 6
 def split(
     parameters: Sequence[float], way: str, *, seed: int = 0, share: float = SHARE, low: bool = False
 ) -> tuple[str, ...]:
-    """Return ``train`` or ``test`` for each member, by its parameter, in one of `WAYS`.
+    """Return ``train`` or ``test`` for each member; `way`, one of `WAYS`, says how parameters decide.
 
     `share` is the fraction of test members; there is at least one, and at least two are for training. With
-    `low`, extrapolation is towards low values of the parameter. A random split ignores the parameters.
+    `low`, test members for extrapolation have low values of the parameter. A random split ignores the
+    parameters.
 
     Raises InputError: an unknown way; fewer than three members; equal parameters, unless the split is random.
 

@@ -22,21 +22,19 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Blocks (ni, nj) of node numbers that cover the quads of a mesh.
+    """Blocks that cover the quads of a mesh; each block is an array (ni, nj) of node indices.
 
     Parameters
     ----------
     mesh : QuadMesh
         Quadrilaterals, their nodes, and the positions of nodes on the boundary.
-    blocks : tuple of array
-        Right-handed arrays of node numbers; each quad of the mesh is in exactly one of them.
-    layers : dict, optional
-        For blocks with layers: a dict from the number of a block to the number of rows of cells, counted from
-        its south side, that are layers at a wall. The heights of these rows are prescribed, so the
-        optimisation does not move them.
-    fronts : tuple of int, optional
-        Numbers of the loops that are not walls but the outer sides of layers. The cells of these layers are
-        added later.
+    blocks : tuple of array Right-handed arrays (ni, nj) of node indices; each quad of the mesh is in exactly
+        one block.
+    layers : dict, optional For blocks with layers: a dict from the index of a block to the number of its rows
+        of cells, counted from its south side, that are layers at a wall. The heights of these rows are
+        prescribed, so that the optimisation does not move them.
+    fronts : tuple of int, optional Indices of the loops that are not walls but the outer sides of layers. The
+        cells of these layers are added later.
     """
 
     mesh: QuadMesh

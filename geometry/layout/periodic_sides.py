@@ -19,9 +19,9 @@ first.
 
 
 def sides_of(mesh: QuadMesh) -> list[Sides]:
-    """Return for each periodic pair the nodes along both parts.
+    """Return, for each periodic pair of sides, the nodes along both sides.
 
-    The two parts have equally many nodes only if their cell counts were matched before.
+    The two sides have equally many nodes only if their numbers of cells were matched before.
     """
     after = following(mesh)
     return [
@@ -31,7 +31,7 @@ def sides_of(mesh: QuadMesh) -> list[Sides]:
 
 
 def following(mesh: QuadMesh) -> Indices:
-    """Return for each node (n,) the next node along the boundary, with the domain on the left; -1 inside."""
+    """Return, for each node (n,), the next along the boundary (domain on the left); -1 for inner nodes."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     after = np.full(len(mesh.nodes), -1, dtype=np.intp)
     after[mesh.quads[cell, side]] = mesh.quads[cell, (side + 1) % 4]

@@ -58,9 +58,9 @@ class QuadMesh:
 
     Parameters
     ----------
-    domain : its loops carry the boundary nodes.
+    domain : domain on whose loops the boundary nodes lie.
     nodes : (n, 2) coordinates.
-    quads : (m, 4) node numbers of each cell, counter-clockwise.
+    quads : (m, 4) node indices of each cell, counter-clockwise.
     places : positions of the boundary nodes on the loops.
     """
 
@@ -75,7 +75,7 @@ class QuadMesh:
 
     @property
     def edges(self) -> Indices:
-        """(e, 2) node numbers of each edge, the lower first, in ascending order."""
+        """(e, 2) node indices of each edge, the lower index first; edges are in ascending order."""
         return self._sides[2]
 
     @property
@@ -85,13 +85,13 @@ class QuadMesh:
         return np.hypot(*(second - first))
 
     def edges_between(self, first: Indices, second: Indices) -> Indices:
-        """Return the numbers of the edges between pairs of nodes, given as two arrays of one shape."""
+        """Return the indices of the edges between nodes `first` and `second`, two arrays of one shape."""
         low, high, n = np.minimum(first, second), np.maximum(first, second), len(self.nodes)
         return np.asarray(np.searchsorted(self.edges[:, 0] * n + self.edges[:, 1], low * n + high))
 
     @property
     def edge_of(self) -> Indices:
-        """(m, 4) number of the edge from each node of a quad to its next node."""
+        """(m, 4) index of the edge from each node of a quad to the next node of the quad."""
         return self._sides[0]
 
     @property
@@ -126,7 +126,7 @@ class QuadMesh:
 
     @cached_property
     def irregular(self) -> Bools:
-        """(n,) whether the number of quads at a node is not four, or on the boundary not two."""
+        """(n,) whether the number of quads at a node is not regular: four inside, two on the boundary."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
 
     @cached_property
@@ -137,7 +137,8 @@ class QuadMesh:
     def aspects(self, lengths: Floats) -> Floats:
         """Return the aspect ratios (m,) of the quads, for edges of `lengths` (e,).
 
-        A ratio is the geometric mean of the sides 1-2 and 3-0, divided by that of the sides 0-1 and 2-3.
+        The ratio is the geometric mean length of the sides 1-2 and 3-0, divided by that of the sides 0-1 and
+        2-3.
         """
         sides = lengths[self.edge_of]
         return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))
@@ -150,7 +151,7 @@ class QuadMesh:
         return tied
 
     def shifts(self, images: Indices) -> Floats:
-        """Return the period (k, 2) from the partner of each of the nodes `images` (k,) to this node."""
+        """Return, for each of the nodes `images` (k,), the period (k, 2) from its partner to the node."""
         known = np.array([each.shift for each in self.domain.periodic] or [(0.0, 0.0)])
         way = self.nodes[images] - self.nodes[self.places.partner[images]]
         off = np.hypot(*(way[:, None] - known).transpose(2, 0, 1))

@@ -13,7 +13,7 @@ Line: TypeAlias = tuple[int, Side, Indices]
 
 
 def shared(lines: list[Line]) -> tuple[list[Connection], list[Line]]:
-    """Return the connections of lines with the same nodes, and the lines that no other line matches."""
+    """Return the connections between lines with the same nodes, and the lines that match no other line."""
     waiting: dict[tuple[int, ...], Line] = {}
     connections = []
     for line in lines:
@@ -45,9 +45,9 @@ def connection_of(
 
 
 def shared_in_part(lines: list[Line]) -> tuple[list[Connection], list[tuple[Line, int]]]:
-    """Return the connections of parts of lines, and the remaining parts with the index of their first node.
+    """Return the connections between parts of lines; and the other parts, with their first node's index.
 
-    A side next to several other blocks, or to itself, shares a part of its nodes with each.
+    A side that is next to several blocks, or to itself, shares a part of its nodes with each of them.
     """
     places: dict[tuple[int, ...], list[tuple[int, int]]] = {}
     for number, (_, _, nodes) in enumerate(lines):

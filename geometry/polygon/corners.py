@@ -51,13 +51,14 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     - by more than 40 degrees and twice as much as at both neighbouring points;
     - by more than 75 degrees.
 
-    Two adjacent points are both corners if both turn by more than 40 degrees (along an open polygon 8), and
-    five times as much as the points beyond them. The two ends of an oblique base are both corners too.
+    Two adjacent points are both corners if the polygon turns at both by more than 40 degrees (8 degrees if it
+    is open), and five times as much as at the points beyond them. The two ends of an oblique base are both
+    corners too.
 
-    The round end of a thin body given by few points can turn by up to 155 degrees at one point, but is no
-    corner: near this point, the thickness of the body grows like the square root of the distance from it;
-    near an edge it grows linearly (`growth_exponent`). Closed polygons of at most `few` points are not
-    sampled curves; all their points may be corners.
+    The round end of a thin body that is given by few points can turn by up to 155 degrees at one point and is
+    still no corner. It is recognised by the thickness of the body: near a round end it grows like the square
+    root of the distance, near an edge linearly (`growth_exponent`). A closed polygon of at most `few` points
+    is not a sampled curve; any of its points may be a corner.
     """
     angle = np.abs(turning(points, closed=closed))
     if not angle.max() > KINK:
@@ -124,8 +125,7 @@ def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:
 
     At a small distance d from point k of the polygon `points` (n, 2), the thickness is proportional to d to
     the power p: p is about 1/2 behind a round end, 1 behind a wedge, and more behind a cusp. It is computed
-    from the first and the second points on both sides of point k, and infinite if an open polygon has too few
-    points there.
+    from the two points on each side of point k. It is infinite if an open polygon has too few points there.
     """
     n = len(points)
     if n < 5 or (not closed and not 2 <= k < n - 2):

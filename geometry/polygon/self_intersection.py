@@ -56,9 +56,9 @@ def check_outline(points: Floats, places: Sequence[str] = ()) -> None:
 
 
 def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> list[Crossing]:
-    """Return up to `limit` crossings or contacts of segments of a polygon (n, 2) that are not neighbours.
+    """Return up to `limit` crossings or contacts of non-adjacent segments of a polygon (n, 2).
 
-    A segment that runs back along its neighbour also counts. A closed polygon does not repeat its first
+    A segment that runs back along its neighbour is also reported. A closed polygon does not repeat its first
     point. Segments are sorted along a direction, and only those that overlap along it are compared: about n
     comparisons for a body. A polygon with too many overlaps is searched with a spatial index tree (shapely).
     """
@@ -74,7 +74,7 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
 def sweep_spans(p: Floats, end: Floats) -> tuple[Floats, Floats]:
     """Return start and end (m,) of the segments from `p` (m, 2) to `end` (m, 2) along the sweep direction.
 
-    They are rounded outwards.
+    Starts are rounded downwards and ends upwards.
     """
     along, along_end = product(p[: len(end)], _SWEEP), product(end, _SWEEP)
     low, top = np.minimum(along, along_end), np.maximum(along, along_end)

@@ -20,9 +20,10 @@ _ROUNDING = np.radians(0.1)  # turns of rounded coordinates
 def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
     """Return the ascending indices of kinks of an open polygon `points` (n, 2); corners may be among them.
 
-    A turn of more than 2 degrees is a kink if it is 20 times as large as both neighbouring turns. Among at
-    most `few` points all such turns are kinks if somewhere the polygon turns one way and back in a single
-    step, by half its largest turn or more: a smooth curve through these points would be a wave.
+    A turn of more than 2 degrees is a kink if it is 20 times as large as both neighbouring turns. In a
+    polygon of at most `few` points, all turns of more than 2 degrees are kinks if somewhere the polygon turns
+    one way and, at the next point, back, by at least half of its largest turn: a smooth curve through these
+    points would be a wave.
     """
     turn = turning(points)
     size = np.abs(turn)
@@ -35,13 +36,13 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
 
 
 def straight_intervals(points: Floats, corners: Indices) -> Bools:
-    """Return which intervals (n,) of a closed polygon `points` (n, 2) are straight lines.
+    """Return the mask (n,) of the intervals of a closed polygon `points` (n, 2) that are straight lines.
 
-    This finds straight lines between rounded corners. An interval counts as straight under two conditions. It
-    is at least `LONG` times as long as one of its neighbours; a neighbour beyond one of the `corners`,
-    indices of points, does not count. And at both ends the polygon turns by no more than it would where a
-    tangent meets the circle through the next three points, with the tolerance `EXPLAINED`; at a long chord of
-    a curve it turns more.
+    Such lines are between rounded corners. An interval is straight under two conditions. First, it is at
+    least `LONG` times as long as one of its neighbours; a neighbour beyond one of the `corners` (indices of
+    points) is ignored. Second, at both ends the polygon turns by no more (with the tolerance `EXPLAINED`)
+    than where a tangent meets the circle through the next three points; at the ends of a long chord of a
+    curve it turns more.
     """
     turn, joined = turning(points, closed=True), np.ones(len(points), dtype=bool)
     turn[corners], joined[corners] = 0.0, False

@@ -18,11 +18,11 @@ from meshonet.geometry.summary import Quality
 
 @dataclass(frozen=True)
 class Deviation:
-    """Deviation of corner angles from 90 degrees: mean over all corners, 99th percentile over cells.
+    """Deviation of corner angles from 90 degrees, in degrees: mean, 99th percentile and maximum.
 
-    In degrees. The percentile is taken over the largest deviation of each cell; `p99` is None if percentiles
-    were not computed. The maximum `max` occurs in the cell `at`, (block, i, j) or (block, i, j, k). At a
-    corner of a volume the largest deviation of its three angles counts.
+    The mean is over all corners, the percentile over the largest deviations of all cells; `p99` is None if
+    percentiles were not computed. The maximum `max` occurs in the cell `at`, (block, i, j) or (block, i, j,
+    k). The deviation at a corner of a volume is the largest of its three angles' deviations.
     """
 
     mean: float
@@ -35,8 +35,8 @@ class Deviation:
 class BlockCounts:
     """Blocks and irregular vertices of a grid.
 
-    `sizes` are the numbers of nodes of each block along its directions. `irregular` lists the inner nodes
-    (block, i, j) at which a number of cells other than four meet, with this number; None for volumes.
+    `sizes` are, for each block, the numbers of nodes along its directions. `irregular` lists the inner nodes
+    (block, i, j) at which other than four cells meet, each with the number of its cells; None for volumes.
     """
 
     sizes: tuple[tuple[int, ...], ...]
@@ -45,7 +45,7 @@ class BlockCounts:
 
 @dataclass(frozen=True)
 class BlockFigures(BlockCounts):
-    """Counts, angles and grid lines of a multi-block grid; `nodes` counts shared nodes once."""
+    """Counts, angles and grid lines of a multi-block grid; `nodes` is the number of distinct nodes."""
 
     nodes: int
     interfaces: int
@@ -76,8 +76,8 @@ LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")
 def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None = None) -> BlockFigures:
     """Return the figures of a multi-block grid.
 
-    `quality` is needed for volumes, and measured if it is not given; growth and bend have percentiles if
-    `quality` has percentiles. `run` are growth and bend without percentiles, if they are known.
+    `quality` is used for volumes, and measured if it is not given; growth and bend have percentiles if
+    `quality` has them. `run` has growth and bend without percentiles, if they are already known.
     """
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes
@@ -96,7 +96,7 @@ def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None 
 
 
 def block_counts(grid: Grid, nodes: Vertices | None = None) -> BlockCounts:
-    """Return the blocks and irregular vertices of a grid; `nodes` are its vertices, found unless given."""
+    """Return blocks and irregular vertices of a grid; its vertices `nodes` are computed unless given."""
     sizes = tuple(block.counts for block in grid.blocks)
     if grid.form == "volume":
         return BlockCounts(sizes, None)
@@ -116,7 +116,7 @@ def extreme_dict(extreme: Extreme | None) -> dict[str, Any] | None:
 def deviation(grid: Grid) -> Deviation:
     """Return the deviation of the corner angles of planar blocks or surface patches from 90 degrees.
 
-    In the plane it can be up to 270 degrees.
+    In the plane a deviation can be up to 270 degrees.
     """
     every = [corner_deviations(block.nodes) for block in grid.blocks]
     worst = [corners.max(axis=0) for corners in every]

@@ -25,8 +25,8 @@ NONE = slice(0)
 class CellRun(NamedTuple):
     """Result of one pass over the cells of a block.
 
-    Minimum, mean and maximum of each metric (metrics, 3), the cells with minimum and maximum (metrics, 2, 2),
-    and the values of the metrics that were kept.
+    `table` (metrics, 3) has minimum, mean and maximum of each metric; `where` (metrics, 2, 2) the cells i, j
+    of minimum and maximum; `values` the values, in all cells, of the metrics that were kept.
     """
 
     table: Floats
@@ -39,8 +39,8 @@ def run_over(nodes: Floats, kept: slice = NONE, *, periodic: bool = False, wake:
 
     For the metrics `kept`, the result also has the values (n, ni-1, nj-1) of all cells.
 
-    In a `periodic` block i = ni-1 and i = 0 coincide. The first `wake` cells along south are neighbours of
-    the last `wake` cells.
+    In a `periodic` block i = ni-1 and i = 0 coincide. The first `wake` cells along the south side are
+    neighbours of the last `wake` cells.
     """
     metrics, (x, y) = len(QUAD_METRICS), np.moveaxis(as_planar(nodes), -1, 0)
     table, where = np.empty((metrics, 3)), np.empty((metrics, 2, 2), dtype=np.int64)

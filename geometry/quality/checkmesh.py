@@ -52,9 +52,9 @@ boundary), and skewness (m, n[, l]).
 
 @dataclass(frozen=True)
 class FaceMeasures:
-    """Statistics of each measure, with the cell (i, j) of the largest value.
+    """Statistics of each measure of faces, with the cell (i, j) of the largest value.
 
-    None for a measure that applies to no face of the grid.
+    A measure that applies to no face of the grid is None.
 
     Cells are (block, i, j) in a multi-block grid, and (block, i, j, k) in volumes.
     """
@@ -85,10 +85,10 @@ def faces(grid: Grid) -> FaceMeasures:
 
 
 def worst_faces(grid: Grid, name: str) -> list[Floats]:
-    """Return for each block and cell the largest value of the measure `name` of the faces of the cell.
+    """Return, for each block (ni-1, nj-1[, nk-1]), the largest value of a measure over each cell's faces.
 
-    Arrays (ni-1, nj-1[, nk-1]). A face between two cells counts for the first of them, the cell that `faces`
-    reports.
+    `name` is the name of the measure. A face between two cells belongs to the first of them, the cell that
+    `faces` reports.
 
     Raises InputError: a surface, whose cells have no faces.
     """
@@ -114,7 +114,7 @@ def _of_volume(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
 
 
 def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:
-    """Return the cells (block, i, j) with a face that exceeds one of two limits.
+    """Return the cells (block, i, j) that have a face beyond one of two limits.
 
     `angle`, in degrees, is the limit of the face's non-orthogonality; `skew` is the limit of its skewness.
     """
@@ -187,7 +187,7 @@ def _outer(grid: Grid) -> Iterator[Values]:
 
 
 def centroids(nodes: Floats) -> Floats:
-    """Return the centroids (ni-1, nj-1, 2) of the cells of `nodes` (ni, nj, 2), from two triangles each."""
+    """Return the centroids (ni-1, nj-1, 2) of the cells of `nodes` (ni, nj, 2), as two triangles each."""
     a = nodes[:-1, :-1]
     b, c, d = nodes[1:, :-1] - a, nodes[1:, 1:] - a, nodes[:-1, 1:] - a
     first, second = cross2(b, c), cross2(c, d)

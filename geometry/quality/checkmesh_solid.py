@@ -32,8 +32,8 @@ _TINY = 1e-300  # in place of 0 in divisors
 class SolidFaceMeasures(NamedTuple):
     """Measures of an array of faces (n, m).
 
-    The cell (block, i, j, k) of the first face, the angles in degrees (None at the boundary), and the
-    skewness.
+    `place` is the cell (block, i, j, k) of the first face, `axis` the direction normal to the faces. `angle`
+    is the non-orthogonality in degrees (None at the boundary).
     """
 
     place: tuple[int, ...]
@@ -195,7 +195,7 @@ def _cross(u: Floats, v: Floats) -> Floats:
 
 
 def cell_at(grid: Grid, block: int, side: Side, first: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the cell (block, i, j, ...) at a side whose index or indices along the side are `first`."""
+    """Return the cell (block, i, j, ...) at a side; `first` are its one or two indices along the side."""
     axis, end = PLACES[side]
     return _place(block, axis, 0 if end == 0 else grid.blocks[block].counts[axis] - 2, first)
 

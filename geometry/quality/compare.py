@@ -15,7 +15,7 @@ NEAR = 0.1
 
 @dataclass(frozen=True)
 class Difference:
-    """Distances between the nodes of two grids, in their unit of length."""
+    """Distances between the nodes of two grids, in the unit of length of the grids."""
 
     max: float
     mean: float

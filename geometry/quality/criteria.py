@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 class Criteria:
     """Gates and profiles by which grids are judged.
 
-    There is at least one gate or profile; functions that judge nothing have None in place of `Criteria`.
+    There is at least one gate or profile; where nothing is to be judged, None is used instead of `Criteria`.
 
     Parameters
     ----------

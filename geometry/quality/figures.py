@@ -38,9 +38,9 @@ FIGURES: Mapping[str, str] = MappingProxyType({
 
 @dataclass(frozen=True)
 class Figure:
-    """A value, with its node or cell (i, j) or (block, i, j[, k]) and the direction of its grid line.
+    """A value, the node or cell where it occurs, and the direction of its grid line.
 
-    Place and direction are given if they are known.
+    The node or cell is (i, j) or (block, i, j[, k]). Place and direction are None if they are not known.
     """
 
     value: float
@@ -49,7 +49,7 @@ class Figure:
 
     @property
     def where(self) -> str:
-        """Direction and place as text for users, empty if neither is known.
+        """Direction and place as text for users; the text is empty if neither is known.
 
         >>> Figure(1.4, (12, 0), "xi").where, Figure(3.0).where
         (' along xi at i=12, j=0', '')

@@ -35,7 +35,7 @@ class Gate:
     """Limit, in the unit of the metric."""
 
     def figure(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> Figure:
-        """Return the figure that the gate judges, from `figures` or from `more`.
+        """Return the figure that the gate limits, from `figures` or from `more`.
 
         Raises InputError: a figure that this grid does not have.
         """
@@ -61,10 +61,10 @@ class Gate:
         return in_short(self._what, figure, self.compare, self.limit)
 
     def replaces(self, figure: str, compare: str) -> bool:
-        """Return whether the gate replaces a profile's limit on `figure` with the comparison `compare`.
+        """Return whether the gate replaces a limit of a profile: that on `figure` with comparison `compare`.
 
-        It does if it has the same figure and direction and, for a metric, judges its maximum or minimum. A
-        gate on a mean or a percentile applies in addition.
+        It does if it limits the same figure in the same direction and, in case of a metric, its maximum or
+        minimum. A gate on a mean or a percentile applies in addition to the profile.
         """
         return (self.metric, self.compare[0], self.statistic) == (figure, compare[0], end_of(compare))
 
@@ -79,15 +79,15 @@ def beyond(value: float, compare: str, limit: float) -> bool:
 
 
 def end_of(compare: str) -> str:
-    """Return the extreme of a metric to which a limit applies: ``max`` for ``>``, ``min`` for ``<``."""
+    """Return the statistic of a metric to which a limit applies: ``max`` for ``>``, ``min`` for ``<``."""
     return "max" if compare in (">", ">=") else "min"
 
 
 def in_short(name: str, figure: Figure, compare: str, limit: float) -> str:
     """Return a figure and its limit as text.
 
-    Growth and bend are given with their direction and place. The figure has as many digits as distinguish it
-    from the limit, at least four.
+    Growth and bend are given with their direction and place. The figure has at least four digits, and as many
+    as distinguish it from the limit.
 
     >>> in_short("growth", Figure(1.417, (12, 0), "xi"), ">", 1.3)
     'growth 1.417 > 1.3 along xi at i=12, j=0'
@@ -104,12 +104,10 @@ class Judgement:
 
     Parameters
     ----------
-    problems : tuple of str
-        A line for each gate, and each check of a profile, that failed.
+    problems : tuple of str A line for each gate that failed, and for each failed check of a profile.
     beyond : tuple of str
         The same as short texts, including the warnings of profiles: ``max_angle 178.2 > 170``.
-    replaced : tuple of str
-        Limits of gates that replace those of profiles: ``box_ratio > 4000``.
+    replaced : tuple of str Limits of gates that replace limits of profiles: ``box_ratio > 4000``.
     profile : ProfileReport, optional
         The outcome of every check of the profiles.
     """
@@ -126,7 +124,7 @@ class Judgement:
 
 
 def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
-    """Return the gate that `text` describes; `more` are names of figures allowed besides `FIGURES`.
+    """Return the gate that `text` describes; `more` are figures that are permitted besides `FIGURES`.
 
     For a metric without a statistic, ``>`` is applied to the largest value in any cell, ``<`` to the
     smallest.
@@ -159,12 +157,12 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
 
 
 def parse_gates(texts: Iterable[str] | None, more: Sequence[str] = ()) -> tuple[Gate, ...]:
-    """Return the gates of all `texts`; `more` are names of figures allowed besides `FIGURES`."""
+    """Return the gates of all `texts`; `more` are figures that are permitted besides `FIGURES`."""
     return tuple(parse_gate(text, more) for text in texts or ())
 
 
 def need_percentiles(gates: Iterable[Gate]) -> bool:
-    """Return whether a gate needs a percentile, which takes a sort of all cells."""
+    """Return whether any gate needs a percentile, for which all cells must be sorted."""
     return any(gate.statistic in ("p01", "p99") for gate in gates)
 
 

@@ -28,11 +28,11 @@ LARGE = 1e30
 
 @dataclass(frozen=True)
 class Extreme:
-    """Greatest and mean value of a quantity over a grid, and the node or cell (i, j) of the greatest.
+    """Greatest and mean value of a quantity over a grid, and where the greatest value occurs.
 
-    The place is (block, i, j) in a multi-block grid and (block, i, j, k) in a volume; in these grids there is
-    also the 99th percentile. `along` is the direction of the grid line with the largest value, one of
-    `DIRECTIONS`.
+    The place `at` is the node or cell (i, j), in a multi-block grid (block, i, j), in a volume (block, i, j,
+    k); the last two also have the 99th percentile. `along` is the direction of the grid line with the
+    greatest value, one of `DIRECTIONS`.
     """
 
     max: float
@@ -44,19 +44,19 @@ class Extreme:
 
 @dataclass(frozen=True)
 class Growth:
-    """Growth along each direction, None if lines have a single edge; zeta exists in volumes only."""
+    """Growth along each direction, None if lines have a single edge; zeta is None except in volumes."""
 
     xi: Extreme | None
     eta: Extreme | None
     zeta: Extreme | None = None
 
     def families(self) -> dict[str, Extreme]:
-        """Return the values that are not None by the names of their directions."""
+        """Return those values that are not None; the keys are the names of the directions."""
         return {name: extreme for name, extreme in vars(self).items() if extreme}
 
 
 class Tally:
-    """Collects the extreme of values that are given part by part; with `kept` also their percentile.
+    """Collects extreme and mean of values that are added part by part; with `kept` also a percentile.
 
     Values are kept with the precision in which they are given.
     """
@@ -85,7 +85,7 @@ class Tally:
         along: str | None,
         values: Sequence[Floats | Singles],
     ) -> None:
-        """Add `count` values, of which the greatest, its node or cell `at` and the sum `total` are known."""
+        """Add `count` values by their greatest value `high`, its node or cell `at`, and their sum `total`."""
         if high > self._max:
             self._max, self._at, self._along = high, at, along
         self._total += total
@@ -120,7 +120,7 @@ def growth(grid: Grid) -> Growth:
 
 
 def growth_off_walls(growth: Growth, walls: Sequence[Patch]) -> Extreme | None:
-    """Return the growth along the lines that leave the `walls` of a one-block grid.
+    """Return the growth along those lines that start at the `walls` of a one-block grid.
 
     `growth` is the growth along the lines of each direction.
     """
@@ -155,7 +155,7 @@ def across_wake(grid: Grid) -> Floats:
 def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
     """Yield parts of `nodes` (ni, nj, 2), each with the index of its first column.
 
-    Parts overlap by `more` columns.
+    Successive parts overlap by `more` columns.
     """
     for i in range(0, max(len(nodes) - more, 0), ROWS):
         yield i, nodes[i : i + ROWS + more]

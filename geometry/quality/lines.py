@@ -28,11 +28,11 @@ from meshonet.kernels import _native
 
 @dataclass(frozen=True)
 class Lines:
-    """Growth and bend at the nodes of grid lines: largest values, each with its place; None without nodes.
+    """Largest growth and bend at the nodes of grid lines, with their places; None if there are no nodes.
 
-    `growth` is the growth along each direction of the blocks; across a side it counts for the direction
-    normal to the side. `leaving` is the growth along the lines that start at walls, through all blocks that
-    they cross, and `by_wall` the same for each wall, by name.
+    `growth` is the growth along each direction of the blocks; at a node on a side between blocks, the
+    direction is that normal to the side. `leaving` is the growth along the lines that start at walls,
+    continued through all blocks that they cross; `by_wall` is the same for each wall, by name.
     """
 
     growth: Growth
@@ -46,7 +46,7 @@ class Lines:
 
 @dataclass(frozen=True)
 class BlockLines:
-    """Growth and bend of the lines along a direction of a block, inside the block or across a side of it."""
+    """Growth and bend of the lines along a direction of a block, inside it or across one of its sides."""
 
     block: int
     axis: int
@@ -63,7 +63,8 @@ def lines(grid: Grid, nodes: Vertices) -> Lines:
 def lines_of(grid: Grid, parts: list[BlockLines], *, along: bool = True, places: bool = True) -> Lines:
     """Return growth and bend of the lines of blocks in `parts`.
 
-    `along` adds percentiles along directions and walls, `places` percentiles inside blocks and across sides.
+    `along` adds percentiles for each direction and each wall; `places` adds them for nodes inside blocks and
+    for nodes on sides between blocks.
     """
     family = {(m.block, m.axis): k for k, members in enumerate(families(grid)) for m in members}
     walls = [(patch.name, family[patch.block, patch.place[0]]) for patch in grid.walls()]
@@ -98,11 +99,11 @@ def _of(tallies: Iterable[Tally], *, kept: bool) -> Extreme | None:
 def part_of_values(
     place: tuple[int, ...], axis: int, inside: bool, values: Iterable[Floats], *, kept: bool = True
 ) -> BlockLines:
-    """Return the growth and bend of lines through an array of nodes as a part of the result for a grid.
+    """Return growth and bend of the lines through an array of nodes, as one part of the result for a grid.
 
-    `values` are growth and bend (m, n[, l]) of nodes, the first of which is at `place`, (block, i, j[, k]).
-    `axis` is the direction of the lines, `inside` whether the nodes are inside a block. `kept` keeps values
-    for percentiles.
+    `values` are two arrays (m, n[, l]), growth and bend at the nodes; the first node is at `place`, (block,
+    i, j[, k]). `axis` is the direction of the lines; `inside` tells whether the nodes are inside a block;
+    `kept` keeps the values for percentiles.
     """
     tallies = Tally(kept=kept), Tally(kept=kept)
     for tally, each in zip(tallies, values, strict=True):

@@ -11,10 +11,11 @@ Pairing: TypeAlias = Literal["auto", "name", "order"]
 
 
 class GridMatcher:
-    """Finds for each of many grids its partner in a reference set, which is read only as far as needed.
+    """Finds, for each of many grids, its partner in a reference set, which is read only as far as needed.
 
-    Grids are paired by ``name`` or by ``order``. ``auto``: a single reference grid serves for all; several
-    are paired by name if they have different names, one of which is that of the first grid, else by order.
+    Grids are paired by ``name`` or by ``order``. With ``auto``, a single reference grid is the partner of all
+    grids. Several reference grids are paired by name if their names differ and include the name of the first
+    grid, otherwise by order.
     """
 
     def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 def count_folded(nodes: Floats) -> int:
     """Return the number of folded cells of `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3).
 
-    Fastest, and without copies, in the planar layout of `meshonet.geometry.arrays`.
+    It is fastest, and makes no copy, if `nodes` have the planar layout of `meshonet.geometry.arrays`.
     """
     form = form_of(nodes)
     if form == "volume":
@@ -51,7 +51,8 @@ def count_folded_in(grid: Grid) -> int:
 def folded_cells(nodes: Floats) -> NDArray[np.int64]:
     """Return the indices of the folded cells of `nodes`, in ascending order.
 
-    They are (n, 2), i and j, for nodes (ni, nj, 2) or (ni, nj, 3), and (n, 3) for (ni, nj, nk, 3).
+    The indices i, j are (n, 2) for nodes (ni, nj, 2) or (ni, nj, 3); i, j, k are (n, 3) for nodes (ni, nj,
+    nk, 3).
     """
     form = form_of(nodes)
     if form == "volume":
@@ -66,9 +67,9 @@ def folded_cells(nodes: Floats) -> NDArray[np.int64]:
 
 
 def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
-    """Return the folded cells of `nodes` (of any shape that `count_folded` takes), the worst first.
+    """Return at most `limit` folded cells of `nodes`, in ascending order of the scaled Jacobian.
 
-    At most `limit` cells, in ascending order of the scaled Jacobian.
+    `nodes` may have any shape that `count_folded` accepts.
     """
     form = form_of(nodes)
     if form == "volume":
@@ -101,10 +102,10 @@ def worst_cells_of(grid: Grid, limit: int = 10) -> list[BadCell]:
 def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     """Return the quality of `grid`.
 
-    The cells of all blocks are measured as one grid: cells on both sides of a connection, of the seam of an O
-    grid or of the wake of a C grid are neighbours. With `percentiles`, the 1st and the 99th percentile of
-    every metric are computed too, by linear interpolation between cells; this takes four times as long as the
-    rest.
+    The cells of all blocks are measured as one grid: cells on both sides of a connection (also of the seam of
+    an O grid, or of the wake of a C grid) are neighbours. With `percentiles`, the 1st and the 99th percentile
+    of every metric are computed too, by linear interpolation between cells; this takes four times as long as
+    the rest.
     """
     quality = _compiled(grid, percentiles)
     if not metrics.METRICS:
@@ -187,7 +188,7 @@ def per_cell(grid: Grid, name: str) -> Floats:
 
 
 def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
-    """Return for each block the values (ni-1, nj-1[, nk-1]) of the metric `name` in all cells.
+    """Return, for each block, the values (ni-1, nj-1[, nk-1]) of the metric `name` in its cells.
 
     Raises InputError: a metric that these cells do not have.
     """

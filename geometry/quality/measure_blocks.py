@@ -21,7 +21,7 @@ _TINY, _LARGE = 1e-300, 1e30
 
 
 def measure_blocks(grid: Grid, folded: int, *, percentiles: bool = False) -> Quality:
-    """Return the quality of all cells of planar blocks or surface patches, of which `folded` are folded.
+    """Return the quality of planar blocks or surface patches; `folded` is the number of folded cells.
 
     The places of worst cells are (block, i, j).
     """
@@ -34,7 +34,7 @@ def measure_blocks(grid: Grid, folded: int, *, percentiles: bool = False) -> Qua
 
 
 def metrics_of_blocks(grid: Grid) -> list[Floats]:
-    """Return every metric of `QUAD_METRICS` of every cell, (metrics, ni-1, nj-1) for each block."""
+    """Return, for each block, all metrics of `QUAD_METRICS` in all cells: (metrics, ni-1, nj-1)."""
     nodes = [block.nodes for block in grid.blocks]
     if grid.form == "surface":
         values = [quad_metrics(each) for each in nodes]

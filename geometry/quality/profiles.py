@@ -30,7 +30,7 @@ Verdict = Literal["pass", "warn", "fail", "none"]
 
 @dataclass(frozen=True)
 class Limit:
-    """A condition that a figure must not meet, and the outcome if it does."""
+    """A condition that a figure must not meet, and the outcome (warning or failure) if it does."""
 
     level: Level
     compare: str
@@ -48,7 +48,7 @@ class Check:
 
 @dataclass(frozen=True)
 class CheckResult:
-    """The outcome of a check: the figure (None if the grid has no such figure) and the verdict.
+    """The outcome of a check; `figure` is the checked figure, None if the grid has no such figure.
 
     `profile` is the name of the profile to which the check belongs, `centre` (2,) or (3,) the centre of the
     cell with this figure, and `gated` whether a user's gates replace the limits.
@@ -79,13 +79,13 @@ class CheckResult:
 
     @property
     def worst(self) -> Limit | None:
-        """The limit that the figure exceeds; if there are several, one that makes the check fail."""
+        """The limit that the figure exceeds; if it exceeds several, one that makes the check fail."""
         limits = self.check.limits if self.figure else ()
         broken = [x for x in limits if self.figure and beyond(self.figure.value, x.compare, x.value)]
         return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":
-        """Return the outcome with the limits of the `gates` that judge the same figure, if there are any."""
+        """Return the outcome with limits replaced by those of `gates` on the same figure, if any."""
         compare = self.check.limits[0].compare
         own = [gate for gate in gates if gate.replaces(self.check.figure, compare)]
         limits = tuple(Limit("fail", gate.compare, gate.limit) for gate in own)
@@ -112,11 +112,11 @@ class ProfileReport:
         return all(result.verdict != "fail" for result in self.results)
 
     def under(self, gates: Sequence[Gate]) -> "ProfileReport":
-        """Return the report with the limits of `gates` in place of the profiles' for the same figures."""
+        """Return the report with limits replaced by those of `gates` on the same figures."""
         return replace(self, results=_once(result.under(gates) for result in self.results))
 
     def replaced(self) -> list[str]:
-        """Return the limits of gates that replace those of a profile: ``box_ratio > 4000``."""
+        """Return the limits of gates that replace limits of a profile: ``box_ratio > 4000``."""
         return [
             f"{result.check.figure} {limit.compare} {limit.value:g}"
             for result in self.results
@@ -133,7 +133,7 @@ class ProfileReport:
         ]
 
     def failures(self) -> list[str]:
-        """Return a line for each check that failed, except those that gates replace."""
+        """Return a line for each check that failed, except checks that gates replace."""
         return [
             f"profile {result.profile}: {result.check.figure} is {result.value:.6g}{result.figure.where}, "
             "and it must "

@@ -32,7 +32,7 @@ Gates: TypeAlias = str | Sequence[str | Gate]
 
 @dataclass(frozen=True)
 class Comparison:
-    """Distances between the nodes of a grid and a reference, and the ratios of their largest angles."""
+    """Distances of a grid's nodes from those of a reference, and ratios of both grids' largest angles."""
 
     difference: Difference
     folded: int
@@ -103,7 +103,7 @@ class QualityReport:
         return f"<QualityReport: {', '.join(parts)}>"
 
     def under(self, gates: Gates) -> "QualityReport":
-        """Return the report with the limits of `gates` in place of those of profiles for the same metrics."""
+        """Return the report with limits of profiles replaced by those of `gates` on the same metrics."""
         return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
     def broken(self, gates: Gates = ()) -> list[str]:
@@ -141,7 +141,7 @@ class QualityReport:
         return Judgement(tuple(self._broken(gates)), tuple(dict.fromkeys(beyond)), tuple(replaced), profile)
 
     def judged(self, gates: Gates) -> list[tuple[Gate, Figure, bool]]:
-        """Return for each gate the value of its metric, and whether the value is beyond the limit."""
+        """Return each gate with the value of its metric, and whether the value is beyond the limit."""
         more, gates = self._compared(), _parsed(gates)
         figures = [gate.figure(self.figures, more) for gate in gates]
         pairs = zip(gates, figures, strict=True)

@@ -63,7 +63,7 @@ def folded_quads(nodes: Floats) -> NDArray[np.int64]:
 
 
 def worst_quads(nodes: Floats, limit: int = 10) -> list[BadCell]:
-    """Return at most `limit` folded cells of `nodes` (ni, nj, 3), the least scaled Jacobian first."""
+    """Return at most `limit` folded cells of `nodes` (ni, nj, 3), by ascending scaled Jacobian."""
     ring = ring_of(nodes)
     least, centre = _scaled_jacobians(ring).min(axis=0), ring.mean(axis=0)
     places = folded_quads(nodes)

@@ -52,9 +52,9 @@ def _folded_rows(nodes: Floats, test: int) -> NDArray[np.int64]:
 
 
 def worst_solids(nodes: Floats, limit: int = 10, test: int = CORNERS) -> list[BadCell]:
-    """Return the cells of `nodes` (ni, nj, nk, 3) that fail a test, the least scaled Jacobian first.
+    """Return at most `limit` cells of `nodes` (ni, nj, nk, 3) that fail a test, with their centres.
 
-    At most `limit` cells, with their centres.
+    The order is that of ascending scaled Jacobians.
     """
     i, j, k = folded_solids(nodes, test)[:_MOST].T
     points = {(a, b, c): nodes[i + a, j + b, k + c] for a in (0, 1) for b in (0, 1) for c in (0, 1)}
@@ -113,7 +113,7 @@ def _nodes_of(grid: Grid) -> list[int]:
 
 
 def solid_metric(grid: Grid, name: str) -> list[Floats]:
-    """Return for each volume block the metric `name` of every cell, (ni-1, nj-1, nk-1)."""
+    """Return, for each block of volumes, the metric `name` of all cells (ni-1, nj-1, nk-1)."""
     return _metric(grid, padded_volumes(grid), SOLID_NAMES.index(name))
 
 
@@ -123,9 +123,10 @@ def _metric(grid: Grid, volumes: Sequence[Floats], k: int) -> list[Floats]:
 
 
 def padded_volumes(grid: Grid) -> list[Floats]:
-    """Return for each block its cell volumes, with one layer of cells added around it: (ni+1, nj+1, nk+1).
+    """Return, for each block, the volumes of its cells and of a layer around it: (ni+1, nj+1, nk+1).
 
-    The layer contains the volumes of the cells across connections; elsewhere it repeats the nearest cells.
+    At connections the layer contains the volumes of the cells on the other side; elsewhere it repeats the
+    volumes of the nearest cells of the block.
     """
     padded = over_blocks(_padded, grid.blocks, _nodes_of(grid))
 

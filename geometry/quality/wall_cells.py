@@ -21,8 +21,7 @@ from meshonet.geometry.spacing.y_plus import first_cell
 class Flow:
     """The flow for which y+ is computed.
 
-    The wall shear stress is that of a turbulent boundary layer on a flat plate of the reference length, at
-    half of this length.
+    The wall shear stress is that of a turbulent boundary layer on a flat plate, at half the reference length.
 
     Parameters
     ----------
@@ -62,7 +61,7 @@ class YPlus:
 
 
 def y_plus_at(grid: Grid, walls: Sequence[Patch], flow: Flow) -> dict[str, YPlus]:
-    """Return y+ of the first nodes above each of the `walls`, by the name of the wall."""
+    """Return, by name of the wall, y+ of the first nodes above each of the `walls`."""
     values: dict[str, list[Floats]] = {}
     for wall in walls:
         rows = rows_at(grid, wall, 2)
@@ -72,7 +71,7 @@ def y_plus_at(grid: Grid, walls: Sequence[Patch], flow: Flow) -> dict[str, YPlus
 
 
 def skewness_at(grid: Grid, walls: Sequence[Patch]) -> dict[str, Extreme]:
-    """Return the skewness of the cells at each of the `walls` of a volume, by name of the wall."""
+    """Return, by name of the wall, the skewness of the cells at each of the `walls` of a volume."""
     cells = per_cell_of_blocks(grid, "skewness")
     stretches: dict[str, list[tuple[Floats, Patch]]] = {}
     for wall in walls:

@@ -24,7 +24,7 @@ SAME = 0.01
 
 @dataclass(frozen=True)
 class Spread:
-    """Minimum, mean and maximum of a quantity, and in multi-block grids the 95th percentile."""
+    """Minimum, mean and maximum of a quantity; in multi-block grids also the 95th percentile."""
 
     min: float
     mean: float
@@ -35,7 +35,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class WallRow:
-    """The cells at a named stretch of wall; in a multi-block grid, at all stretches of that name."""
+    """Figures of the cells at a named stretch of wall; in a multi-block grid, at all stretches so named."""
 
     name: str
     side: str | None
@@ -64,9 +64,9 @@ def wall_row(grid: Grid, patch: Patch) -> WallRow:
 def wall_rows(
     grid: Grid, walls: Sequence[Patch], growth: Mapping[str, Extreme] = NO_GROWTH
 ) -> tuple[WallRow, ...]:
-    """Return the figures of the cells at the `walls` of `grid`, in a multi-block grid one for each name.
+    """Return the figures of the cells at each of the `walls`; in a multi-block grid, one for each name.
 
-    `growth` is that along the lines that leave the walls, by name of the wall.
+    `growth` has, by name of the wall, the growth along the lines that start there.
     """
     if grid.topology != "blocks":
         return tuple(wall_row(grid, wall) for wall in walls)

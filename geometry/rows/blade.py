@@ -29,12 +29,12 @@ _HALF_TURN = np.pi
 
 
 class BladeSurface:
-    """Surface of a blade: maps the place u around the blade and the height h to (s, theta).
+    """Surface of a blade: maps (u, h), the place around the blade and the height, to (s, theta).
 
     u goes around a profile, from 0 at the leading edge to 0.5 at the trailing edge and back to 1
     (`BladeProfile`). s is 0 at the inlet and 1 at the outlet; h is 0 at the hub and 1 at the casing
-    (`Channel`). Between profiles, lines of equal u are cubic splines; beyond the first and the last profile
-    they are continued straight.
+    (`Channel`). Through the profiles, lines of equal u are cubic splines; beyond the first and the last
+    profile they are straight.
 
     Parameters
     ----------
@@ -44,8 +44,8 @@ class BladeSurface:
 
     Attribute `notes` says what was changed.
 
-    Raises InputError, with the number of the profile from 1: profiles in another order, that cross or do not
-    reach far enough towards hub and casing; the errors of `BladeProfile`.
+    Raises InputError, with the number of the profile (from 1): profiles are in another order, cross, or do
+    not reach far enough towards hub and casing; also the errors of `BladeProfile`.
     """
 
     def __init__(self, profiles: Sequence[Floats], channel: Channel, blades: int) -> None:
@@ -156,22 +156,22 @@ class BladeSurface:
         return np.asarray(turned - mean - away * self.pitch)
 
     def lines(self, u: Floats) -> CubicTable:
-        """Return the splines s, theta, h along the span at places u (m,).
+        """Return the splines s, theta, h along the span, one for each of the places u (m,).
 
-        Their parameter is the mean height of each profile.
+        The parameter of the splines is the mean height of a profile.
         """
         values = np.stack([profile.at(u) for profile in self.profiles])
         values[..., 1] += self._turns[:, None]
         return CubicTable(values, self.knots)
 
     def at(self, u: Floats, h: Floats) -> Floats:
-        """Return s and theta (p, m, 2) of the surface at places u (m,) or (p, m), and heights h (p, m)."""
+        """Return s and theta (p, m, 2) of the surface at places u (m,) or (p, m) and at heights h (p, m)."""
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
         """Return s and theta (..., 2) of the points at which `lines` along the span reach heights `h` (...).
 
-        There are `levels` heights for each line: the heights of all lines at the first level come first.
+        For each line there are `levels` heights; first come the heights of all lines on the first level.
         """
         out = np.empty((*h.shape, 2))
         spline_crossings(
@@ -184,12 +184,12 @@ class BladeSurface:
         return out
 
     def section(self, h: float, u: Floats) -> Floats:
-        """Return s and theta (m, 2) of the section at the height `h`, at places `u` (m,)."""
+        """Return s and theta (m, 2), at the places `u` (m,), of the section at the height `h`."""
         return self.crossings(self.lines(u), np.full(len(u), h))
 
     @property
     def edges(self) -> str:
-        """Return as text the forms of leading and trailing edge, such as round, for reports."""
+        """Return, for reports, words for the forms of the leading and the trailing edge, such as round."""
         words = [dict.fromkeys(each.edge(trailing) for each in self.profiles) for trailing in (False, True)]
         leading, trailing = (" or ".join(each) for each in words)
         return f"leading edge {leading}; trailing edge {trailing}"
@@ -201,7 +201,7 @@ class BladeSurface:
 
 
 def clustered(count: int) -> Floats:
-    """Return `count` places u (count,) around a blade, closer to each other at both edges.
+    """Return `count` places u (count,) around a blade, clustered at the leading and the trailing edge.
 
     `count` must be even.
     """

@@ -47,9 +47,9 @@ _SAME = 1e-13  # of the distance to a wall, relative to the gap
 
 @dataclass(frozen=True, eq=False)
 class MeridionalMap:
-    """The coordinate m' of a surface of revolution, with which the map from (m', theta) to it is conformal.
+    """The coordinate m' on a surface of revolution; the map from (m', theta) to the surface is conformal.
 
-    dm' = dm / r, with the arc length m of the meridian and the distance r from the axis.
+    It is defined by dm' = dm / r, with the arc length m along the meridian and the distance r from the axis.
 
     Wu, NACA TN 2604 (1952).
     """
@@ -125,7 +125,7 @@ class Channel:
         return self._parts[k](s)
 
     def at(self, s: Floats, h: Floats) -> Floats:
-        """Return x and r (..., 2) at `s` and `h`, arrays of one shape (...)."""
+        """Return x and r (..., 2) at `s` and `h`, two arrays of the same shape (...)."""
         out = np.empty((s.size, 2))
         channel_points(
             self._tables, np.ascontiguousarray(s).reshape(-1), np.ascontiguousarray(h).reshape(-1), out
@@ -133,7 +133,7 @@ class Channel:
         return out.reshape(*s.shape, 2)
 
     def in_space(self, values: Floats) -> Floats:
-        """Return x, y, z (..., 3) of points with s, theta, h (..., 3); theta is atan2(y, z)."""
+        """Return x, y, z (..., 3) of points given by s, theta, h (..., 3); theta is atan2(y, z)."""
         out = np.empty(values.shape)
         channel_space(self._tables, np.ascontiguousarray(values).reshape(-1, 3), out.reshape(-1, 3))
         return out
@@ -141,23 +141,23 @@ class Channel:
     def store(self, values: Floats, ids: Indices, space: Floats) -> None:
         """Write the positions x, y, z of points into `space`.
 
-        `values` (levels, m, 3) are s, theta, h of the points, `space` is (levels, n, 3); the points become
-        the nodes `ids` (m,) of each level.
+        `values` (levels, m, 3) are s, theta, h of the points. In `space` (levels, n, 3), they become the
+        nodes with the indices `ids` (m,) of each level.
         """
         channel_nodes(self._tables, values, ids, space)
 
     def lengthen(self, begin: Floats, end: Floats, sizes: Floats) -> None:
-        """Move the points `end` (..., 3) in place to the distances `sizes` (...) from the points `begin`.
+        """Move the points `end` (..., 3), in place, to the distances `sizes` (...) from the points `begin`.
 
-        Both are given by s, theta, h; the distances are those in space.
+        All points are given by s, theta, h; the distances are those in space.
         """
         lengthen_cells(self._tables, begin.reshape(-1, 3), sizes.reshape(-1), end.reshape(-1, 3))
 
     def put_on_blade(self, columns: Floats, wall: Floats, first: float) -> None:
-        """Move columns of nodes in place: they begin on the blade, with first cells of height `first`.
+        """Move columns of nodes, in place, to begin on the blade and have first cells of height `first`.
 
-        `columns` (..., rows, 3) are s, theta, h; `wall` (..., 2) is s and theta. The displacement decreases
-        along a column to 0 at its last node.
+        `columns` (..., rows, 3) are s, theta, h; `wall` (..., 2) are s and theta of the points on the blade.
+        The displacement decreases along each column to 0 at its last node.
         """
         flat = columns.reshape(-1, *columns.shape[-2:])
         columns_on_blade(self._tables, wall.reshape(-1, 2), first, flat)
@@ -222,7 +222,7 @@ class Channel:
 
     @cached_property
     def levels(self) -> tuple[float, ...]:
-        """Heights h that divide the channel, ascending: hub, casing, and those of gaps between."""
+        """Ascending heights h that divide the channel: the hub, the ends of the blade at gaps, the casing."""
         return tuple(self._levels)
 
 

@@ -15,10 +15,10 @@ fraction of all turns at the edge.
 
 
 def alike(profiles: Sequence[BladeProfile]) -> list[BladeProfile]:
-    """Return the profiles with equal numbers of corners at each edge, and equal places u of these corners.
+    """Return the profiles changed so that all have equal numbers of corners, at equal places u.
 
-    Whether a turn counts as a corner depends on the points around it, so that profiles of one blade may
-    differ: lines of equal places would then jump along the span.
+    Whether a turn counts as a corner depends on the points around it, so that the profiles of one blade may
+    have different corners; lines of equal u would then jump along the span.
     """
     counts = np.array([profile.corner_counts for profile in profiles])
     if not (counts == counts[0]).all():
@@ -39,7 +39,7 @@ def _count(profiles: Sequence[BladeProfile], counts: Floats, trailing: bool) -> 
 def common_corners(profiles: Sequence[BladeProfile]) -> Floats:
     """Return the median places u (c,), from -0.25 to 0.75, of the corners of profiles.
 
-    Empty if the profiles have no corners, or different numbers of corners.
+    The result is empty if the profiles have no corners, or different numbers of corners.
     """
     places = [profile.corner_places() for profile in profiles]
     if len({len(each) for each in places}) != 1 or not len(places[0]):

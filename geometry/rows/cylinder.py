@@ -14,7 +14,7 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 def on_cylinder(
     section: Section, about: tuple[float, float], stagger: float, x: float, theta: float
 ) -> tuple[Floats, tuple[str, ...]]:
-    """Return the points (n, 3) of a section on a cylinder, and notes.
+    """Return the points (n, 3) of a section that is wrapped onto a cylinder, and notes.
 
     The radius of the cylinder is the z of the section. Trailing edges are rounded
     (`meshonet.geometry.rows.thick_edge`).
@@ -22,7 +22,7 @@ def on_cylinder(
     Parameters
     ----------
     section : the airfoil with its chord; its z is the radius.
-    about : the point, in chords from the leading edge, that lies at `x` and `theta`.
+    about : the point of the section, in chords from the leading edge, that is placed at `x` and `theta`.
     stagger : angle of the chord from the axis, towards growing theta, in radians.
     x, theta : position of this point; theta = atan2(y, z) in radians.
     """

@@ -28,7 +28,7 @@ class RowDimensions:
     Parameters
     ----------
     blades : number of blades.
-    pitch : angle in degrees from a blade to the next.
+    pitch : angle in degrees from one blade to the next.
     unit : name of the unit; empty if none was given.
     axis : name of the axis from inlet to outlet, such as ``x`` or ``-z``; ``axis`` for another direction.
     chord : distance from leading to trailing edge halfway from hub to tip.
@@ -36,8 +36,8 @@ class RowDimensions:
     solidity : chord divided by the distance of neighbouring blades, both halfway from hub to tip.
     span : distance from hub to shroud at the blade, mean of the values at leading and trailing edge.
     tip_gap, hub_gap : widths of the gaps.
-    leading_edge, trailing_edge : positions (x, r) of the edge at the two ends of the blade, by ``hub`` and
-        ``shroud``.
+    leading_edge, trailing_edge : positions (x, r) of the edge at the two ends of the blade, under the keys
+        ``hub`` and ``shroud``.
     """
 
     blades: int
@@ -104,7 +104,7 @@ def row_dimensions(row: Row) -> RowDimensions:
 
 
 def doubts(dimensions: RowDimensions) -> tuple[str, ...]:
-    """Return notes on dimensions that are probably wrong: gaps, the number of blades, the unit."""
+    """Return notes on dimensions that are probably wrong: of gaps, of the number of blades, of the unit."""
     notes, unit = [], dimensions.unit or "the unit of the profiles"
     for name in ("tip_gap", "hub_gap"):
         part = getattr(dimensions, name) / dimensions.span

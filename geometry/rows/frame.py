@@ -20,7 +20,7 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 def axis_along(direction: Sequence[float]) -> Motion:
     """Return a rotation that takes `direction` (3,), which must not be 0, to the x axis.
 
-    If `direction` is along a coordinate axis, the rotation takes all axes to axes.
+    If `direction` is along a coordinate axis, the rotation takes each coordinate axis to one.
     """
     way = np.array(direction)
     way = way / np.abs(way).max()
@@ -34,6 +34,6 @@ def axis_along(direction: Sequence[float]) -> Motion:
 
 
 def axis_name(frame: Motion | None) -> str:
-    """Return the name of the axis that a rotation takes to x: ``x``, ``-z`` and so on, else ``axis``."""
+    """Return the name of the axis that a rotation takes to x, such as ``-z``; ``axis`` if it has none."""
     direction = AXES["x"] if frame is None else frame.turn[0]
     return next((name for name, each in AXES.items() if each == direction), "axis")

@@ -34,8 +34,8 @@ _OTHER_UNIT = 1.5  # factor between radii of blade and channel from which on the
 class BladeProfile:
     """A profile of a blade in a channel: a closed curve around the blade.
 
-    A place on the curve is u: 0 at the leading edge, 0.5 at the trailing edge, which is reached over the side
-    of larger theta, and 1 at the leading edge again.
+    A place on the curve is a number u: 0 at the leading edge, increasing along the side of larger theta to
+    0.5 at the trailing edge, and along the other side to 1, again at the leading edge.
 
     Parameters
     ----------
@@ -78,11 +78,10 @@ class BladeProfile:
         self._stops = _ENDS, np.array([0.0, self._sides[0], curve.length])
 
     def cornered(self, counts: Sequence[int]) -> Self:
-        """Return the profile with prescribed numbers of corners at its two edges.
+        """Return the profile with prescribed numbers of corners at its leading and its trailing edge.
 
-        `counts` are the two numbers, of the leading and of the trailing edge, each 0, 1 or 2. The corners are
-        the points with the largest turns near the edge; a single corner becomes the edge itself, where u is 0
-        or 0.5.
+        `counts` are these two numbers, each 0, 1 or 2. The corners are the points with the largest turns near
+        the edge; a single corner becomes the edge itself, where u is 0 or 0.5.
         """
         edges, curve = (self.leading, self.trailing), self.curve
         bend = np.abs(turning(curve.points, closed=True))
@@ -99,10 +98,10 @@ class BladeProfile:
         return made
 
     def aligned(self, places: Floats) -> Self:
-        """Return the profile with the places of its corners changed to `places` u (c,).
+        """Return the profile with u redefined so that its corners are at `places` u (c,).
 
-        Each new place must be near the place of the corner. Between corners, u is proportional to the arc
-        length.
+        Each new place must be near the former place of the corner. Between corners, u is proportional to the
+        arc length.
         """
         made, own = copy(self), self.corner_places()
         u = np.concatenate([_ENDS, places])
@@ -139,7 +138,7 @@ class BladeProfile:
         return one, two
 
     def edge(self, trailing: bool) -> str:
-        """Return as text the form of the leading or trailing edge, with a hint if points may be missing."""
+        """Return words for the form of the leading or trailing edge, with a hint if points may be missing."""
         count = self.corner_counts[trailing]
         if count:
             return {1: "pointed", 2: "blunt"}.get(count, "polygonal")
@@ -151,7 +150,7 @@ class BladeProfile:
         )
 
     def sharpness(self, trailing: bool) -> tuple[float, float]:
-        """Return the largest turn at an edge in radians, and the fraction of all turns in the two largest."""
+        """Return the largest turn at an edge (radians), and the fraction of all turns in the two largest."""
         bend = np.abs(turning(self.curve.points, closed=True))
         edge = self.trailing if trailing else self.leading
         own = np.sort(bend[np.abs(self._off(self.curve.knots, edge)) < self._reach])
@@ -198,7 +197,7 @@ class BladeProfile:
 
     @cached_property
     def thickness(self) -> float:
-        """Approximate largest angle theta in radians between the two sides at equal m'."""
+        """Approximate largest difference of theta, in radians, between the two sides at equal m'."""
         u = np.linspace(0.0, 0.5, _SAMPLES // 2)
         sides = [self.curve.at(self.arcs(places)).T for places in (u, 1.0 - u)]
         at = np.linspace(sides[0][0][0], sides[0][0][-1], _SAMPLES // 2)
@@ -206,11 +205,11 @@ class BladeProfile:
         return float(np.abs(first - second).max())
 
     def arcs(self, u: Floats) -> Floats:
-        """Return the arc lengths (n,) in the plane (m', theta) of places u (n,), 0 to 1."""
+        """Return the arc lengths (n,), in the plane (m', theta), at the places u (n,), 0 to 1."""
         return np.asarray(np.mod(self.leading + np.interp(u, *self._stops), self.curve.length))
 
     def corner_places(self) -> Floats:
-        """Return the places u (c,) of all corners, from -0.25 to 0.75, ascending.
+        """Return the ascending places u (c,) of all corners, in the range -0.25 to 0.75.
 
         The corners of the leading edge, near 0, come before those of the trailing edge, near 0.5.
         """

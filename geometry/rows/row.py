@@ -26,11 +26,10 @@ class Row:
 
     Parameters
     ----------
-    profiles : sequence of array
-        Two or more closed curves (n, 3), x, y and z, around one blade, from hub to casing.
-    hub, shroud : array
-        Points (n, 2), x and r, of the inner and the outer wall. The first points are at the inlet, the last
-        points at the outlet.
+    profiles : sequence of array Two or more closed curves (n, 3) of x, y, z around one blade, ordered from
+        hub to casing.
+    hub, shroud : array Points (n, 2) of x and r on the inner and on the outer wall, ordered from inlet to
+        outlet.
     blades : int
         Number of blades.
     tip_gap, hub_gap : float, optional
@@ -41,9 +40,8 @@ class Row:
         Notes on changes of the profiles.
     frame : Motion, optional
         The rotation from the coordinates of the grid to the coordinates of the row; None: they are the same.
-    unit : {'m', 'cm', 'mm', 'in', 'ft'}, optional
-        Unit of lengths in reports; the lengths of the row and of the grid are then in metres. Empty: reports
-        give lengths without conversion.
+    unit : {'m', 'cm', 'mm', 'in', 'ft'}, optional Unit of lengths in reports; the lengths of the row and of
+        the grid are then in metres. If empty, reports give lengths without conversion.
 
     Raises
     ------

@@ -29,11 +29,11 @@ _SAME = 1e-9  # of a curve's length
 
 @dataclass(frozen=True)
 class WallPlanes:
-    """Inlet and outlet plane, between which hub and casing are used.
+    """The inlet and the outlet plane; the curves of hub and casing are cut at them.
 
     Parameters
     ----------
-    inlet, outlet : positions of the planes; None: the end of the curves.
+    inlet, outlet : positions of the planes; None if the channel ends where the curves end.
     axis, unit : names of the axis and of the unit of these positions, for messages.
     """
 

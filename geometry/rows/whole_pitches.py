@@ -11,10 +11,10 @@ blade.
 
 
 def whole_pitches(angles: Floats, heights: Floats, pitch: float) -> Floats:
-    """Return the numbers (p,) of pitches between each profile and the blade to which most profiles belong.
+    """Return by how many pitches (p,) each profile is away from the blade to which most profiles belong.
 
-    Blades may lean by more than a pitch. A step from one profile to the next therefore counts as a
-    displacement only if it exceeds the lean between other profiles by whole pitches.
+    A blade may itself lean by more than a pitch. A step in theta from one profile to the next therefore
+    counts as a displacement only if it exceeds the steps between other profiles by whole pitches.
 
     Parameters
     ----------

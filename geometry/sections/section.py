@@ -46,12 +46,11 @@ class Section:
         Twist angle in degrees, nose up.
     about : tuple of 2 float, optional
         Centre of the twist, in chords from the leading edge along x and y.
-    cant : float or 'panel', optional
-        Angle in degrees by which the section's plane is turned about the line parallel to x through the
-        leading edge, positive like dihedral. ``panel``: as the panels beside the section (`Stack.cants`).
-    nodes : int, optional
-        Number of nodes along the span from the previous section to this one, both counted. None: it follows
-        from that of the stack.
+    cant : float or 'panel', optional Angle in degrees by which the section's plane is rotated about the line
+        through the leading edge that is parallel to x; positive like dihedral. ``panel``: the dihedral of the
+        adjacent panels (`Stack.cants`).
+    nodes : int, optional Number of nodes along the span from the previous section to this one, including both
+        sections. None: it follows from the number for the whole stack.
 
     Raises
     ------
@@ -89,8 +88,8 @@ class Section:
 
         The section is moved and scaled so that they become 0 and 1.
 
-        A shape with its leading edge at about 0 and a chord of about 1, as in most airfoil files, is not
-        scaled. Shapes are not rotated.
+        A shape with its leading edge near 0 and a chord near 1, as in most airfoil files, is not scaled.
+        Shapes are not rotated.
         """
         if isinstance(self.shape, Airfoil):
             nose, length = self.shape.leading_edge, self.shape.unit
@@ -102,15 +101,15 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """Chord, twist in radians, x, y and the two numbers of `about`, as (6,).
+        """(6,) chord, twist in radians, x, y, and the two numbers of `about`.
 
-        These are interpolated in z.
+        These six numbers are interpolated in z.
         """
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 
 class Fade(NamedTuple):
-    """Weights (n,) of the placement at nodes: 1 is full twist and scale, 0 no twist and scale by `chord`."""
+    """Weights (n,) at nodes: 1 means full twist and scale; 0 means no twist, and scaling by `chord`."""
 
     weight: Floats
     chord: float
@@ -136,7 +135,7 @@ def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
 
 
 def turned(points: Floats, place: Floats, cant: Floats) -> Floats:
-    """Return `points` (..., 3) turned by angles about lines parallel to x.
+    """Return `points` (..., 3) rotated about lines parallel to x.
 
     The lines pass through y and z of `place` (..., 2); `cant` (...) is in radians, positive from z to y.
     """

@@ -106,7 +106,7 @@ class Stack:
 
     @property
     def span(self) -> int | None:
-        """Number of nodes along the span, if those of all panels are given."""
+        """Number of nodes along the span, if the numbers of all panels are given."""
         cells = [each for each in self.panel_cells if each is not None]
         return sum(cells) + 1 if len(cells) == len(self.panel_cells) else None
 
@@ -144,7 +144,7 @@ class Stack:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the sections' points and files, and on the thickness of steep panels."""
+        """Notes on the points and files of the sections, and on the thickness of steep panels."""
         notes = [note for section in self.sections for note in section.shape.notes]
         return tuple(dict.fromkeys([*notes, *filter(None, [self.steep])]))
 
@@ -157,8 +157,8 @@ class Stack:
     def cants(self) -> Floats:
         """(n,) cant of the sections in radians.
 
-        ``panel`` is the mean dihedral of the panels on both sides of a section, the dihedral of the last
-        panel at a tip, and 0 in a plane of symmetry.
+        For ``panel`` it is the mean dihedral of the panels on both sides of the section; at the tip it is the
+        dihedral of the last panel, in a plane of symmetry 0.
         """
         panels = self.dihedrals
         own = np.concatenate([[0.0], 0.5 * (panels[1:] + panels[:-1]), panels[-1:]])
@@ -192,8 +192,8 @@ class Stack:
 
         `unit` (sections, n, 2) are the nodes of the given sections, scaled to unit chord. Shape, chord, twist
         and position are interpolated separately, so that a section between two sections of different twist
-        keeps its length. Nodes with `weight` (n,) 0 are not twisted, and scaled by the longest chord. `z` is
-        that of the leading edge, about which a section with a cant is turned.
+        keeps its length. Nodes with `weight` (n,) 0 are not twisted, and are scaled by the longest chord. `z`
+        is the height of the leading edge, about which a section with a cant is rotated.
         """
         fade = None if weight is None else Fade(weight, self.chord)
         placements = np.stack([section.placement for section in self.sections])
@@ -203,7 +203,7 @@ class Stack:
         return self.canted(nodes, z) if self.cants.any() else nodes
 
     def canted(self, nodes: Floats, z: Floats) -> Floats:
-        """Return `nodes` (m, ..., 3) turned by the cant at the heights `z` (m,), about the leading edges."""
+        """Return `nodes` (m, ..., 3) rotated about the leading edges by the cants at the heights `z` (m,)."""
         values = np.stack([np.array([section.y for section in self.sections]), self.cants], axis=1)
         y, cant = self.between_sections(values, z).reshape(len(z), *[1] * (nodes.ndim - 2), 2).T
         place = np.stack([y.T, z.reshape(y.T.shape)], axis=-1)

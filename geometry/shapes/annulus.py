@@ -24,9 +24,9 @@ class Annulus:
         self.body, self.outer, self.name = body, outer, name
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the O boundary: the body sampled as usual, with the given far field in place of a circle.
+        """Return the O boundary: the body sampled as usual, with the given far field instead of a circle.
 
-        Raises InputError: another topology, or a setting that does not apply to the body.
+        Raises InputError: the topology is not ``o``, or a setting does not apply to the body.
         """
         if sampling.topology not in ("auto", "o"):
             raise InputError("a body in a far field makes an O grid", "use {topology} o", source=self.name)

@@ -35,7 +35,7 @@ FARFIELD = "farfield"
 def assembled(
     shapes: Sequence[Shape], names: Sequence[str], sampling: Sampling, name: str = ""
 ) -> DomainShape:
-    """Return the domain that `shapes` form together; `names` has a name for each.
+    """Return the domain that `shapes` form together; `names` has a name for each shape.
 
     Airfoils keep their smooth curves; other shapes become polygons. If one shape encloses all others, it is
     the outer boundary. Otherwise the outer boundary is a circle; its radius is that of `sampling`, in units

@@ -32,17 +32,18 @@ _SAMPLES = 512  # points of each loop for which distances are computed
 
 @dataclass(frozen=True, eq=False)
 class DomainShape:
-    """A domain, with a single-block form if it has one.
+    """A domain as a shape that becomes several blocks, or a single block if that is possible.
 
     Parameters
     ----------
     domain : loops and their names.
     many : whether the domain becomes several blocks unless a single block is requested.
     one : picklable function that returns the shape of the domain as a single block; None if there is none.
-    unit : reference length of Reynolds numbers: the extent of its bodies, or the chord of an airfoil.
+    unit : reference length of Reynolds numbers: the extent of the domain's bodies, or the chord of an
+        airfoil.
     far_field : whether a far field was added around bodies.
     layout : blocks of the domain, if the input contains them.
-    assembled : whether it was assembled of several shapes.
+    assembled : whether the domain was assembled from several shapes.
     given : the multi-block grid that the domain was taken from, if the input is a grid.
     """
 
@@ -111,20 +112,20 @@ def loops_extent(loops: tuple[Loop, ...]) -> float:
 
 
 def four_sided(domain: Domain) -> bool:
-    """Return whether a domain without holes has four convex corners and no re-entrant one."""
+    """Return whether a domain has no holes, four convex corners and no re-entrant corner."""
     outer = domain.loops[0]
     return len(domain.loops) == 1 and len(convex_corners(outer)) == 4 and not (outer.corner_cells > 2).any()
 
 
 def convex_corners(loop: Loop) -> list[int]:
-    """Return the numbers of the points of a loop at which it has convex corners."""
+    """Return the indices of the points of a loop that are convex corners."""
     turn = np.radians(180.0 - loop.corner_angles)
     convex = turns_sharply(turn) & (turn > 0.0)
     return [point for point, is_convex in zip(loop.corners, convex, strict=True) if is_convex]
 
 
 def in_far_field(domain: Domain) -> bool:
-    """Return whether a domain is a single hole in a smooth outer loop that is far away."""
+    """Return whether a domain has a single hole and a smooth outer loop that is far away."""
     if len(domain.loops) != 2 or (domain.loops[0].corner_cells != 2).any():
         return False
     every = (loop.curve.points for loop in domain.loops)

@@ -33,7 +33,7 @@ outline.
 
 
 class DrawnEdge(NamedTuple):
-    """A side: points (n, 2), the place of each in its source, and the name of the side, if any."""
+    """A side: points (n, 2), the place of each point in the input, and the name of the side, if any."""
 
     points: Floats
     places: Sequence[str]
@@ -54,7 +54,8 @@ def channel(walls: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()) 
     """Return the domain between two walls, whose ends are joined by straight lines; the first wall is south.
 
     Walls are of the kind ``wall`` unless their names suggest another kind; walls without a name are called
-    ``wall``. The line at the first points is ``inlet``, the line at the last points ``outlet``.
+    ``wall``. The line that joins the first points of the walls is ``inlet``, the line that joins the last
+    points is ``outlet``.
 
     Raises InputError: walls that cross; equal neighbouring points.
     """

@@ -64,11 +64,11 @@ def o_boundary(
     """Return the O boundary of a closed wall within a circle.
 
     `wall` (ni, 2) runs clockwise and repeats its first node at the end. Far-field nodes run clockwise at
-    equal angles. The first of them is where the conformal map of the body takes `wall[0]`, so that the grid
-    is not sheared; behind a symmetric body this is straight downstream. If not `turned`, the first node is in
-    the direction of `wall[0]`; this suffices for marching methods, which make a far field of their own. West
-    and east are the straight cut between the two first nodes. `curve`, `name`, `chord` and `notes` are passed
-    to `Boundary`; a large rotation of the far field is noted.
+    equal angles. With `turned`, the first of them is the image of `wall[0]` under the conformal map of the
+    body, so that the grid is not sheared; for a symmetric body it is straight downstream. Otherwise, the
+    first node is in the direction of `wall[0]`, which suffices for marching methods because they make their
+    own far field. West and east are the straight cut from `wall[0]` to the first far-field node. `curve`,
+    `name`, `chord` and `notes` are passed to `Boundary`; a large rotation of the far field is noted.
     """
     middle = np.asarray(centre, dtype=np.float64)
     start, note = math.atan2(wall[0, 1] - middle[1], wall[0, 0] - middle[0]), ""

@@ -16,7 +16,7 @@ _BLOCK = 1 << 22  # distances computed at a time
 
 
 class Labelled:
-    """A shape with straight `edges` (n, 2, 2) and their names (n,), which become the names of patches.
+    """A shape with straight `edges` (n, 2, 2), whose names (n,) become the names of patches.
 
     An edge without a name has the name "". Edges with names in `walls` are walls unless the name suggests
     another kind.

@@ -35,8 +35,8 @@ class Outline:
     """A closed curve through points.
 
     The `points` (n, 2), at least 3, are in any unit and of either orientation; the first point may be
-    repeated at the end. `corners` are the indices of the four corners of a quad domain, south-west first, if
-    they are given. `places` (n,) are the positions of the points in the input, for messages.
+    repeated at the end. `corners`, if given, are the indices of the four corners of a quad domain, south-west
+    first. `places` (n,) are the positions of the points in the input, for messages.
 
     Raises InputError: too few points; equal neighbouring points; an outline that crosses itself or has no
     area.
@@ -73,10 +73,10 @@ class Outline:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the four edges of the domain, or the O boundary around the body.
 
-        The spacing applies to the arc length of each edge, or of the whole body. ``uniform`` and ``auto``
-        give equal steps; with ``tanh`` the steps at the ends are a quarter of the mean step. Other values
-        are ``cosine`` and ``curvature``. Around a smooth body ``auto`` means ``conformal``
-        (`meshonet.geometry.conformal.spacing`). Corners of the curve are nodes.
+        The spacing applies to each edge, or to the whole body. ``uniform`` and ``auto`` give equal steps of
+        arc length; but around a smooth body ``auto`` means ``conformal``
+        (`meshonet.geometry.conformal.spacing`). With ``tanh`` the steps at the ends are a quarter of the mean
+        step. Other values are ``cosine`` and ``curvature``. Corners of the curve are nodes.
 
         Raises InputError: a topology or spacing that does not apply; corner indices out of range.
         """
@@ -194,7 +194,7 @@ class Outline:
         return o_boundary(wall, nj, box.mean(axis=0), radius, curve, self.name, extent, notes=notes)
 
     def clockwise(self) -> Curve:
-        """Return the curve clockwise from its rightmost point, or the middle of a straight right side."""
+        """Return the curve clockwise, from its rightmost point or the middle of a straight right side."""
         curve = self.curve.reversed() if self._left else self.curve
         p, n = curve.points, len(curve.points)
         corner = np.isin(np.arange(n), curve.corner_index)

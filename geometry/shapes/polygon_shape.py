@@ -29,7 +29,7 @@ from meshonet.geometry.shapes.shape import Shape
 
 @dataclass(frozen=True)
 class PolygonRing:
-    """A closed polygon of a file: points (n, 2), corners, names, and positions of the points in the file.
+    """A closed polygon from a file: points (n, 2), corners, names, positions of the points in the file.
 
     If `corners` is None, they are detected; if `names` is empty, the polygon gets the default names.
     """
@@ -73,7 +73,7 @@ def polygon_shape(
 
 
 def domain_or_body(shape: Outline | Airfoil) -> Shape:
-    """Return a closed curve unchanged; if it has corners, but not four, the domain inside it."""
+    """Return a closed curve unchanged, or the domain inside it if it has corners, but not four."""
     if isinstance(shape, Airfoil) or shape.topology != "quad":
         return shape
     points = shape.curve.points

@@ -27,8 +27,8 @@ class Shape(Protocol):
 class SpatialShape:
     """A grid whose nodes have three coordinates: blocks (ni, nj, nk, 3), or surface patches (ni, nj, 3).
 
-    Marching takes patches as its wall. Other methods fill the volume that six patches, or the outer faces of
-    a block, enclose; several blocks are smoothed across their connections.
+    Marching starts from patches as its wall. Other methods fill the volume that six patches, or the faces of
+    one block, enclose. A grid of several blocks can be smoothed across its connections.
     """
 
     grid: Grid

@@ -53,9 +53,9 @@ def cells_of_wake(
 
     The grid has `ni` nodes along xi, which include both sides of the wake. `nodes_wanted` is the number of
     nodes along the wake, with the trailing edge. If it is None, the number of cells is chosen in three steps.
-    Cells that grow from `first` by 13 % each fill the `length` of the wake. Their number is then limited to
-    20 to 23 % of the cells along xi. It is finally rounded to a multiple of the first number in `steps` that
-    is at most a quarter of it.
+    First it is the number of cells that fill the `length` of the wake if they start with `first` and grow by
+    13 % each. Then it is limited to the range from 20 to 23 % of the cells along xi. Finally it is rounded to
+    a multiple of a step, which is the first of `steps` that is at most a quarter of the number.
 
     Raises InputError: too few nodes are left for the wall.
     """
@@ -75,7 +75,7 @@ def cells_of_wake(
 
 
 def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
-    """Return the unit vector (2,) along which a wake ends: along x, or along a chord that is too steep."""
+    """Return the unit vector (2,) along which a wake ends: x, or the chord's direction if it is too steep."""
     chord = np.asarray(trailing_edge - leading_edge)
     if abs(chord[1]) <= abs(chord[0]):
         return np.array([math.copysign(1.0, chord[0]), 0.0])
@@ -102,7 +102,7 @@ class WakeLine:
 
     @classmethod
     def behind(cls, wall: Floats, axis: Floats, chord: float, length: float) -> Self:
-        """Return the wake behind a closed wall (n, 2) that begins and ends at its sharp trailing edge."""
+        """Return the wake behind a closed `wall` (n, 2), which begins and ends at its sharp trailing edge."""
         upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
         along = upper / np.hypot(*upper) + lower / np.hypot(*lower)
         angle = math.atan2(axis[0] * along[1] - axis[1] * along[0], product(axis, along))
@@ -125,7 +125,7 @@ class WakeLine:
 def growing(first: float, length: float, cells: int) -> Floats:
     """Return the distances (cells + 1,) of nodes from the start of a line; cells grow from `first` on.
 
-    Distances are in units of `first`; the last one corresponds to `length`. From cell k of n to the next, the
+    Distances are in units of `first`; the last is `length` in this unit. From cell k of n to the next, the
     logarithm of the size increases by
 
         g (1 - exp(-k/m)) (1 + b (2k/n - 1))
@@ -149,9 +149,10 @@ def growing(first: float, length: float, cells: int) -> Floats:
 
 
 def rise(behind: Floats, begin: float = _FROM) -> Floats:
-    """Return by how much (n,) first-cell heights increase at distances `behind` (n,) the trailing edge.
+    """Return by how much (n,) first-cell heights increase, at distances `behind` (n,) the trailing edge.
 
-    The increase sets in at about the distance `begin`: behind a base, `BEHIND_BASE`. All are in chords.
+    The increase starts at about the distance `begin`, which is `BEHIND_BASE` behind a base. All values are in
+    chords.
     """
     return np.asarray(_RISE * behind**2 / ((behind + begin) * (1.0 + behind / _UP_TO)))
 
@@ -187,7 +188,7 @@ def c_boundary(
 
 
 def c_far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, behind: float) -> Floats:
-    """Return far-field nodes (body + 2 wake + 1, 2): equal steps in front, gradually changing ones behind."""
+    """Return far-field nodes (body + 2 wake + 1, 2): in front with equal steps, behind changing gradually."""
     normal = np.array([-axis[1], axis[0]])
     angle = np.linspace(-0.5 * np.pi, -1.5 * np.pi, body + 1)
     front = centre + radius * (cos(angle)[:, None] * axis + sin(angle)[:, None] * normal)

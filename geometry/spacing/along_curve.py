@@ -31,8 +31,8 @@ def stretch_arcs(
 
     If `begin` and `end` are equal, the nodes go once around the curve. They run in the direction of the
     curve, or against it if not `forward`. With the spacing ``tanh``, the cells at the ends are a quarter of
-    the mean cell; spacings that depend on more than the curve become equal steps. Corners get nodes whose
-    index is a multiple of `step`, if there are enough of these.
+    the mean cell; spacings that need more than the curve become equal steps. The nodes at corners have
+    indices that are multiples of `step`, if there are enough such nodes.
     """
     sign = 1.0 if forward else -1.0
     length = (sign * (end - begin)) % curve.length or curve.length
@@ -56,10 +56,10 @@ def stretch_arcs(
 
 
 def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = (), step: int = 1) -> Floats:
-    """Return the distances (n,), changed so that every one of the `corners` (m,) is one of them.
+    """Return the distances (n,) of nodes, changed so that there is a node at each of the `corners` (m,).
 
-    Each corner gets the nearest node, among every `step`-th node if these suffice. The first, the last and
-    the `fixed` nodes do not move; nodes between corners move in proportion.
+    Each corner gets the nearest node; only every `step`-th node is used if these suffice. The first, the last
+    and the `fixed` nodes do not move; nodes between corners move in proportion.
 
     Raises InputError: more corners than nodes.
     """

@@ -17,10 +17,10 @@ class FirstCell:
 
     Parameters
     ----------
-    first_cell : float or mapping, optional
-        First-cell height, in the unit of the request; multi-block grids accept one for each wall by name.
-    y_plus : float or mapping, optional
-        The same as y+, converted by flat-plate friction.
+    first_cell : float or mapping, optional First-cell height, in the unit of the request; for multi-block
+        grids also heights by name of the wall.
+    y_plus : float or mapping, optional First-cell height as y+, which is converted by the friction of a flat
+        plate.
     reynolds : float, optional
         Reynolds number for `y_plus`.
     chord_fraction : float, optional
@@ -42,7 +42,7 @@ class FirstCell:
 
     @property
     def by_wall(self) -> tuple[str, ...]:
-        """Names of the walls that have a height of their own; none if one height is given for all."""
+        """Names of the walls that have their own height; empty if one height is given for all walls."""
         given = self.first_cell if self.y_plus is None else self.y_plus
         return tuple(given) if isinstance(given, Mapping) else ()
 
@@ -85,7 +85,7 @@ class FirstCell:
         return None if given is None else self._height(given, unit)
 
     def height(self, unit: float = 1.0) -> float | None:
-        """Return the first-cell height in the unit of the request; None if no first cell is requested.
+        """Return the first-cell height in the unit of the request; None if no height is requested.
 
         `unit` is the reference length of the Reynolds number if `length` is None.
 
@@ -130,7 +130,7 @@ def _values(given: AtWalls | None) -> tuple[float, ...]:
 
 
 def check_names(names: Iterable[str], known: Iterable[str], parameter: str) -> None:
-    """Raise InputError for a name of a wall that is not `known`."""
+    """Raise InputError for the first of the `names` of walls that is not among the `known` names."""
     known = tuple(known)
     for name in names:
         if name not in known:

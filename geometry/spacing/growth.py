@@ -24,7 +24,8 @@ def growth_ratio(first: float, length: float, cells: int) -> float:
 
     first (gⁿ - 1)/(g - 1) = length
 
-    Raises InputError: equal cells of this size are already too long, or the ratio is above `LARGEST`.
+    Raises InputError: even equal cells of the size `first` are longer than `length`, or the ratio is above
+    `LARGEST`.
 
     >>> growth_ratio(1.0, 7.0, 3)
     2.0
@@ -52,7 +53,7 @@ def growth_ratio(first: float, length: float, cells: int) -> float:
 
 
 def cells_for_growth(first: float, length: float, ratio: float) -> int:
-    """Return the least number of cells that, from `first` on, fill `length` with growth at most `ratio`.
+    """Return the least number of cells, the first of size `first`, that fill `length` by growth <= `ratio`.
 
     >>> cells_for_growth(1.0, 7.0, 2.0), cells_for_growth(1.0, 7.1, 2.0), cells_for_growth(1.0, 7.0, 1.0)
     (3, 4, 7)
@@ -63,7 +64,7 @@ def cells_for_growth(first: float, length: float, ratio: float) -> int:
 
 
 def growing_steps(first: float, length: float, cells: int, constant: int = 1) -> Floats:
-    """Return sizes (cells,) from `first` on that grow by `growth_ratio` and add up to `length`.
+    """Return sizes (cells,) that begin with `first`, grow by `growth_ratio` and add up to `length`.
 
     The first `constant` sizes are equal; the others grow.
 

@@ -44,26 +44,26 @@ def arcs_by_curvature(
 ) -> Floats:
     """Return arc lengths (cells + 1,) from one end of the trailing edge around the nose to the other.
 
-    The cell size h is a smooth minimum of four sizes, 1/h⁴ = Σ 1/hₖ⁴: those at the trailing and at the
-    leading edge, each increasing by `GROWTH` times the distance from it; `TURN` over the curvature, reduced
-    where its slope along the wall exceeds `GROWTH`; and a largest size, such that the integral of ds/h is the
-    number of cells. If cells are too few for the first three, those of curvature and of the leading edge are
-    increased, and growth is up to `HURRY` times as fast (with `hurried`, as for C grids, whose wake takes
-    half of the nodes). If these are more than `_SCARCE` times as large, growth increases again, and in the
-    end all sizes are scaled up. With `based`, cells are also too few if the largest size exceeds `_LONGEST`
-    mean cells; unless `at_edge` is given, growth from the trailing edge on is then up to `RUSH` times as
-    fast, before other sizes change.
+    The cell size h is a smooth minimum of four sizes, 1/h⁴ = Σ 1/hₖ⁴: the size at the trailing edge and the
+    size at the leading edge, each increasing by `GROWTH` times the distance from the edge; `TURN` /
+    curvature, reduced where its slope along the wall exceeds `GROWTH`; and a largest size, such that the
+    integral of ds/h is the number of cells. If there are too few cells for the first three sizes, those of
+    curvature and of the leading edge are increased, and with `hurried` (for C grids, whose wake takes half of
+    the nodes) growth is up to `HURRY` times as fast. If the two sizes would have to be more than `_SCARCE`
+    times as large, growth increases again, and finally all sizes are scaled up. With `based`, cells are also
+    too few if the largest size exceeds `_LONGEST` mean cells; unless `at_edge` is given, growth from the
+    trailing edge on is then up to `RUSH` times as fast, before other sizes change.
 
     Parameters
     ----------
     stations : arc lengths of the lower end, the nose and the upper end.
     cells : number of cells between the two ends.
-    chord : length that curvature is measured by: it is averaged over 0.2 % of the chord.
+    chord : chord length; the curvature is averaged over 0.2 % of it.
     steps : cell sizes at the trailing and at the leading edge.
-    exact : whether each of these is prescribed. The first cells then deviate from it by less than 0.5 %,
-        unless twelve corrections of the sizes near the edge do not suffice.
+    exact : whether each of these two sizes is prescribed. The cell at the edge then deviates from it by less
+        than 0.5 %, unless twelve corrections of the sizes near the edge do not suffice.
     hurried : whether growth may be `HURRY` times as fast if cells are too few.
-    at_edge : logarithm of the growth factor of cells from the trailing edge on, if larger than `GROWTH`.
+    at_edge : logarithm of the growth ratio of cells next to the trailing edge, if larger than `GROWTH`.
     based : whether the ends are corners of a base, at which cells are small.
     """
     lower, nose, upper = stations
@@ -96,9 +96,9 @@ def arcs_by_curvature(
 
 
 def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -> Floats:
-    """Return distances (cells + 1,) along a closed curve from `begin`, by curvature alone.
+    """Return distances (cells + 1,) of nodes along a closed curve from `begin`, by curvature alone.
 
-    `way` is the length to cover, negative against the direction of the curve.
+    `way` is the length along which nodes are distributed; it is negative against the direction of the curve.
     """
     s = np.linspace(0.0, abs(way), 2 * _SAMPLES + 1)
     bend = _bend(curve, begin + np.sign(way) * s, curve.length)

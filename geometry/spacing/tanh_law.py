@@ -13,11 +13,11 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class TanhLaw:
-    """Vinokur's two-sided stretching s(q), q and s in [0, 1], from its slopes ds/dq at the two ends.
+    """Vinokur's two-sided stretching s(q), with q and s in [0, 1], from the slopes ds/dq at the two ends.
 
-    u = 1/2 + tanh(d (q - 1/2)) / (2 tanh(d/2)),  s = u / (a + (1 - a) u),
-    a = sqrt(end/start),  sinh(d)/d = 1/sqrt(start end); tan and sin where that is below 1.
-    Vinokur, J. Comput. Phys. 50 (1983) 215-234.
+    u = 1/2 + tanh(d (q - 1/2)) / (2 tanh(d/2)),  s = u / (a + (1 - a) u), a = sqrt(end/start), sinh(d)/d =
+    1/sqrt(start end); tan and sin replace tanh and sinh if this is < 1. Vinokur, J. Comput. Phys. 50 (1983)
+    215-234.
     """
 
     start: float
@@ -54,8 +54,8 @@ class TanhLaw:
 
         The steps are met to a relative error of 1e-6.
 
-        The last cell may extend beyond 1; `last_part` (1 or 0.5) is the fraction of it that lies before 1.
-        `cells` is then no integer.
+        The last cell may extend beyond 1: `last_part` (1 or 0.5) is the fraction of it that lies before 1. If
+        it is 0.5, `cells` is no integer.
 
         Raises InputError: the steps are too large together, or there are too few cells between them.
         """

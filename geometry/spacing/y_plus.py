@@ -50,11 +50,11 @@ def first_cell_note(
     where: str = "wall node",
     chord: float = 1.0,
 ) -> str:
-    """Return a sentence on the first-cell heights, from `low` to `high`, compared with `asked`.
+    """Return a sentence that compares the first-cell heights, from `low` to `high`, with `asked`.
 
     `growth` is the mean growth ratio away from the wall, None if unknown; `where` is the word for the nodes
-    that the sentence is about. Heights are in the unit of the points; `asked` is also given in chords if a
-    `chord` is not 1.
+    in the sentence. Heights are in the unit of the nodes; if `chord` is not 1, `asked` is also given in
+    chords.
     """
     size = (
         f"{asked:.6g}"

@@ -61,9 +61,9 @@ class _Edge(NamedTuple):
 
 
 def with_bases(patches: Sequence[Floats]) -> tuple[list[Floats], list[int], tuple[str, ...]]:
-    """Return the patches with bases added at open trailing edges, a patch number for each base, and notes.
+    """Return the patches and the bases that close open trailing edges, a patch index for each, and notes.
 
-    `patches` are (ni, nj, 3). The number of a base is that of the patch on its upper side.
+    `patches` are (ni, nj, 3). The index of a base is that of the patch on its upper side.
 
     Raises InputError: the patches that close the two ends of a trailing edge have different numbers of cells
     there.

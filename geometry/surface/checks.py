@@ -57,7 +57,7 @@ def check_manifold(nodes: Floats, lattices: tuple[Indices, ...], crowded: Indice
 
 
 def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if nodes of open `edges` (k, 2) nearly coincide but are different nodes."""
+    """Raise InputError if different nodes of open `edges` (k, 2) nearly coincide."""
     if not len(edges):
         return
     length = np.sqrt(((nodes[edges[:, 0]] - nodes[edges[:, 1]]) ** 2).sum(axis=1))
@@ -80,7 +80,7 @@ def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> 
 def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
     """Raise InputError if nodes of open `edges` (k, 2) lie inside other open edges.
 
-    Two sides then meet with different nodes.
+    In this case two sides meet, but have different nodes.
     """
     ends = nodes[edges]
     along = ends[:, 1] - ends[:, 0]
@@ -108,7 +108,7 @@ def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) ->
 def check_sides(
     nodes: Floats, lattices: tuple[Indices, ...], quads: Indices, twin: Indices, valence: Indices
 ) -> None:
-    """Raise InputError if two sheets touch in a single node, so that its faces do not form one ring."""
+    """Raise InputError if two sheets touch in a node; the faces around it do not form a single ring."""
     first, _ = ends_of(quads)
     faces = np.bincount(first, minlength=len(nodes))
     opened = np.bincount(first[twin < 0], minlength=len(nodes))

@@ -20,7 +20,7 @@ def ends_of(quads: Indices) -> tuple[Indices, Indices]:
 
 
 def open_sides(quads: Indices, twin: Indices) -> Indices:
-    """Return the corners (k, 4) of the quadrilaterals at open edges, beginning with the ends of the edge."""
+    """Return the corners (k, 4) of the quadrilaterals at open edges; both ends of the edge come first."""
     opened = np.flatnonzero(twin < 0)
     around = (opened[:, None] % 4 + np.arange(4)) % 4
     return np.asarray(quads[opened[:, None] // 4, around])

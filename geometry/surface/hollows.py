@@ -27,8 +27,9 @@ class Hollows:
     ----------
     edges : (k, 2) the two nodes of each edge.
     angles : (k,) angle of the space between the two faces, in degrees, at most 150.
-    distance : (n,) distance of each node from the nearest concave edge, measured along edges, plus the width
-        of the cells at this edge, so that it is nowhere 0; infinite if no edge is concave.
+    distance : (n,) distance of each node from the nearest concave edge, measured along edges of the surface,
+        plus the width of the cells at the concave edge, so that it is nowhere 0. It is infinite if no edge is
+        concave.
     """
 
     edges: Indices
@@ -36,7 +37,7 @@ class Hollows:
     distance: Floats
 
     def sharpest(self) -> tuple[float, int] | None:
-        """Return the smallest angle in degrees and a node of its edge; None if no edge is concave."""
+        """Return the smallest angle in degrees, and a node of its edge; None if no edge is concave."""
         return self._at(int(self.angles.argmin())) if len(self.edges) else None
 
     def nearest(self, surface: Surface, numbers: Indices) -> tuple[float, int] | None:

@@ -20,7 +20,7 @@ along it.
 def near_pairs(points: Floats, distance: float) -> Indices:
     """Return the pairs (m, 2) of `points` (n, 3) within `distance` along each axis, the lower index first.
 
-    Points are sorted along a slanted line, along which distant points seldom have equal positions.
+    Points are sorted along a slanted line, because distant points seldom have equal positions along it.
     """
     along = product(points, SLANT)
     order = np.argsort(along, kind="stable")

@@ -18,9 +18,9 @@ _HOLE = 0.1
 def turned_alike(
     patch: Indices, half_edges: tuple[Indices, Indices], twin: Indices, count: int
 ) -> tuple[list[int], list[int], tuple[int, int] | None]:
-    """Return the component of each of `count` patches, its sign (1 or -1), and a pair of patches or None.
+    """Return, for `count` patches, component and sign (1 or -1) of each, and a pair of patches or None.
 
-    `patch` (4 m,) is the number of the patch of each half-edge, `half_edges` are the first and the last nodes
+    `patch` (4 m,) is the index of the patch of each half-edge, `half_edges` are the first and the last nodes
     of the half-edges. If the patches with sign -1 are reversed, all patches of a component are consistent. If
     this is impossible, because the surface is not orientable, the third result is a pair of patches that
     contradict each other.
@@ -56,9 +56,9 @@ def turned_alike(
 def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list[int]:
     """Return the axes of the planes of symmetry that close a surface.
 
-    `sides` (k, 4) are the faces at open edges, beginning with the nodes of the edge. If all open edges
-    outside one plane are the rim of a small hole, as at the end of half a fuselage, only this plane closes
-    the surface.
+    `sides` (k, 4) are the faces at open edges; the nodes of the edge come first. If all open edges outside
+    one plane are the rim of a small hole, as at the end of half a fuselage, only this one plane closes the
+    surface.
     """
     axes = sorted({plane.axis for plane in planes})
     slack = FLAT * extent_of(nodes)
@@ -73,9 +73,10 @@ def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list
 def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | None:
     """Return 1 if consistently oriented `quads` (m, 4) face outwards, -1 if they face inwards.
 
-    Planes normal to the axes `flat` close the surface at open edges that lie in them. None if the surface
-    does not enclose a volume: too much of its area faces one way; or planes normal to two axes are needed to
-    close it, because these would close the inside as well as the outside of the corner of a box.
+    Planes normal to the axes `flat` close the surface at open edges that lie in them. The result is None if
+    the surface does not enclose a volume because too much of its area faces one way. It is also None if
+    planes normal to two axes are needed to close it: like the corner of a box, the surface would then be
+    closed on both of its sides.
     """
     if len(flat) > 1:
         return None

@@ -34,9 +34,9 @@ class Plane:
 def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
     """Return the planes normal to a coordinate axis that contain open edges and have the surface on one side.
 
-    `sides` (k, 4) are the faces at open edges; each begins with the nodes of the edge. An edge that is in two
-    such planes counts for the one with more edges, and a plane must have at least `FEWEST` edges: the blunt
-    trailing edge at a wing root is also straight, but only the root is in a plane of symmetry.
+    `sides` (k, 4) are the faces at open edges; the nodes of the edge come first. An edge in two such planes
+    belongs to the plane with more edges, and a plane must have at least `FEWEST` edges. The reason is that a
+    blunt trailing edge at a wing root is straight too, but only the root is in a plane of symmetry.
     """
     if not len(sides):
         return ()
@@ -58,7 +58,7 @@ def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
 
 
 def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:
-    """Return the numbers of the edges of `sides` (k, 4) that lie in a plane, while their faces do not.
+    """Return the indices of those `sides` (k, 4) whose edges lie in a plane, but whose faces do not.
 
     Nodes lie in the plane if their distance is at most `slack`.
     """
@@ -67,7 +67,7 @@ def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indic
 
 
 def slant(nodes: Floats, sides: Indices, plane: Plane) -> float:
-    """Return the mean angle in degrees between faces at open edges in a plane and the plane's normal.
+    """Return the mean angle in degrees between a plane's normal and the faces at open edges in the plane.
 
     `sides` are as in `planes_of`.
     """

@@ -47,7 +47,7 @@ class PoleCore:
     Parameters
     ----------
     nodes : (b + 1, a + 1, 3) nodes of the core, with the orientation of the fan.
-    rows : (r, m + 1, 3) rows of nodes from the edge of the core to the column `at` of the fan.
+    rows : (r, m + 1, 3) rows of nodes, from the edge of the core to the column of the fan with index `at`.
     at : index of the first column of the fan (m + 1, n, 3) that is kept.
     """
 
@@ -59,13 +59,13 @@ class PoleCore:
 def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> PoleCore:
     """Return the core of a `fan` (m + 1, n, 3) of curves that leave a pole, a single point, at j = 0.
 
-    By default the core is rounded, and so are the rings of cells around it, as a march from the surface needs
-    it. An `even` core is square: its lines have no kinks, across which cell sizes would differ by a factor of
-    up to 2.
+    By default the core and the rings of cells around it are rounded, as a march from the surface requires. An
+    `even` core is square, so that its lines have no kinks; across kinks cell sizes would differ by a factor
+    of up to 2.
 
     `quarters` is the angle of the fan in right angles. A closed fan repeats its first curve, and has an even
-    number m of cells. At most `most` columns are replaced, up to the first column whose cells are as long as
-    wide.
+    number m of cells. Columns are replaced up to the first whose cells are as long as they are wide, but at
+    most `most`.
     """
     m = len(fan) - 1
     steps = norms(np.diff(fan, axis=1)).mean(axis=0)

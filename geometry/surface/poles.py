@@ -39,11 +39,11 @@ class _FanPatch:
 def without_poles(
     patches: Sequence[Floats], *, replace: bool = True
 ) -> tuple[list[Floats], list[int], tuple[str, ...]]:
-    """Return the patches without poles, for each of them the number of a given patch, and notes.
+    """Return the patches without poles, the index of a given patch for each of them, and notes.
 
-    A pole is a side of a patch that is a single point. `patches` are (ni, nj, 3). Patches keep their numbers;
-    rows of cells replace their first columns. Cores are appended; the number of a core is that of a patch at
-    its pole. Several patches that meet in one pole get one core together. Without `replace` all patches are
+    A pole is a side of a patch that is a single point. `patches` are (ni, nj, 3). Patches keep their indices;
+    rows of cells replace their first columns. Cores are appended; the index of a core is that of a patch at
+    its pole. Several patches that meet in the same pole share a core. Without `replace` all patches are
     returned unchanged.
 
     Raises InputError: too few cells around a pole, or an odd number of them.

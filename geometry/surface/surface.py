@@ -40,10 +40,11 @@ class Surface:
     Parameters
     ----------
     nodes : (n, 3) the table of nodes, in any unit of length.
-    lattices : for each patch the numbers (ni, nj) of its nodes; i x j points outwards.
+    lattices : for each patch, the indices (ni, nj) of its nodes; the normal i x j points outwards.
     names : names of the patches, ``wall`` if the file has no names.
-    twin : (4 m,) half-edge on the other side of each half-edge of `quads`, -1 at open edges (`half_edges`).
-    ring, valence : (n, w) and (n,) neighbours in order around each node, and their number
+    twin : (4 m,) for each half-edge of `quads`, the half-edge on the other side; -1 at open edges
+        (`half_edges`).
+    ring, valence : (n, w) the neighbours in order around each node, and (n,) their number
         (`half_edges.rings`).
     planes : planes normal to an axis that contain open edges, with the surface on one side of them.
     notes : sentences on what was changed or assumed.
@@ -65,12 +66,12 @@ class Surface:
 
     @property
     def quads(self) -> Indices:
-        """(m, 4) nodes of quadrilaterals, patch after patch, i first, counter-clockwise from outside."""
+        """(m, 4) nodes of quadrilaterals, patch after patch, i fastest; counter-clockwise from outside."""
         return lattice_quads(self.lattices)
 
     @property
     def open_sides(self) -> Indices:
-        """(k, 4) corners of the quadrilaterals at open edges, starting with the ends of the edge."""
+        """(k, 4) corners of the quadrilaterals at open edges; both ends of the edge come first."""
         return open_sides(self.quads, self.twin)
 
     @property
@@ -86,12 +87,12 @@ class Surface:
 def surface_of(grid: Grid, *, poles: Literal["replace", "refuse"] = "replace") -> Surface:
     """Return the surface that the patches (ni, nj, 3) of a grid form together.
 
-    A pole, a side that is a single point, becomes a core patch with a note, unless `poles` says otherwise.
-    Open trailing edges are closed by base patches, with a note.
+    A pole (a side that is a single point) is replaced by a core patch, with a note, unless `poles` is
+    ``refuse``. Open trailing edges are closed by base patches, with a note.
 
     Patches with the opposite orientation are reversed along i, with a note. A closed surface, or a surface
-    closed by planes normal to one axis, faces outwards; any other surface faces the way in which most of its
-    area faces.
+    that planes normal to one axis close, gets outward normals; any other surface keeps the orientation of
+    most of its area.
 
     Raises InputError, with the place: blocks that are not patches; an edge of zero length, or shared by three
     quadrilaterals; a node at which two sheets touch; sides that nearly match, or that meet with different

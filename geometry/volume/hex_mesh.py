@@ -46,7 +46,7 @@ class HexMesh:
     Parameters
     ----------
     nodes : (n, 3) coordinates.
-    blocks : right-handed arrays (ni, nj, nk) of node numbers.
+    blocks : right-handed arrays (ni, nj, nk) of node indices.
     connections : connections of the grid, without the periodic ones.
     """
 
@@ -72,7 +72,7 @@ class HexMesh:
         return outer
 
     def free_cells(self, number: int, side: Side) -> Bools:
-        """Return for each cell (n-1, m-1) of a side of a block whether it has no connection."""
+        """Return, for each cell (n-1, m-1) of a side of block `number`, whether it has no connection."""
         face = face_of(self.blocks[number], side)
         free = np.ones((face.shape[0] - 1, face.shape[1] - 1), dtype=bool)
         for each in self.connections:
@@ -83,7 +83,7 @@ class HexMesh:
 
     @cached_property
     def beyond(self) -> tuple[Indices, ...]:
-        """The blocks with one layer of node numbers added around them: (ni+2, nj+2, nk+2).
+        """The blocks with one layer of node indices added around each: (ni+2, nj+2, nk+2).
 
         The layer contains the nodes one step across connected sides, and -1 elsewhere.
         """
@@ -106,13 +106,13 @@ class HexMesh:
 
 
 def corners_of(values: AnyArray) -> Iterator[AnyArray]:
-    """Yield for each of the eight corners of cells a view (ni-1, nj-1, nk-1) of `values` (ni, nj, nk)."""
+    """Yield, for each of the 8 corners of cells, a view (ni-1, nj-1, nk-1) of `values` (ni, nj, nk)."""
     for corner in np.ndindex(2, 2, 2):
         yield values[tuple(slice(c, c + n - 1) for c, n in zip(corner, values.shape, strict=True))]  # type: ignore[misc]
 
 
 def any_corner(nodes: Bools) -> Bools:
-    """Return for each cell of a block whether any of its corners is set in `nodes` (ni, nj, nk)."""
+    """Return, for each cell of a block, whether any of its corners is in the mask `nodes` (ni, nj, nk)."""
     cells = nodes
     for axis in range(3):
         ends = np.moveaxis(cells, axis, 0)
@@ -196,5 +196,5 @@ def _poles(face: Indices, nodes: Floats, near: float) -> list[tuple[Indices, Ind
 
 
 def with_nodes(grid: Grid, mesh: HexMesh) -> Grid:
-    """Return `grid` with the nodes of `mesh`, which was made from it; connected sides are bitwise equal."""
+    """Return `grid` with the nodes of `mesh`, which was made from `grid`; connected sides are equal."""
     return replace(grid, blocks=tuple(Block(mesh.nodes[block]) for block in mesh.blocks))

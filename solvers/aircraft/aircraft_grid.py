@@ -53,7 +53,7 @@ _FINE = 129
 
 
 def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, tuple[str, ...]]:
-    """Return the grid of an aircraft or its half, and notes.
+    """Return the grid of an aircraft or of its half, and notes for the report.
 
     Raises InputError: the errors of `planned_grid`.
     """
@@ -64,8 +64,8 @@ def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, t
 def planned_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, float, tuple[str, ...]]:
     """Return the grid of an aircraft or of its half, the growth ratio with which it was planned, and notes.
 
-    Raises InputError: a wing that does not begin inside the body or does not leave it; wings that are too
-    close to each other.
+    Raises InputError: a wing does not begin inside the body or does not leave it; wings are too close to each
+    other.
     """
     sizes = aircraft_dimensions(aircraft, request.height(), request.far_field)
     space = map_around(aircraft.body, sizes.far_field)

@@ -19,14 +19,14 @@ _POLE_CELL = 0.5
 
 @dataclass(frozen=True, eq=False)
 class BodyEnd:
-    """The part of the grid at nose or tail, whose nodes have the same s and theta on all levels.
+    """The part of the grid at the nose or the tail; its nodes have the same s and theta on all levels.
 
-    A level is a surface of nodes around the body; the first one is the body itself.
+    A level is a surface of nodes around the body; the first level is the body itself.
 
     Parameters
     ----------
-    theta : (n,) angles of the lines that leave the pole.
-    core : core that replaces the pole, in the plane with the polar coordinates s, theta.
+    theta : (n,) angles of the lines that leave the pole, the tip of the nose or of the tail.
+    core : block of nodes that covers the pole, in a plane with the polar coordinates s, theta.
     at : s at which the rows of cells around the core end.
     step : the last step of s in these rows.
     cells : number of cells from the rows around the core to the next collar.
@@ -40,9 +40,9 @@ class BodyEnd:
 
     @classmethod
     def of(cls, points: Points, sides: Sequence[Side]) -> Self:
-        """Return the end next to a column, given the `sides` of this column on some levels.
+        """Return the end next to the first or last column of wings; `sides` are its nodes on some levels.
 
-        The first of these levels is the body. s is counted from the pole, the tip of the nose or of the tail.
+        The first of these levels is the body. s is measured from the pole.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))
@@ -68,10 +68,10 @@ class BodyEnd:
         return begin, side, np.full(len(side), self.step), last
 
     def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
-        """Return rows and core, (., ., 3) each, between the pole and the `side` (n, 3) of a column.
+        """Return two patches, rows and core (., ., 3), between the `side` (n, 3) of a column and the pole.
 
-        `last` (n,) are the lengths of the cells at the side. All are places s, theta, zeta with s counted
-        from the pole; `points` takes such places to space.
+        `last` (n,) are the lengths of the cells at the side. All nodes are given by s, theta, zeta, with s
+        measured from the pole; `points` maps them to space.
         """
         begin, end, *sizes = self._lines(side, last)
         lines = lines_between(points, begin, end, (sizes[0], sizes[1]), self.cells)

@@ -39,8 +39,8 @@ _COARSE = 8
 class BodyMap:
     """The map from (s, theta, zeta) to the space around a `body`, up to the distance `far` of the far field.
 
-    s goes from 0 at the nose to the length of the body at the tail. theta is the angle about the axis, 0 at
-    the keel and pi at the crown. zeta is 0 on the body and 1 in the far field.
+    s is 0 at the nose and the length of the body at the tail. theta is the angle about the axis: 0 at the
+    keel (bottom), pi at the crown (top). zeta is 0 on the body and 1 on the far field.
     """
 
     def __init__(self, body: Body, far: float) -> None:
@@ -58,7 +58,7 @@ class BodyMap:
         self._arcs = monotone_cubic(turns, body.arcs_near(table[:, 0]), even)[:, None, None]
 
     def points(self, places: Floats) -> Floats:
-        """Return points (..., 3) at places (..., 3) of s, theta, zeta."""
+        """Return the points (..., 3) in space at `places` (..., 3), which are s, theta, zeta."""
         s, theta, zeta = np.moveaxis(places, -1, 0)
         x, r = np.moveaxis(self.meridional(s.ravel(), zeta.ravel()).reshape(*s.shape, 2), -1, 0)
         r = np.maximum(r, 0.0)
@@ -72,7 +72,7 @@ class BodyMap:
         return _between(self.table, along, across) + at_body * (away * away)[:, None]
 
     def arcs(self, s: Floats) -> Floats:
-        """Return the arc lengths (n,) of the meridian at places s (n,)."""
+        """Return the arc lengths (n,) along the meridian of the body, from the nose, at s (n,)."""
         along = s * ((_LINES - 1) / self.body.length)
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
@@ -82,13 +82,14 @@ class BodyMap:
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angles (...) in radians between the z axis and the body's section at places (..., 3)."""
+        """Return the angle (...), in radians, of the cross-section's tangent to the z axis at places."""
         return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
-        """Return the places (..., 3), s, theta, zeta, of points (..., 3), by Newton's method.
+        """Return s, theta, zeta (..., 3) of points (..., 3), by Newton's method.
 
-        The iteration starts from the places `near` (..., 3); None: from the nearest nodes of the table.
+        The iteration starts from s, theta, zeta in `near` (..., 3); if None, from the nearest nodes of the
+        table.
         """
         y, z = points[..., 1] - self.body.y, points[..., 2]
         theta = arctan2(z, -y)

@@ -43,8 +43,8 @@ class LevelPlan:
 
     Parameters
     ----------
-    columns : plans of the columns with wings and fins, from nose to tail.
-    between : numbers of cells between neighbouring columns.
+    columns : plans of the columns (each has a wing, a fin, or a fin above a wing), ordered from nose to tail.
+    between : number of cells between each column and the next.
     ends : nose and tail.
     """
 
@@ -64,7 +64,7 @@ class LevelPlan:
 
     @property
     def collar_patches(self) -> tuple[int, ...]:
-        """For each wing and fin the number of the patch that is its collar."""
+        """For each wing and fin, the index of the patch that is its collar."""
         out, begin = [], 0
         for column in self.columns:
             out += [begin, begin + column.patches - 1][: len(column.collars)]
@@ -75,10 +75,10 @@ class LevelPlan:
 def planned(
     space: BodyMap, holes: Sequence[Sequence[Sequence[Hole]]], first: float, growth: float
 ) -> LevelPlan:
-    """Return the numbers of cells that suit all `holes`, the sections of wings on some levels.
+    """Return numbers of cells that suit all `holes`, which are the sections of wings on some levels.
 
-    `holes` has an entry for each column, from nose to tail, each wing of the column and each level; the first
-    level is the body. `first` is the height of first cells, `growth` the largest growth ratio.
+    `holes` is indexed by column (from nose to tail), by wing of the column, and by level (the first is the
+    body). `first` is the height of first cells, `growth` the largest growth ratio.
     """
     plans, levels = zip(*(planned_column(each, first, growth) for each in holes), strict=True)
     columns = _with_equal_lines(plans)
@@ -140,10 +140,10 @@ def _level_with_fin(columns: Sequence[ColumnPlan], plans: Sequence[ColumnPlan]) 
 
 
 def level_patches(space: BodyMap, plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floats]:
-    """Return the patches (ni, nj, 3) of one level around its holes, as places s, theta, zeta.
+    """Return the patches (ni, nj, 3), s, theta, zeta of their nodes, of one level around its holes.
 
-    First come the patches of the columns, from nose to tail; then the patches between columns; then rows and
-    core of the nose, and rows and core of the tail.
+    The order is: the patches of the columns, from nose to tail; the patches between columns; rows and core of
+    the nose; rows and core of the tail.
     """
     levels = _beside_fins([ColumnLevel.of(*each) for each in zip(plan.columns, holes, strict=True)])
     patches = [patch for level in levels for patch in level.patches()]

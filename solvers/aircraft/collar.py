@@ -61,7 +61,7 @@ Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True)
 class Rectangle:
-    """The rectangle around the section of a wing: smallest and largest s, smallest and largest t."""
+    """The rectangle around the section of a wing: smallest and largest s, smallest and largest theta."""
 
     front: float
     back: float
@@ -70,10 +70,10 @@ class Rectangle:
 
 
 def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
-    """Return the rectangle around a `section` (n, 2) of s and theta, in lengths in space.
+    """Return the rectangle, in lengths in space, around the `section` (n, 2) of a wing in s and theta.
 
-    `within` are the limits of s and theta between which the section lies; the rectangle takes at most half of
-    the way to them. `scale` (2,) are the lengths in space of units of s and theta.
+    `within` are limits of s and theta around the section; the rectangle covers at most half of the distance
+    from the section to each limit. `scale` (2,) is the length in space of a unit of s, and of theta.
     """
     (front, low), (back, high) = (section * scale).min(axis=0), (section * scale).max(axis=0)
     (begin, end), (bottom, top) = (
@@ -87,12 +87,13 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return two counts of nodes, which give the nodes of a `root` whose lines end at the corners of `box`.
+    """Return two counts that tell from which nodes of a `root` lines lead to the corners of `box`.
 
-    The two rear nodes are the first count away from the middle of the trailing edge, one upwards and one
-    downwards; the two front nodes are the second count away from the middle of the nose. Of all counts of at
-    least `fewest` with which cells on neighbouring sides of the rectangle have similar lengths, those are
-    chosen at which the normals of the root point most directly at the corners, so that lines are bent least.
+    The first count is the number of steps along the root from the middle of the trailing edge to the nodes
+    for the two rear corners, upwards and downwards. The second is the number of steps from the middle of the
+    nose to the nodes for the two front corners. Counts are at least `fewest`, and cells on neighbouring sides
+    of the rectangle must have similar lengths. Of all such counts, those are chosen whose nodes have normals
+    that point most directly at the corners.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -113,7 +114,7 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return the cell lengths on two sides of a rectangle: behind the trailing edge, and before the nose.
+    """Return the cell lengths on two sides of a rectangle: the rear side and the front side.
 
     `corners` is the result of `corner_nodes`.
     """
@@ -122,10 +123,10 @@ def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]
 
 
 def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats:
-    """Return the nodes (n, 2) on a rectangle at which the lines from the nodes of a root (n, 2) end.
+    """Return the nodes (n, 2) on the rectangle `box`; lines from the nodes of a `root` (n, 2) end there.
 
-    The root is a closed curve, which runs from the middle of the trailing edge first over the side of large
-    t. `corners` is the result of `corner_nodes`.
+    The root is a closed curve. It starts at the middle of the trailing edge and runs first along the side of
+    larger theta. `corners` is the result of `corner_nodes`.
     """
     half = (len(root) - 1) // 2
     edge, nose = corners
@@ -164,12 +165,12 @@ def _shifted(places: Floats, box: Rectangle, towards: float) -> Floats:
 def collar(
     root: Floats, outer: Floats, rows: int, first: float, last: Floats, straight: float = 0.0
 ) -> tuple[Floats, float]:
-    """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and an angle.
+    """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and a sine.
 
     Cells have the height `first` at the root and `last` (n,) at the outer loop. With `straight` = 0 the lines
-    are those of an elliptic grid, with 1 they are parabolas along the normals of the root; values between
-    give weighted means of both. The second result is the smallest sine of an angle between these lines and
-    the lines across them, before nodes are placed on the lines.
+    from root to outer loop are those of an elliptic grid; with 1 they are parabolas that start along the
+    normals of the root; values between 0 and 1 give weighted means. The second result is the smallest sine of
+    an angle between these lines and the lines around the root, before nodes are distributed along the lines.
     """
     arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)

@@ -51,12 +51,12 @@ class Hole:
 
     Parameters
     ----------
-    section : (n, 2) s and theta of the nodes around the section.
-    scale : (2,) lengths in space of units of s and theta at the section.
-    zeta : mean zeta of the section; it is also the zeta of the level next to the section.
+    section : (n, 2) s and theta of the nodes on the section.
+    scale : (2,) length in space of a unit of s, and of a unit of theta, at the section.
+    zeta : mean zeta of the section, which is also the zeta of the level around it.
     within : limits of s and theta for the collar.
-    fin : whether this is the section of a fin. Its middle line is the crown, and only half of its collar is
-        in the grid.
+    fin : whether this is the section of a fin. Its middle line is on the crown, so that only one half of its
+        collar is in the grid.
     below : theta at which the cells below the collar end.
     """
 
@@ -79,7 +79,7 @@ class Hole:
 
     @property
     def bands(self) -> tuple[float, float]:
-        """Lengths in space from the rectangle to keel and crown, or to the part of the next wing."""
+        """Lengths in space from the rectangle to keel and crown, or to where the next wing's part begins."""
         bottom, top = (theta * float(self.scale[1]) for theta in (self.below, self.within[1][1]))
         if self.fin:
             top = self.box.high + self.box.low - bottom
@@ -92,16 +92,15 @@ class CollarPlan:
 
     Parameters
     ----------
-    edge, nose : numbers of nodes from the middle of the trailing edge, and from that of the nose, to the
-        nodes whose lines end at the corners of a collar's rectangle.
+    edge, nose : the two counts of `corner_nodes`.
     rows : cells across a collar.
     low, top : numbers of cells from the keel to a collar, and from the collar to the crown. Between a wing
-        and the fin above it both are the same.
+        and the fin above it, `top` of the wing and `low` of the fin are the same.
     first : height of the cells at the wing.
     straight : weight of straight lines in the collars (`collar`).
     sine : smallest sine of an angle in the collars.
-    widest : the cells next to the collar, above and below it, are at most this many times as long as the mean
-        of the cells from the collar to crown or keel.
+    widest : largest ratio of the cell next to the collar, above or below it, to the mean of the cells from
+        the collar to the crown or to the keel.
     """
 
     edge: int
@@ -116,11 +115,7 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return the results of `corner_nodes`, as means over `holes`.
-
-    They are numbers of nodes from the middle of the trailing edge, and from that of the nose, to the nodes
-    whose lines end at the corners of the collar's rectangle.
-    """
+    """Return the two counts of `corner_nodes`, each as a mean over `holes`."""
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
     return edge, nose
@@ -131,8 +126,8 @@ def planned_collar(
 ) -> tuple[CollarPlan, list[CollarLevel]]:
     """Return the plan for the collars of a wing on some levels, and the collars.
 
-    `holes` are its sections on these levels, beginning at the root. Bands above and below are narrow at
-    first.
+    `holes` are its sections on these levels, beginning at the root. At first, the plan has only few cells
+    above and below the collars.
     """
     edge, nose = corners
     plan = CollarPlan(edge, nose, 4, FEWEST, FEWEST, first)
@@ -163,8 +158,9 @@ class CollarLevel:
     ----------
     plan, hole : numbers of cells, and the section.
     ring : (n, rows + 1, 2) nodes of the collar, in lengths in space.
-    between : smallest sine of an angle between its lines before nodes are placed on them.
-    last : lengths in space of the outermost cells before, below, above and behind the section.
+    between : smallest sine of an angle between grid lines of the collar, before nodes are distributed along
+        the lines.
+    last : lengths in space of the outermost cells of the collar: before, below, above and behind the section.
     """
 
     plan: CollarPlan
@@ -213,9 +209,9 @@ class CollarLevel:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Lengths in s of the cells before and behind the rectangle.
+        """Lengths in s of the first cells outside the rectangle, before and behind it.
 
-        They lie between the lengths of the cells of the collar and of the bands above and below it.
+        They lie between the lengths of the cells inside the collar and those of the cells above and below it.
         """
         behind, before = outer_cells(self.hole.box, (self.plan.edge, self.plan.nose))
         unit = float(self.hole.scale[0])
@@ -224,9 +220,10 @@ class CollarLevel:
 
     @cached_property
     def beside(self) -> tuple[float, float]:
-        """Lengths in space of the first cells of the bands below and above the rectangle.
+        """Lengths in space of the first cells outside the rectangle, below and above it.
 
-        They lie between the lengths of the outermost cells of the collar and of the cells beside its corners.
+        They lie between the length of the outermost cells of the collar and that of the cells beside its
+        corners.
         """
         outer, half = self.ring[:, -1, 1], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
@@ -256,7 +253,7 @@ class CollarLevel:
 
     @property
     def across(self) -> tuple[Floats, Floats]:
-        """Theta of the nodes on the front and on the back side of the rectangle, from low to high."""
+        """Theta of the nodes on the front side and on the back side of the rectangle, in ascending order."""
         outer, half, rho = self.ring[:, -1, 1], (len(self.ring) - 1) // 2, float(self.hole.scale[1])
         edge, nose = self.plan.edge, self.plan.nose
         front = outer[half + nose : half - nose - 1 : -1] / rho
@@ -269,7 +266,7 @@ class CollarLevel:
 
     @property
     def long_sides(self) -> tuple[Floats, Floats]:
-        """The s of nodes on the low and on the high side of the rectangle, from its back to its front."""
+        """The s of the nodes on the lower side and on the upper side of the rectangle, from back to front."""
         s, half = self.ring[:, -1, 0] / self.hole.scale[0], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]
@@ -277,7 +274,7 @@ class CollarLevel:
     def collar(self) -> Floats:
         """Return the nodes (n, rows + 1, 2) of the collar.
 
-        Of a fin only the half up to the crown, from nose to edge.
+        For a fin, only the half up to the crown is returned, from the nose to the trailing edge.
         """
         ring = self.ring / self.hole.scale
         if not self.hole.fin:

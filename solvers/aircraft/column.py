@@ -51,8 +51,8 @@ class ColumnPlan:
 
     Parameters
     ----------
-    collars : plans of the collars of its wing, of its fin, or of both; the fin is last.
-    fin : whether there is a fin.
+    collars : plans of the collars of the wing, of the fin, or of both; the fin is last.
+    fin : whether the column has a fin.
     """
 
     collars: tuple[CollarPlan, ...]
@@ -65,7 +65,7 @@ class ColumnPlan:
 
     @property
     def bands(self) -> int:
-        """Number of cells from keel to crown above and below the collars."""
+        """Number of cells above and below the collars, in the direction from keel to crown."""
         return self.collars[0].low + (0 if self.fin_alone else self.collars[0].top)
 
     @property
@@ -75,15 +75,15 @@ class ColumnPlan:
 
     @property
     def beside(self) -> tuple[int, int]:
-        """Numbers of cells from keel to crown before and behind the collars."""
+        """Numbers of cells from keel to crown on the front side and on the back side of the column."""
         shares = [1 if self.fin and each is self.collars[-1] else 2 for each in self.collars]
         before = sum(n * each.nose for n, each in zip(shares, self.collars, strict=True))
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))
 
     def with_bands(self, cells: int, low: int | None = None) -> ColumnPlan:
-        """Return the plan with `cells` cells above and below collars, `low` of them below.
+        """Return the plan with `cells` cells above and below the collars in total, `low` of them below.
 
-        If `low` is None, the proportion above and below is kept.
+        If `low` is None, the ratio of the numbers above and below stays the same.
         """
         first, *others = self.collars
         if self.fin_alone:
@@ -94,9 +94,9 @@ class ColumnPlan:
         return replace(self, collars=(replace(first, low=low, top=top), *fins))
 
     def evened(self, widest: float) -> ColumnPlan:
-        """Return the plan in which cells next to collars are at most `widest` times the mean cell.
+        """Return the plan with `widest` as the largest ratio of the cells next to collars to the mean cell.
 
-        The mean is over the cells from the collar to keel and crown.
+        The mean is that of the cells from the collar to the keel or to the crown.
         """
         return replace(self, collars=tuple(replace(each, widest=widest) for each in self.collars))
 
@@ -128,7 +128,7 @@ class ColumnLevel:
     plan : numbers of cells of the column.
     levels : the collars on this level: of the wing, of the fin, or of both; that of the fin is last.
     below : theta of the nodes from the keel to the first collar, if they are prescribed.
-    keel, crown : zeta at keel and crown, if it differs from that of the first collar.
+    keel, crown : zeta at the keel and at the crown, if they differ from the zeta of the first collar.
     """
 
     plan: ColumnPlan
@@ -139,22 +139,22 @@ class ColumnLevel:
 
     @classmethod
     def of(cls, plan: ColumnPlan, holes: Sequence[Hole]) -> ColumnLevel:
-        """Return the column around `holes`, of which that of a fin is last."""
+        """Return the column around `holes`; if one is the section of a fin, it is the last."""
         levels = (CollarLevel.of(*each) for each in zip(plan.collars, holes, strict=True))
         return cls(plan, tuple(levels))
 
     def with_counts(self, plan: ColumnPlan) -> ColumnLevel:
-        """Return the column with the numbers of cells of another plan, except those of its collars."""
+        """Return the column with the numbers of cells of another `plan`; those inside its collars stay."""
         levels = (replace(each, plan=counts) for each, counts in zip(self.levels, plan.collars, strict=True))
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return the column of a wing next to one with a fin: at the crown zeta is the mean of both."""
+        """Return this column of a wing beside that of a `fin`: zeta at the crown becomes the mean of both."""
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
-        """Return the column of a fin without a wing next to the column of a wing.
+        """Return this column of a fin without a wing, changed beside the column of a `wing`.
 
         The nodes below the fin have nearly the theta of those on the `side` of the wing's column.
         """
@@ -173,7 +173,7 @@ class ColumnLevel:
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return the length in space from the wing's collar to the fin's, and the cells at both ends."""
+        """Return the length in space from the wing's collar to the fin's, and of the cells at both ends."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])
@@ -238,7 +238,7 @@ class ColumnLevel:
         return self.zeta if self.crown is None else self.crown
 
     def patches(self) -> list[Floats]:
-        """Return the patches (ni, nj, 3): collar, patches above and below it, collar of a fin above."""
+        """Return the patches (ni, nj, 3): collar, those above and below it, collar of a fin above a wing."""
         below, above = self.levels[0].long_sides
         zeta = self.zeta
         patches = [_on(self.levels[0].collar(), zeta)]

@@ -15,11 +15,11 @@ _INVERSES = 0.2, 5.0
 
 
 def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Floats:
-    """Return the places (..., 3) on the lines from `wall` to `beside` (..., 3) at the distance `first`.
+    """Return s, theta, zeta (..., 3) of the points on lines at the distance `first` in space from the wall.
 
-    Near the wall, the distance is proportional to a power of the fraction t of the line from `wall` to
-    `beside`. The exponent (1 except at a pointed nose or tail) is estimated from the last two trial values of
-    t.
+    Each line leads from `wall` to `beside` (..., 3), both s, theta, zeta. Near the wall, the distance is
+    proportional to a power of the fraction t of the line. The exponent (1 except at a pointed nose or tail)
+    is estimated from the last two trial values of t.
     """
     away, foot = beside - wall, space.points(wall)
     scale = inverse = np.ones(away.shape[:-1])

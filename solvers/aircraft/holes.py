@@ -28,7 +28,7 @@ _PART = 2.0 / 3.0
 def columns_of(
     space: BodyMap, wings: Sequence[WingLines], sections: Sequence[Floats]
 ) -> tuple[tuple[int, ...], ...]:
-    """Return the numbers of the wings in each column, from nose to tail.
+    """Return, for each column from nose to tail, the indices of its wings.
 
     `sections` (k, n, 3) are the sections of each wing on the key levels. A fin above a wing, or so near to it
     along the body that there is no room between them, is in the column of the wing.
@@ -61,12 +61,12 @@ Each = TypeVar("Each")
 
 
 def ordered(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[Each]:
-    """Return the `values` of wings, one per wing, in the order of `columns`."""
+    """Return `values`, one per wing in the order of their indices, sorted in the order of `columns`."""
     return [values[k] for column in columns for k in column]
 
 
 def grouped(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[list[Each]]:
-    """Return the `values` of wings, which are in the order of `columns`, as a list for each column."""
+    """Return `values`, one per wing and already in the order of `columns`, as a list for each column."""
     rest = iter(values)
     return [list(islice(rest, len(column))) for column in columns]
 
@@ -98,7 +98,7 @@ def _room(before: _Along, after: _Along, clear: float = _CLEAR) -> tuple[Floats,
 def holes_of(
     space: BodyMap, columns: Sequence[Sequence[WingLines]], sections: Sequence[Sequence[Floats]]
 ) -> tuple[tuple[tuple[Hole, ...], ...], ...]:
-    """Return the holes that the wings in `columns` cut, on each key level; columns run from nose to tail.
+    """Return the holes by column (from nose to tail), wing and key level; a hole is a section of a wing.
 
     `sections` (k, n, 3) are the sections of each wing on these levels.
 

@@ -24,10 +24,10 @@ there in s.
 def lines_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats], cells: int
 ) -> Floats:
-    """Return nodes (n, cells + 1, 3) on the lines between the places `begin` and `end` (n, 3).
+    """Return nodes (n, cells + 1, 3) on n lines from `begin` (n, 3) to `end` (n, 3).
 
-    Nodes and places are s, theta, zeta. Cell lengths in space change evenly along a line; at both ends cells
-    have the lengths `sizes` (n,) in s.
+    All of them are s, theta, zeta. Cell lengths in space change evenly along a line; the first and the last
+    cell have the lengths `sizes` (n,) in s.
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
     nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))
@@ -38,7 +38,7 @@ def lines_between(
 def ways_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats]
 ) -> tuple[Floats, tuple[Floats, Floats]]:
-    """Return the lengths (n,) in space of the lines of `lines_between`, and of their first and last cells."""
+    """Return the lengths (n,) in space: of the lines of `lines_between`, of their first and last cells."""
     _, arcs, ends = _measured(points, begin, end, sizes)
     return arcs[:, -1], ends
 

@@ -30,7 +30,7 @@ the pole.
 
 
 class LoftedMap(BodyMap):
-    """The map from (s, theta, zeta) to the space around a lofted `body`, up to the distance `far`.
+    """The map from (s, theta, zeta) to the space around a lofted `body`, up to the far field.
 
     The three coordinates are those of `BodyMap`.
     """
@@ -48,7 +48,7 @@ class LoftedMap(BodyMap):
         self._fading = min(1.0, _FADING / more) if more > 0.0 else 1.0
 
     def points(self, places: Floats) -> Floats:
-        """Return points (..., 3) at places (..., 3) of s, theta, zeta."""
+        """Return the points (..., 3) in space at `places` (..., 3), which are s, theta, zeta."""
         s, theta, zeta = np.moveaxis(places, -1, 0).reshape(3, -1)
         x, r = self.meridional(s, zeta).T
         r = np.maximum(r, 0.0)
@@ -67,7 +67,7 @@ class LoftedMap(BodyMap):
         return np.stack([x, y, z], axis=-1).reshape(places.shape)
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
-        """Return places (..., 3) of s, theta, zeta of points (..., 3), by Newton's method."""
+        """Return s, theta, zeta (..., 3) of points (..., 3), by Newton's method."""
         wanted = points.reshape(-1, 3)
         at = (self._first_places(wanted) if near is None else near.reshape(-1, 3)).copy()
         steps = np.diag([_STEP * self.body.length, _STEP, _STEP])
@@ -90,7 +90,7 @@ class LoftedMap(BodyMap):
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angles (...) in radians between the z axis and the body's section at places (..., 3).
+        """Return the angles (...) in radians between z axis and cross-section of the body at places (..., 3).
 
         The places lie on the body.
         """
@@ -103,7 +103,7 @@ class LoftedMap(BodyMap):
         return (self.points(places + step) - self.points(places - step)) / (2.0 * _STEP)
 
     def normals(self, foot: Floats) -> Floats:
-        """Return the unit normals (n, 3) of the body at places `foot` (n, 3), s, theta, zeta = 0.
+        """Return the unit normals (n, 3) of the body at points `foot` (n, 3), given by s, theta, zeta = 0.
 
         At nose and tail, where meridians meet, the normal is the mean of the normals around the pole.
         """
@@ -144,10 +144,10 @@ def map_around(body: Body, far: float) -> BodyMap:
 
 
 def points_above(space: BodyMap, foot: Floats, first: float) -> Floats:
-    """Return the points (n, 3) at the height `first` on the normals of the body.
+    """Return the points (n, 3) on normals of the body at the distance `first` from it.
 
-    `foot` (n, 3) are the places s, theta, zeta = 0 of the feet of the normals. Around a body of revolution,
-    lines of constant s and theta are normals of the body.
+    `foot` (n, 3) are s, theta, zeta = 0 of the points where the normals start. Around a body of revolution,
+    lines of constant s and theta are used, which are normal to the body.
     """
     if isinstance(space, LoftedMap):
         return np.asarray(space.points(foot) + first * space.normals(foot))

@@ -21,7 +21,7 @@ of attempts.
 
 
 class Loft(Protocol):
-    """Lines along the span of a wing, one for each node around its sections."""
+    """Lines along the span of a wing, one for each node around a section of the wing."""
 
     @property
     def begin(self) -> Floats:
@@ -33,11 +33,11 @@ class Loft(Protocol):
 
     @property
     def remedy(self) -> str:
-        """Text for a user whose lines do not begin inside the body."""
+        """What users should do if the lines do not begin inside the body, as text for an error."""
 
     @property
     def cant(self) -> float:
-        """Angle in radians by which the plane of the tip is turned about the x axis, from z to y."""
+        """Angle in radians by which the normal of the tip's plane is turned about x, from the z axis to y."""
 
     def line(self, number: int, z: Floats) -> Floats:
         """Return points (m, 3) on a line at heights z (m,)."""
@@ -96,12 +96,12 @@ class FinLoft(SectionLoft):
 
 @dataclass(frozen=True, eq=False)
 class SurfaceLoft:
-    """Lines on the surface of a wing: the first and the last in the middle of its base.
+    """Lines along the span on the surface of a wing; the first and the last are in the middle of its base.
 
     Parameters
     ----------
-    lines : (stations, 3) each, from the upper corner of the base around the nose to the lower corner.
-    begin : (n,) heights at which lines begin, including the lines in the middle of the base.
+    lines : (stations, 3) each, ordered from the upper corner of the base around the nose to the lower corner.
+    begin : (n,) height at which each line begins, including the lines in the middle of the base.
     tip : height at which lines end, in a plane without `cant`.
     """
 
@@ -113,7 +113,7 @@ class SurfaceLoft:
 
     @classmethod
     def of(cls, wing: SurfaceWing, body: Body, plan: Around) -> Self:
-        """Return the lines of a wing on a body, distributed as in a `plan` with two cells on the base.
+        """Return the lines of a wing on a body, distributed as in `plan`, with two cells on the wing's base.
 
         Lines that end on the body are continued straight into it, as far as necessary.
         """

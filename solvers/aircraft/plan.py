@@ -53,10 +53,10 @@ class AircraftPlan:
     ----------
     wings : lines along the span of each wing, in order from nose to tail; a fin comes after the wing below
         it.
-    sections : for each wing (SAMPLES, n, 3), s, theta and zeta of the nodes around it on the key levels.
-    holes : for each column, wing and key level the section of the wing.
+    sections : for each wing, (SAMPLES, n, 3) s, theta and zeta of the nodes around it on the key levels.
+    holes : the section of a wing, by column, wing and key level.
     levels : numbers of cells that are the same on all levels.
-    tips : for each wing the nodes (m, k, 3) of the ring and of the core that fill its last section.
+    tips : for each wing, the nodes (m, k, 3) of the ring and of the core that fill the section at its tip.
     span, beyond : numbers of cells from the body to the tips, and from the tips to the far field.
     growth : largest growth ratio away from walls.
     halves : 2 if the grid has both halves of the aircraft, else 1.
@@ -78,8 +78,8 @@ class AircraftPlan:
 
         If the request has no growth ratio, the first of `GROWTHS` is used.
 
-        Raises InputError: a wing that does not begin inside the body or does not leave it; wings that are too
-        close to each other; a root that is too close to keel or crown.
+        Raises InputError: a wing does not begin inside the body or does not leave it; wings are too close to
+        each other; a root is too close to keel or crown.
         """
         chord = aircraft.wing.chord
         first, growth = request.height() * chord, request.growth or GROWTHS[0]
@@ -133,7 +133,7 @@ class AircraftPlan:
 def plan_of(
     aircraft: Aircraft, request: AircraftRequest, space: BodyMap
 ) -> tuple[AircraftPlan, tuple[str, ...]]:
-    """Return the plan of a grid with the requested number of cells or of nodes around wings, and notes.
+    """Return the plan of a grid with the requested number of cells, or of nodes around wings, and notes.
 
     Raises InputError: the errors of `AircraftPlan.of`.
     """

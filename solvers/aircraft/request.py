@@ -13,13 +13,13 @@ _OTHERS = ("layers", "revolve", "axis", "copies")
 
 @dataclass(frozen=True)
 class AircraftRequest(StackRequest):
-    """Options of the grid of an aircraft. They are those of `StackRequest`; `cells` replaces `around`."""
+    """Options of the grid of an aircraft: those of `StackRequest`, and `cells` may replace `around`."""
 
     fewest_cells: ClassVar[int] = 20_000
 
 
 def aircraft_request(**parameters: Any) -> AircraftRequest:
-    """Return the request with these fields of `AircraftRequest`.
+    """Return an `AircraftRequest` with the parameters as its fields.
 
     Raises InputError: the errors of `AircraftRequest`; a parameter that does not apply to an aircraft; both
     `cells` and `around`.

@@ -24,12 +24,13 @@ _STILL = 1e-13
 
 
 def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
-    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,) beyond the tip.
+    """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,) that begin at the tip.
 
     `first` (n,) are the sizes of the first cells.
 
-    Let h be the sizes of cells that grow by a constant ratio from the smallest of all first cells. Cells of a
-    line have the sizes (h^4 + c)^(1/4), where the constant c gives the first cell of this line.
+    `first` (n,) are the sizes of the first cells. Let h be the sizes of cells that grow by a constant ratio,
+    starting with the smallest of all first cells. The cells of a line have the sizes (h^4 + c)^(1/4); the
+    constant c is such that the first cell of the line has its prescribed size.
     """
     least = float(first.min())
     more = (np.square(np.square(first / least)) - 1.0)[:, None]
@@ -49,10 +50,10 @@ def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
 
 
 def last_cells(points: Floats, section: Indices, even: Floats, first: float, growth: float) -> Floats:
-    """Return the cell heights (p,) at the level of the tip, for lines that cross it at `points` (p, 3).
+    """Return the heights (p,) of cells at the level of the tip, for lines that cross it at `points` (p, 3).
 
-    They are `first` on the lines with the numbers `section`, which lie on the wing; far away they are between
-    `first` and `even` (p,).
+    On the lines with the indices `section`, which lie on the wing, the height is `first`; far away it is
+    between `first` and `even` (p,).
     """
     wing = points[section]
     away = np.array([norms(wing - point).min() for point in points])

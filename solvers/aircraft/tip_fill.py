@@ -15,10 +15,10 @@ _MOST_ROWS = 200
 
 
 def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
-    """Return nodes of the ring (n, rows + 1, 3) and of the core (m, k, 3) inside a closed `loop`.
+    """Return the nodes of the two patches that fill a `loop`: ring (n, rows + 1, 3) and core (m, k, 3).
 
-    `loop` (n, 3) repeats its first node at its end; it runs from the trailing edge along the upper side
-    first.
+    `loop` (n, 3) is closed, with its first node repeated at the end; it starts at the trailing edge and runs
+    first along the upper side.
 
     The outermost cells of the ring are `first` long, so that they match those of a collar outside, or shorter
     where the section is too thin for them.
@@ -51,8 +51,8 @@ def canted_tip_patches(loop: Floats, first: float, cant: float) -> tuple[Floats,
 def half_tip_patches(half: Floats, first: float) -> tuple[Floats, Floats]:
     """Return half the patches inside the tip of a fin.
 
-    `half` (n, 3) are the nodes of half its section, from nose to trailing edge, in the plane of symmetry at
-    y = 0. The patches are computed as those of a wing with y and z exchanged.
+    `half` (n, 3) are the nodes of half of the section, from nose to trailing edge; the plane of symmetry is y
+    = 0. The patches are computed as those of a wing with y and z exchanged.
     """
     flat = half[:, [0, 2, 1]]
     loop = np.concatenate([flat[::-1], flat[1:] * [1.0, -1.0, 1.0]])

@@ -28,11 +28,11 @@ _OBLIQUE = 0.4
 
 
 def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: float) -> Floats:
-    """Return `points` (k, p, 3) moved so that the p lines leave the body along its normals.
+    """Return `points` (k, p, 3) of p lines, moved so that the lines leave the body along its normals.
 
-    Lines begin on the body, at k = 0. `normal` (p, 3) are the points at the height `first` on the normals of
-    the body; first cells get this height. `rings` (n, m) are the column numbers of each collar, from the wing
-    outwards.
+    Lines begin on the body, at k = 0. `normal` (p, 3) are the points on the body's normals at the distance
+    `first`, which becomes the height of first cells. For each collar, `rings` has the indices (n, m) of its
+    lines; the second direction leads from the wing outwards.
     """
     turned = (normal - points[1]) / first
     turned[points[0, :, 2] == 0.0, 2] = 0.0
@@ -49,9 +49,9 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
 
 
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
-    """Return `points` (k, p, 3), moved so that the lines of a collar are normal to the span of its wing.
+    """Return `points` (k, p, 3), moved so that the lines of a collar are normal to the span of the wing.
 
-    `ring` (n, m) are the column numbers of the collar, `first` is the height of its first cells.
+    Lines have the indices p. `ring` (n, m) are those of the collar; `first` is the height of its first cells.
     """
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first
@@ -78,12 +78,12 @@ def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Fl
 def across_tip(
     low: Floats, high: Floats, ring: Indices, wing: WingLines, first: float
 ) -> tuple[Floats, Floats]:
-    """Return `points` (k, p, 3) below and beyond a tip, moved where they make oblique cells at its edge.
+    """Return the nodes `low` below and `high` beyond a tip, moved so that cells at its edge are less oblique.
 
     Lines reach the tip along the span and leave it along the normal of the tip. Near the edge of the tip, the
-    surface formed by the nodes of the collar `ring` (n, m) is turned towards right angles to the mean of both
-    directions, if it is too oblique. The displacement decreases along the lines, to 0 at their ends. First
-    cells keep the height `first`.
+    level of nodes in the collar `ring` (n, m) is turned, if it is too oblique, until it is about
+    perpendicular to the mean of these two directions. The displacement decreases along the lines to 0 at
+    their ends. First cells keep the height `first`.
     """
     level = high[0, ring]
     along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]
@@ -119,12 +119,12 @@ def _chord(edge: Floats, wing: WingLines) -> float:
 
 
 def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
-    """Return `points` (k, p, 3) beyond a tip, moved so that the p lines leave the tip along its normals.
+    """Return `points` (k, p, 3) of p lines beyond a tip, moved so that they leave it along its normals.
 
     Lines begin at the level of the tip, at k = 0.
 
-    `cap` (c,) are the numbers of the columns that fill the last section, `ring` (n, m) those of its collar.
-    Lines of the collar are turned less the farther they are from the section.
+    `cap` (c,) are the indices p of the lines that fill the section at the tip, `ring` (n, m) those of its
+    collar. A line of the collar is turned less, the farther it is from the section.
     """
     apart = arc_lengths(points[0, ring])
     fade = 1.0 - apart / apart[:, -1:]

@@ -33,12 +33,12 @@ _ROUNDS = 6
 
 @dataclass(frozen=True)
 class EvenAround(Around):
-    """Distribution of nodes around sections, with the smallest growth ratio that their number allows."""
+    """Distribution of nodes around sections, with the smallest growth ratio possible for their number."""
 
     def law(self, height: float, length: float) -> Callable[[Floats], Floats]:
-        """Return the node distribution of a side from base to nose.
+        """Return the node distribution on one side of a section, from its base (trailing edge) to the nose.
 
-        Height of the base and length are in chords.
+        The `height` of the base and the `length` of the side are in chords.
         """
         ends = self.ends(height, length)
         for growth in _TRIED:
@@ -56,12 +56,12 @@ class WingLines:
 
     Parameters
     ----------
-    loft : the lines, from inside the body.
+    loft : the lines, which begin inside the body.
     name : name of the wing.
     roots : (n,) heights z at which the lines leave the body.
     notes : sentences on changes of the wing.
-    fin : whether this is a fin, with its span along y; it has only the lines of the half z >= 0, from nose to
-        edge.
+    fin : whether this is a fin, with its span along y. A fin has only the lines of its half z >= 0, from the
+        nose to the trailing edge.
     """
 
     loft: Loft
@@ -91,12 +91,12 @@ class WingLines:
         return cls(loft, name, roots, notes, fin)
 
     def points(self, parts: Floats) -> Floats:
-        """Return points (k, n, 3) on the lines at the fractions `parts` (k, n) of z from root to tip."""
+        """Return points (k, n, 3) on the lines; `parts` (k, n) are fractions of the height z, root to tip."""
         z = self.roots + parts * (self.loft.tip - self.roots)
         return np.stack([self.loft.line(k, z[:, k]) for k in range(z.shape[1])], axis=1)
 
     def with_first(self, parts: Floats, first: float) -> Floats:
-        """Return `parts` (k, n), changed so that points of the second row are `first` away from the root."""
+        """Return `parts` (k, n) with its second row changed so that its points are `first` from the root."""
         parts = parts.copy()
         for _ in range(_ROUNDS):
             root, second = self.points(parts[:2])

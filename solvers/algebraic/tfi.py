@@ -32,9 +32,9 @@ Four = tuple[Floats, Floats, Floats, Floats]
 def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
     """Return the grid inside `boundary` by transfinite interpolation; it may have folded cells.
 
-    `blending` chooses the parameter along an edge: ``linear`` i/(ni-1), or ``arclength`` the fraction of its
-    length, which propagates the spacing of the edges into the interior. The edges of the grid equal those of
-    `boundary` bitwise. Raises InputError for an unknown blending.
+    `blending` selects the parameter along an edge: with ``linear`` it is i / (ni - 1); with ``arclength`` it
+    is the fraction of the edge's length, so that the spacing of the edges continues into the interior. The
+    edges of the grid equal those of `boundary` bitwise. Raises InputError: the blending is unknown.
     """
     nodes = planar_nodes(boundary.ni, boundary.nj)
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
@@ -51,7 +51,7 @@ def solve(boundary: Boundary, *, blending: Blending = "arclength") -> Solution:
 
 
 def parameters(edges: Four, blending: Blending) -> Four:
-    """Return the parameters (n,), 0 to 1, of each of the `edges` (n, 2): south, north, west, east."""
+    """Return, for each of the `edges` (n, 2) south, north, west, east, the parameters (n,), 0 to 1."""
     if blending not in get_args(Blending):
         remedy = "use " + "/".join(get_args(Blending))
         raise InputError(f"blending {blending!r} is not known", remedy, parameter="blending")
@@ -63,14 +63,14 @@ def parameters(edges: Four, blending: Blending) -> Four:
 
 
 def interpolate(x: Floats, y: Floats, edges: Four, along: Four) -> None:
-    """Fill `x` and `y` (ni, nj) from `edges` (south, north, west, east), whose parameters are `along`."""
+    """Fill `x`, `y` (ni, nj) from `edges` (south, north, west, east); `along` are the edges' parameters."""
     south, north, west, east = (np.ascontiguousarray(edge.T) for edge in edges)
     xs, ys = ((south[k], north[k], west[k], east[k]) for k in (0, 1))
     fill(x, y, xs, ys, along, threads_for(x.size))
 
 
 def arc_length_fraction(points: Floats) -> Floats:
-    """Return the fraction (..., n), 0 to 1, of the arc length of polylines (..., n, 2) up to each point.
+    """Return, at each point of polylines (..., n, 2), the arc length up to it as a fraction (..., n).
 
     >>> arc_length_fraction(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 9.0]]))
     array([0. , 0.5, 1. ])

@@ -37,7 +37,7 @@ class EdgeNodes:
 
 @dataclass(frozen=True, eq=False)
 class EdgeLaw:
-    """Node distribution of an edge: number of cells (s,) from its start to samples (s,) of the parameter."""
+    """Node distribution of an edge: numbers of cells (s,) from its start to parameters (s,)."""
 
     parts: Floats
     cells: Floats
@@ -62,10 +62,10 @@ def edge_laws(model: CadModel, size: float, spacing: str) -> list[EdgeLaw]:
     """Return the distribution of nodes along each edge, for cells of at most `size`.
 
     `spacing` is ``uniform``, ``cosine`` or ``curvature``, also called ``auto``. With ``curvature``, cells are
-    smaller where edges bend, and beside vertices at which a short edge ends. An edge that is a single point
-    (a pole) has the distribution of the line through the middle of its face.
+    smaller where edges bend, and next to vertices at which a short edge ends. An edge that is a single point
+    (a pole) gets the distribution of the line through the middle of its face.
 
-    Raises InputError: if `spacing` is none of these.
+    Raises InputError: `spacing` is none of these.
     """
     curves = [edge.points for edge in model.edges]
     for face in model.faces:
@@ -138,7 +138,7 @@ def angle_between(first: Floats, second: Floats) -> Floats:
 
 
 def corner_turns(model: CadModel, uses: tuple[EdgeUse, ...]) -> Floats:
-    """Return the turns (k,) in degrees of a loop at the start of each of its edges; 180 beside a pole."""
+    """Return the turns (k,) in degrees of a loop at the start of each of its edges; 180 next to a pole."""
     ends = np.array([0.0, 1e-4, 1.0 - 1e-4, 1.0])
     starts, stops, poles = [], [], []
     for use in uses:

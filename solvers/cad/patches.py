@@ -50,8 +50,8 @@ def patches_on(model: CadModel, sampling: Sampling) -> Solution:
     `spacing` is ``uniform``, ``cosine``, or ``curvature`` (also ``auto``) with smaller cells where edges
     bend.
 
-    Raises InputError: faces that cannot become patches, with number, sides and place; folded cells; other
-    fields of `sampling`.
+    Raises InputError: a face cannot become patches (with its number, sides and place); cells are folded;
+    other fields of `sampling` are set.
     """
     _check_sampling(sampling)
     plans = planned(model)
@@ -149,11 +149,11 @@ def _disc(face: CadFace, loop: _FaceLine) -> list[Floats]:
 
 
 def blended(south: Floats, north: Floats, west: Floats, east: Floats) -> Floats:
-    """Return coordinates (ni, nj, 2) between four sides (ni, 2), (ni, 2), (nj, 2), (nj, 2), by TFI.
+    """Return coordinates (ni, nj, 2) between four sides, (ni, 2) or (nj, 2), by transfinite interpolation.
 
-    For the weights, nodes of the sides are placed on the sides of the unit square at their fractions of the
-    length. Straight lines join nodes of equal index on opposite sides; the weights of a node are the
-    coordinates of the point at which its two lines cross (Soni 1985).
+    For the weights, each node of a side is placed on the corresponding side of the unit square, at its
+    fraction of the side's length. Straight lines join nodes of equal index on opposite sides. The weights of
+    an inner node are the coordinates of the point at which its two lines cross (Soni 1985).
     """
     a, b, c, d = (arc_parts(line) for line in (south, north, west, east))
     a, b, c, d = a[:, None], b[:, None], c[None], d[None]

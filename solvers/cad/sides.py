@@ -35,9 +35,9 @@ _BASE = 0.7
 class FacePlan:
     """Division of a face into patches.
 
-    `sides` are sequences of consecutive edges, as positions in the loop of the face, from the first corner
-    on: four for a ``quad``, a short and a long one for a ``nose``, a single one with all edges for a
-    ``disc``.
+    A side is a sequence of consecutive edges, given by their positions in the loop of the face. `sides`
+    starts at the first corner. A ``quad`` has four sides, a ``nose`` a short one and a long one, a ``disc`` a
+    single side with all edges.
     """
 
     kind: Literal["quad", "nose", "disc"]
@@ -47,7 +47,7 @@ class FacePlan:
 def planned(model: CadModel) -> tuple[FacePlan, ...]:
     """Return the division of each face into patches.
 
-    Raises InputError, with number, sides and place: faces that cannot become patches.
+    Raises InputError, with number, sides and place of a face: it cannot become patches.
     """
     plans, problems = [], []
     for number, face in enumerate(model.faces, 1):

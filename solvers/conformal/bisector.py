@@ -16,9 +16,9 @@ SWEEPS = 3  # over the corners, which influence each other a little
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Return the weights (n, corners) of each corner's shift along the wall, and the shifts of phi.
+    """Return the shifts of phi for each corner, and before them their weights (n, corners) along the wall.
 
-    The two cells at a corner with the exterior angle A have angles there whose sum is A; the larger one is
+    At a corner with the exterior angle A, the angles of the two cells add up to A; the larger of them is
     smallest if both are A/2. Solutions of Winslow's equations approach this only as the cells shrink. A local
     shift of phi near the first node of the line achieves it directly, and decays within a few cells.
 

@@ -51,11 +51,11 @@ def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
 
 
 class Panels(NamedTuple):
-    """Panels that follow each other: panel k makes the grid levels ``ends[k]`` to ``ends[k + 1]``.
+    """Consecutive panels along eta: panel k covers the grid levels from ``ends[k]`` to ``ends[k + 1]``.
 
-    `eta` (panels NODES,) are their points, and `matrix` (NODES, levels) has a column for each level: the
-    product of the values at the points of its panel with this column is the value at the level. Without
-    panels there is one end.
+    `eta` (panels NODES,) are the points of the panels. `matrix` (NODES, levels) has a column for each level:
+    the product of the values at the points of the level's panel with this column is the value at the level.
+    Without panels, `ends` has one entry.
     """
 
     ends: list[int]
@@ -67,8 +67,8 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
     """Return panels that cover the levels `first` to `last` - 1 of `eta`, if this saves evaluations.
 
     `eta` (nj,) ascends from 0 at the wall to 1; `height` is the difference of psi between wall and far field,
-    and `spread` the variation of psi along the wall. Panels follow each other outwards without gaps and end
-    at `last`. If panels would save nothing, there are none: their one end is the last level.
+    and `spread` the variation of psi along the wall. Panels are consecutive, from the wall outwards, and end
+    at `last`. If panels would save nothing, there are none, and `ends` has only the last level.
     """
     ends: list[int] = []
     points, matrices = [np.empty(0)], [np.empty((NODES, 0))]

@@ -47,12 +47,12 @@ def solve(
     model: str | None = None,
     substitute: Callable[[Boundary, str], Solution | None] | None = None,
 ) -> list[Solution]:
-    """Return a grid inside each O boundary, with bitwise the nodes of the boundary.
+    """Return a grid inside each O boundary; its boundary nodes are bitwise those of the boundary.
 
     `polish` is the number of Picard iterations. `correction` returns a term that is added to the harmonic
     extension, for all boundaries at once; `model` is the name of the network that computes it. If a boundary
-    has no conformal map, `substitute` is called with the boundary and the reason; only if it returns None,
-    the elliptic solver is used.
+    has no conformal map, `substitute` is called with the boundary and the reason; if it returns None, the
+    elliptic solver is used.
     """
     across()  # made once a process: no part of a grid's time
     begun = time.perf_counter()

@@ -112,7 +112,7 @@ def wavenumbers(like: Any = None, xp: Any = np) -> Any:
 
 
 def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
-    """Return the factors at eta of mode k of the wall and of the far field: (..., len(k), len(eta)) arrays.
+    """Return two arrays (..., len(k), len(eta)): factors of mode k of the wall, and of the far field, at eta.
 
     They are sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT), computed without overflow. T, the height of
     the strip, is a number or (..., 1, 1).
@@ -127,7 +127,7 @@ def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:
-    """Return modes (..., 2 MODES + 1, len(eta)) of the harmonic function with given modes on both walls."""
+    """Return modes (..., 2 MODES + 1, len(eta)) of the harmonic function with given modes at both walls."""
     count, T = MODES + 1, (far - wall)[..., :1, None].real
     k = wavenumbers(wall, xp)[:count]  # k and -k decay alike
     near, away = decay(k, T, array_like(eta, wall, xp), xp)
@@ -153,9 +153,9 @@ def picard(
 ) -> tuple[Complexes, list[float]]:
     """Return the modes after at most `steps` Picard steps, and the largest change of F in each step.
 
-    The iteration ends after a step whose change is below `settled`, or is at least `diverged`; a change that
-    is not finite counts as infinite. `c` (2 MODES + 1, LEVELS) are the modes at the Chebyshev points; those
-    of the two walls do not change.
+    The iteration ends after a step in which the change is below `settled` or at least `diverged`; a change
+    that is not finite counts as infinite. `c` (2 MODES + 1, LEVELS) are the modes at the Chebyshev points;
+    the modes at the two walls do not change.
     """
     T = float((c[0, -1] - c[0, 0]).real)
     parts, grid = np.stack([c.real, c.imag]), across()

@@ -25,8 +25,8 @@ class StripWalls(NamedTuple):
 
     `lift` maps the strip to the plane. `wall` and `far` (n,) are F = w - i theta, periodic in theta, at the n
     = ni - 1 nodes of each wall; `z` are the nodes of the wall in the plane, `corners` its trailing corners.
-    `axis` is that of a boundary that is its own mirror image; otherwise `hand` says which of the two mirror
-    images it is.
+    `axis` is the mirror axis of a boundary that is its own mirror image. For other boundaries, `hand` tells
+    the boundary from its mirror image.
     """
 
     lift: Lift
@@ -57,8 +57,8 @@ def walls(boundary: Boundary) -> StripWalls:
 def is_rough(body: StripWalls) -> bool:
     """Return whether the strip hardly resolves the uneven wall spacing, so that cells may fold.
 
-    The unresolved part is at most 0.013 for the walls of airfoils, 0.06 if nodes are evenly spaced around the
-    leading edge, at least 0.02 for polygons and 0.01 for a square far field.
+    The unresolved part is at most 0.013 for airfoils, at most 0.06 for airfoils with evenly spaced nodes
+    around the leading edge, at least 0.02 for polygons, and at least 0.01 for a square far field.
 
     Raises InputError: the strip does not resolve the wall.
     """
@@ -77,7 +77,7 @@ def is_rough(body: StripWalls) -> bool:
 def sharp_turns(body: StripWalls) -> tuple[int, ...]:
     """Return the indices of the trailing corners, then of nodes with sharp turns of the wall.
 
-    At these turns grid lines may cross the wall.
+    At these nodes grid lines may cross the wall.
     """
     others = set(np.flatnonzero(_turn(body) > SHARP_TURN).tolist()) - set(body.corners)
     return (*body.corners, *sorted(others))

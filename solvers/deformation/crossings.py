@@ -15,7 +15,7 @@ _MOST = 4096  # crossings looked for; those at the joints of concatenated polyli
 
 
 def check_apart(table: NodeTable, targets: NodeTargets) -> None:
-    """Raise InputError, with the place, when planar walls in their new position cross other boundaries.
+    """Raise InputError, with the place, if planar walls in their new positions cross other boundaries.
 
     Sliding sides are not checked: their ends are known only after the deformation.
     """

@@ -30,8 +30,8 @@ STEPS = 2, 4, 8
 def deform(grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> Solution:
     """Return `grid` deformed to the new shapes of `walls`, with notes.
 
-    Raises InputError: a surface grid; a grid with folded cells; a wall that the grid does not have; an
-    unsuitable new shape; walls that cross.
+    Raises InputError: the grid is a surface or has folded cells; it does not have one of the walls; a new
+    shape is unsuitable; walls cross.
     """
     table = NodeTable.of(grid)
     folded = count_folded_in(grid)

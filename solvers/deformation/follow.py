@@ -33,14 +33,14 @@ FLAT = 1e-9
 class Field:
     """Displacements interpolated from motions and rotations of boundary nodes by inverse-distance weighting.
 
-    The displacement at x is the weighted mean of d_k(x) = w_k' + R_k (x - w_k) - x over all sources k, nodes
-    that move from w_k to w_k' and rotate by R_k. The weights are A_k (r^-2 + near² r^-4) in the plane and A_k
-    (r^-3 + near² r^-5) in three dimensions: A_k is the length or area assigned to node k, r its distance from
-    x, `near` the distance inside which the second term is larger. Close to a wall the nearest node dominates,
-    so that boundary layers move and rotate with the wall. The field depends on x alone, so that nodes shared
-    by blocks remain shared.
+    A source k is a node that moves from w_k to w_k' and rotates by R_k. The displacement at x is the weighted
+    mean of d_k(x) = w_k' + R_k (x - w_k) - x over all sources. The weights are A_k (r^-2 + near² r^-4) in the
+    plane and A_k (r^-3 + near² r^-5) in three dimensions: A_k is the length or area that belongs to node k, r
+    is its distance from x, and `near` is the distance within which the second term is larger than the first.
+    Close to a wall the nearest node dominates, so that boundary layers move and rotate with the wall. The
+    field depends only on x, so that nodes shared by blocks remain shared.
 
-    Luke, Collins, Blades, J. Comput. Phys. 231 (2012) 586-601, whose exponents are those in three dimensions;
+    The exponents in three dimensions are those of Luke, Collins, Blades, J. Comput. Phys. 231 (2012) 586-601;
     in the plane, where sources lie on lines, they are lower by one.
     """
 
@@ -57,7 +57,7 @@ class Field:
 
     @classmethod
     def of(cls, nodes: Floats, sources: Indices, areas: Floats, near: float, points: Indices) -> Self:
-        """Return the field that `sources` cause at `points`, both indices of `nodes` (n, d).
+        """Return the field that `sources` cause at `points`; both are indices of `nodes` (n, d).
 
         `areas` (n,) are the lengths or areas of the nodes.
         """
@@ -72,7 +72,7 @@ class Field:
         return moved.T
 
     def transposed(self, pull: Floats) -> Floats:
-        """Return the derivative (6, k) of Σ pull · displacement by planar motions; `pull` is (m, 2)."""
+        """Return d(Σ pull · displacement) / d(planar motions of the sources), (6, k); `pull` is (m, 2)."""
         gathered = np.empty((6, len(self.areas)))
         force = np.ascontiguousarray(pull.T)
         blend_transposed(self.places, self.areas, self.near, self.points, force, gathered)
@@ -115,7 +115,7 @@ class Follow:
         return there
 
     def boundary_to(self, to: Floats) -> Floats:
-        """Return all nodes (n, d), with new positions of the moved and of the sliding nodes only."""
+        """Return all nodes (n, d); only the moved and the sliding nodes have new positions."""
         nodes = self.table.nodes
         there = np.where(self.sources.moved[:, None], to, nodes)
         if self.slide is not None:
@@ -136,7 +136,7 @@ class Follow:
     def along_sides(self, move: Floats, there: Floats) -> Floats:
         """Remove from `move` (n, d), in place, components normal to straight or flat sliding sides.
 
-        The result is `move`.
+        The result is the changed `move`.
         """
         for piece in self.sources.sliding:
             normal = normal_of(self.table, piece, there)
@@ -159,7 +159,7 @@ def _near(moved: Floats, fixed: Floats) -> float:
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
     """Return the unit normal (d,) of a side that is straight or flat before and after the deformation.
 
-    None for other sides.
+    The result is None for other sides.
     """
     nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
     centre = nodes.mean(axis=0)

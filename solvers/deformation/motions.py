@@ -45,7 +45,7 @@ class Turning:
         return np.bincount(self.edges.ravel(), shares, n).astype(np.float64, copy=False)
 
     def angles_along(self, new: Floats, moves: Floats) -> Floats:
-        """Return the derivatives (n,) of the angles at `new` along `moves` (n, 2)."""
+        """Return derivatives (n,) of the angles, at nodes `new`, along their displacements `moves` (n, 2)."""
         slope, way = self._slopes(new), moves[self.edges[:, 1]] - moves[self.edges[:, 0]]
         return self._at_nodes((slope * way).sum(axis=1), len(new))
 
@@ -64,13 +64,13 @@ class Turning:
 
 
 def turns_in_plane(angles: Floats) -> Floats:
-    """Return R - 1 (n, 2, 2) for rotations by `angles` (n,), without cancellation at small ones."""
+    """Return R - 1 (n, 2, 2) for rotations by `angles` (n,), without cancellation for small angles."""
     sine, less = sin(angles), -2.0 * sin(0.5 * angles) ** 2
     return np.stack([np.stack([less, -sine], axis=-1), np.stack([sine, less], axis=-1)], axis=-2)
 
 
 def turns_in_space(quads: Indices, old: Floats, new: Floats) -> Floats:
-    """Return R - 1 (n, 3, 3) at all nodes for a wall of `quads` (m, 4) moved from `old` to `new` (n, 3)."""
+    """Return R - 1 (n, 3, 3) at the nodes of a wall of `quads` (m, 4), moved from `old` to `new` (n, 3)."""
     before, after = _frames(old[quads]), _frames(new[quads])
     whole = product(after, inverse(before))
     total = np.zeros((len(old), 3, 3))
@@ -91,7 +91,7 @@ def _frames(corners: Floats) -> Floats:
 
 
 def affine(places: Floats, moved: Floats, turns: Floats) -> Floats:
-    """Return a and B, stacked (d + d², n), so that the motion of each node displaces a point x by a + B x.
+    """Return a and B of the motion of each node, which displaces a point x by a + B x: stacked (d + d², n).
 
     `places` and `moved` (n, d) are the old and the new positions of the nodes, `turns` (n, d, d) is R - 1.
     """

@@ -63,7 +63,7 @@ class NodeTable:
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """The pieces of the whole outer boundary, periodic sides (without a name) included."""
+        """The pieces of the whole outer boundary, including periodic sides, which have no name."""
         periodic = [
             Patch("", side, *span[0], across=span[1] if span[1:] else None, block=block)
             for each in self.grid.connections
@@ -91,7 +91,7 @@ class NodeTable:
 
 
 def lines_of(pieces: Sequence[Piece]) -> list[Indices]:
-    """Join planar pieces to polylines, as ordered node indices (n,); a closed one repeats its first."""
+    """Return planar pieces joined to polylines, as node indices (n,); closed ones repeat their first node."""
     left = [piece.numbers for piece in pieces]
     lines = []
     while left:
@@ -119,7 +119,7 @@ def elements_of(pieces: Sequence[Piece], dimension: int) -> Indices:
 
 
 def first_heights(grid: Grid, pieces: Sequence[Piece]) -> Floats:
-    """Return the first-cell heights (n,) at all nodes of `pieces`: distances to the next nodes inside."""
+    """Return the first-cell heights (n,) at all nodes of `pieces`: the distances to the next inner nodes."""
     heights = []
     for piece in pieces:
         own, beside = rows_at(grid, piece.patch, 2)

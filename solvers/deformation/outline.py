@@ -24,7 +24,7 @@ _WIDEST_BASE = 0.2  # widest base, in perimeters of the section; flatbacks have 
 
 
 def on_outline(wall: Floats, outline: Airfoil | Outline) -> tuple[Floats, Notes]:
-    """Return the nodes of a closed `wall` (n, 2), the first repeated, on a new outline, and notes.
+    """Return a closed `wall` (n, 2), first node repeated, with nodes moved to a new outline; and notes.
 
     Raises InputError: the wall has a blunt trailing edge and the outline a sharp one.
     """
@@ -127,7 +127,7 @@ def _nearest_arc(curve: Curve, place: Floats) -> float:
 
 
 def on_line(wall: Floats, points: Floats) -> tuple[Floats, Notes]:
-    """Return the nodes of an open `wall` (n, 2) on the curve through `points` (m, 2), and notes."""
+    """Return an open `wall` (n, 2) with nodes moved to the curve through `points` (m, 2); and notes."""
     ends = points[[0, -1]]
     if norms(wall[[0, -1]] - ends).sum() > norms(wall[[0, -1]] - ends[::-1]).sum():
         points = points[::-1]

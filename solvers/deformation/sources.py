@@ -16,7 +16,7 @@ CELLS = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Sources:
-    """The moved, sliding and fixed nodes of the outer boundary of a grid."""
+    """The moved, the sliding and the fixed nodes of the outer boundary of a grid."""
 
     moved: Bools
     """(n,) mask of nodes with prescribed new positions."""
@@ -38,8 +38,8 @@ class Sources:
 def sources_of(table: NodeTable, moved: Bools) -> Sources:
     """Return the sources on the outer boundary of `table` when the nodes `moved` (n,) move.
 
-    On boundaries far from all that moves, nodes are grouped and one of each group is a source. Groups are
-    small compared with their distance from the moved nodes and with the cells at the boundary.
+    On boundaries far from all moved nodes, nodes are grouped, and one node of each group is a source. A group
+    is small compared with its distance from the moved nodes and with the cells at the boundary.
     """
     elements = elements_of(table.pieces, table.nodes.shape[1])
     areas = areas_of(table.nodes, elements)

@@ -50,10 +50,10 @@ class NodeTargets:
 def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> NodeTargets:
     """Return the new positions of the nodes of walls.
 
-    `walls` are the new shapes by the name of the wall; a shape without a name belongs to the only wall. A
-    grid or a boundary gives new shapes to all walls with the names of its patches.
+    `walls` has the new shapes by the name of the wall, or one shape if there is only one wall. A grid or a
+    boundary gives new shapes to all walls that have the names of its patches.
 
-    Raises InputError: a wall that the grid does not have; an unsuitable new shape.
+    Raises InputError: the grid does not have one of the walls; a new shape is unsuitable.
     """
     moved, nodes = np.zeros(len(table.nodes), dtype=bool), table.nodes.copy()
     notes: list[str] = []

@@ -25,9 +25,9 @@ Lines = dict[str, Floats]
 
 
 class DeformationDerivative:
-    """A planar grid deformed in one step, and the derivative of its nodes with respect to those of its walls.
+    """A planar grid deformed in one step, and the derivative of its nodes with respect to its wall nodes.
 
-    Raises InputError: the errors of `meshonet.deform`; a volume. Raises NoValidGridError: cells fold in one
+    Raises InputError: as `meshonet.deform`; the grid is a volume. Raises NoValidGridError: cells fold in one
     step.
     """
 
@@ -68,9 +68,9 @@ class DeformationDerivative:
     def transposed(self, pulls: Floats | Sequence[Floats]) -> Lines:
         """Return the derivative (n, 2) of a functional with respect to the nodes of each moved wall.
 
-        `pulls`, one array (ni, nj, 2) per block, is the derivative of the functional with respect to all
-        nodes, taken as independent. In a closed wall, which repeats its first node, the first entry is the
-        full derivative and the last entry is 0.
+        `pulls` (ni, nj, 2), one array per block, is the derivative of the functional with respect to all
+        nodes as independent variables. A closed wall repeats its first node; the first entry is then the full
+        derivative, and the last entry is 0.
         """
         arrays = [pulls] if isinstance(pulls, np.ndarray) else list(pulls)
         if [a.shape[:2] for a in arrays] != [block.counts for block in self.grid.blocks]:

@@ -25,7 +25,7 @@ Equations = Callable[[Floats], Floats]
 
 @dataclass(frozen=True, eq=False)
 class Jacobian:
-    """Entries of the derivative of equations at inner nodes with respect to the coordinates of all nodes."""
+    """Entries of the derivative of the equations at inner nodes with respect to all nodes' coordinates."""
 
     rows: Indices
     """(m,) row of each entry: flat index of the equation in (2, ni, nj)."""
@@ -46,7 +46,7 @@ class Jacobian:
 
 
 def jacobian(equations: Equations, nodes: Floats, reach: int) -> Jacobian:
-    """Return the Jacobian at `nodes` (2, ni, nj) of equations whose stencil has `reach` nodes each way."""
+    """Return the Jacobian at `nodes` (2, ni, nj); the stencil extends `reach` nodes in each direction."""
     _, ni, nj = nodes.shape
     step, period = STEP * shortest_edges(nodes), 2 * reach + 1
     number = np.arange(nodes.size).reshape(nodes.shape)

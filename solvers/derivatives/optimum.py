@@ -37,13 +37,13 @@ class OptimumDerivative:
     Parameters
     ----------
     grid : a grid near the minimum of the variational functional, or near the solution of Winslow's equations,
-        with these boundary nodes; Newton's method then converges to it.
+        for its own boundary nodes, so that Newton's method converges.
     method : ``variational`` or ``winslow``.
-    weights : weights of the functional; None: the weights in the provenance of `grid`, or the defaults of
-        `solve_pde` if it has none.
+    weights : weights of the functional. None: the weights in the provenance of `grid`, or, if there are none,
+        the defaults of `solve_pde`.
 
-    Raises InputError: an O grid, several blocks, a volume, an unknown method. Raises SolverError: the grid is
-    far from the solution.
+    Raises InputError: the grid is an O grid, a volume, or has several blocks; the method is unknown. Raises
+    SolverError: the grid is far from the solution.
     """
 
     grid: Grid
@@ -67,7 +67,7 @@ class OptimumDerivative:
     def along(self, moves: Floats) -> Floats:
         """Return the derivative (ni, nj, 2) of all nodes along `moves` (ni, nj, 2) of the boundary nodes.
 
-        Values of `moves` at inner nodes are ignored. Costs one linear solve.
+        Values of `moves` at inner nodes are ignored. The cost is one linear solve.
         """
         rim = np.array(np.moveaxis(moves, -1, 0), dtype=np.float64, order="C")
         rim[:, 1:-1, 1:-1] = 0.0
@@ -79,8 +79,8 @@ class OptimumDerivative:
     def transposed(self, pull: Floats) -> Floats:
         """Return the derivative (ni, nj, 2) of a functional with respect to the boundary nodes, zero inside.
 
-        `pull` (ni, nj, 2) is its derivative with respect to all nodes, taken as independent. Costs one linear
-        solve.
+        `pull` (ni, nj, 2) is the derivative of the functional with respect to all nodes as independent
+        variables. The cost is one linear solve.
         """
         flat = np.array(np.moveaxis(pull, -1, 0), dtype=np.float64, order="C")
         adjoint = np.zeros(flat.size)
@@ -177,7 +177,7 @@ def aspect_slope(nodes: Floats) -> Floats:
 
 
 def winslow_residual(nodes: Floats) -> Floats:
-    """Return the residual of Winslow's equations at the inner ones of `nodes` (2, ni, nj).
+    """Return the residual of Winslow's equations at those of `nodes` (2, ni, nj) that are inside.
 
     Derivatives are central differences.
     """

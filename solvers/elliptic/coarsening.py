@@ -20,7 +20,7 @@ from meshonet.geometry.arrays import Floats
 
 @dataclass(frozen=True, eq=False)
 class Direction:
-    """One index direction: node positions (n,), in steps of the finest level.
+    """One index direction of a level: node positions (n,), in units of the steps of the finest level.
 
     If `periodic`, the last node is the first.
 
@@ -65,12 +65,12 @@ class Direction:
     def transfer(self) -> tuple[Floats, Floats, Floats, Floats]:
         """Weights of interpolation and of restriction, four arrays.
 
-        The first (n,) is the weight of the coarse node to the right of each fine node, 0 at nodes that both
-        grids have. The others (coarse n,) are the weights of the fine nodes before, at and after each coarse
-        node.
+        The first array (n,) is, for each fine node, the weight of the next coarse node, and 0 at fine nodes
+        that are coarse nodes. The other three (coarse n,) are the weights of the fine nodes before, at and
+        after each coarse node.
 
-        Interpolation is linear; restriction is its transpose, scaled by the dual lengths of nodes, so that a
-        constant residual is preserved.
+        Interpolation is linear; restriction is the transpose of interpolation, scaled by the dual lengths of
+        nodes so that a constant residual is preserved.
         """
         before, after = self._steps
         length = (before + after) / 2
@@ -98,5 +98,5 @@ class Direction:
 
 @lru_cache(maxsize=16)
 def uniform(n: int, periodic: bool) -> Direction:
-    """Return the direction of n equally spaced nodes; it is cached, so solves of equal counts share it."""
+    """Return the direction of n equally spaced nodes, cached for all solves with the same node counts."""
     return Direction(np.arange(float(n)), periodic)

@@ -72,9 +72,9 @@ class Controls:
 def thomas_middlecoff(boundary: Boundary) -> Controls:
     """Return the control functions that propagate the spacing of the edges into the domain.
 
-    On an edge with arc length s, φ = -(x_ξ·x_ξξ)/(x_ξ·x_ξ) = -(ln s_ξ)_ξ, which assumes that the lines that
-    leave the edge are straight and orthogonal to it. Inside, φ and ψ are interpolated linearly between
-    opposite edges. For an O boundary, ψ is that of the seam.
+    On an edge with arc length s, φ = -(x_ξ·x_ξξ)/(x_ξ·x_ξ) = -(ln s_ξ)_ξ; this assumes that grid lines leave
+    the edge straight and orthogonally. Inside, φ and ψ are interpolated linearly between opposite edges. For
+    an O boundary, ψ is that of the seam.
 
     Thomas and Middlecoff, AIAA J. 18 (1980) 652-656.
     """
@@ -90,10 +90,10 @@ def thomas_middlecoff(boundary: Boundary) -> Controls:
 
 
 def step_ratios(edge: Floats, *, periodic: bool) -> Floats:
-    """Return the logarithm (n,) of the ratio of the steps after and before each node of an edge (n, 2).
+    """Return log(step after / step before) (n,) at each node of an edge (n, 2).
 
-    Ends of an open edge have the value of their neighbour. Values are clipped to `STEEPEST`, since ratios at
-    corners are arbitrary.
+    The ends of an open edge get the values of their neighbours. Values are clipped to `STEEPEST`, because
+    ratios at corners are arbitrary.
 
     >>> edge = np.array([[0.0, 0.0], [1.0, 0.0], [3.0, 0.0], [7.0, 0.0]])
     >>> np.exp(step_ratios(edge, periodic=False)).tolist()

@@ -26,11 +26,11 @@ Corner = tuple[str, int]
 
 
 class CornerPatch:
-    """The nodes in a `window` (two index ranges) at a corner of a `level`, relaxed with all others fixed.
+    """The nodes in a `window` (two index ranges) at a corner of a `level`; other nodes are fixed.
 
-    At re-entrant corners the solution is singular, and a cycle reduces the error less than elsewhere. A fixed
-    number of additional sweeps around them, on every level, restores most of the convergence rate: Bai,
-    Brandt, SIAM J. Sci. Stat. Comput. 8 (1987) 109-134.
+    At a re-entrant corner the solution is singular, and a cycle reduces the error there less than elsewhere.
+    A fixed number of additional sweeps around the corner, on every level, restores most of the convergence
+    rate: Bai, Brandt, SIAM J. Sci. Stat. Comput. 8 (1987) 109-134.
     """
 
     def __init__(
@@ -70,7 +70,7 @@ def reentrant(edges: Four) -> list[Corner]:
 def patches(
     level: MultigridLevel, xi: Direction, eta: Direction, corners: list[Corner], scratch: Floats
 ) -> list[CornerPatch]:
-    """Return the patches of `level` around `corners`, whose indices are those of the finest level."""
+    """Return the patches of `level` around `corners`; the corners' indices are those on the finest level."""
     if min(xi.cells, eta.cells) < LEAST:
         return []
     return [CornerPatch(level, xi, eta, _window(xi, eta, side, index), scratch) for side, index in corners]

@@ -24,10 +24,10 @@ SWEEPS = 4  # sweeps there
 def sweep_kinks(
     nodes: Floats, boundary: Boundary, counts: tuple[int, int], *, only_better: bool = False
 ) -> bool:
-    """Relax planar `nodes` in place around the kinks of the boundary; return whether there are any.
+    """Relax planar `nodes` in place around the kinks of the boundary; return whether there are kinks.
 
-    Spline interpolation from a coarse grid of `counts` nodes smooths the solution there. With `only_better`
-    the nodes around a kink are kept unless relaxation makes the largest angle smaller.
+    Relaxation corrects the spline interpolation from a coarse grid of `counts` nodes, which is too smooth at
+    kinks. With `only_better`, the nodes around a kink are moved only if the largest angle becomes smaller.
     """
     any_kinks = False
     steps = [(n - 1) / (m - 1) for n, m in zip(nodes.shape[:2], counts, strict=True)]

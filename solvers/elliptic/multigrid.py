@@ -32,9 +32,10 @@ class Settings:
 
 
 class Multigrid:
-    """The hierarchy of levels for planar `nodes` (ni, nj, 2) inside `edges` (south, north, west, east).
+    """The multigrid levels for planar `nodes` (ni, nj, 2) inside `edges` (south, north, west, east).
 
-    `nodes` are the finest level; they change in place and need not be initialised. `periodic`: an O grid.
+    `nodes` are the finest level; they are changed in place and need no initial values. `periodic` means an O
+    grid.
     """
 
     def __init__(
@@ -74,7 +75,7 @@ class Multigrid:
             self.control(controls)
 
     def control(self, controls: Controls) -> None:
-        """Set the control functions of every level; there is then no local relaxation at corners."""
+        """Set the control functions of all levels; local relaxation at corners is then omitted."""
         self._patches = [[] for _ in self.levels]
         phi, psi = controls.phi, controls.psi
         for k, (level, (xi, eta)) in enumerate(zip(self.levels, self._directions, strict=True)):
@@ -95,7 +96,7 @@ class Multigrid:
         return float(np.sqrt(level.residual(False) / level.x.size))
 
     def nested_iteration(self) -> float:
-        """Fill the finest level from coarser ones; return the residual of its transfinite interpolation."""
+        """Fill the finest level from coarser levels; return the residual of its transfinite interpolation."""
         last = len(self.levels) - 1
         self.interpolate_edges(last)
         start = self.residual(last)
@@ -114,8 +115,8 @@ class Multigrid:
     def cycle(self, k: int = 0, forced: bool = False) -> float:
         """Run one V-cycle from level `k`; return the root mean square of the coarse correction.
 
-        `forced` keeps the right-hand side of level `k`; otherwise it is 0. The correction is in the unit of
-        length, and is an estimate of the error before the cycle; on the coarsest level it is 0.
+        With `forced`, the right-hand side of level `k` is used; otherwise it is 0. The correction, in the
+        unit of length, estimates the error before the cycle; on the coarsest level it is 0.
         """
         if k == len(self.levels) - 1:
             self._relax_coarsest(forced, 1e-2, 10)

@@ -47,13 +47,14 @@ def solve(
 ) -> Solution:  # fmt: skip
     """Solve Winslow's equations, with control functions or without, for the nodes inside `boundary`.
 
-    `boundary` is a quad, o or c; the wake of a c is fixed. `tol` is the residual at which to stop, relative
-    to that of the transfinite interpolation; None stops when the estimated error of the iteration is below
-    the discretisation error. At most `max_cycles` cycles are run. `initial`, of the same counts, replaces
-    nested iteration. The grid may be folded at re-entrant corners (`meshonet.solvers.pipeline.fallback`).
+    `boundary` is of topology quad, o or c; the wake of a c boundary is fixed. The iteration stops when the
+    residual is `tol` times that of the transfinite interpolation; without `tol`, when the estimated error of
+    the iteration is below the discretisation error; at the latest after `max_cycles` cycles. `initial`, a
+    grid with the same node counts, replaces nested iteration. The grid may be folded at re-entrant corners
+    (`meshonet.solvers.pipeline.fallback`).
 
-    Raises InputError: settings out of range; an `initial` grid with other node counts. Raises SolverError:
-    every attempt diverged.
+    Raises InputError: a setting is out of range; `initial` has other node counts. Raises SolverError: every
+    attempt diverged.
     """
     check_settings(boundary, tol, max_cycles, initial)
     notes: tuple[str, ...] = ()

@@ -47,10 +47,11 @@ def solve_steger_sorenson(
 ) -> Solution:  # fmt: skip
     """Solve Winslow's equations with sources that control angle and first-cell height at edges.
 
-    `heights` maps the controlled sides of the quad or o `boundary` to first-cell heights in its unit, 0 for
-    free ones; None: south and north of a quad, the body of an o, with free heights. `angle` is that between
-    an edge and the lines that leave it, in degrees. `tol`, `max_cycles` and `initial` are those of `solve`.
-    Notes state the remaining error of the angles, and whether sources were weakened because cells folded.
+    `heights` maps the controlled sides of the quad or o `boundary` to first-cell heights in its unit; 0 means
+    that the height is free. None: south and north of a quad, or the body of an o boundary, are controlled,
+    with free heights. `angle` is the angle in degrees between an edge and the lines that leave it. `tol`,
+    `max_cycles` and `initial` are those of `solve`. Notes state the remaining error of the angles, and
+    whether sources were weakened because cells folded.
 
     Raises InputError: a side that cannot be controlled; an angle out of range; the errors of `solve`. Raises
     SolverError: every attempt diverged.
@@ -77,9 +78,9 @@ def solve_steger_sorenson(
 
 
 def largest_lean(nodes: Floats, boundary: Boundary) -> float:
-    """Return the largest deviation from 90 degrees of lines at south and north of a quad.
+    """Return the largest deviation from 90 degrees of the lines that leave south and north of a quad.
 
-    Nodes near corners do not count.
+    Nodes near corners are ignored.
     """
     sides = ("south", "north")
     edges = _edges(boundary, dict.fromkeys(sides, 0.0), 90.0, nodes)

@@ -28,9 +28,9 @@ LIMIT = 1.0  # largest logarithm of a step ratio due to a source
 class ControlledEdge:
     """An edge (n, 2) at which angle and first-cell height are controlled.
 
-    There are `across` nodes from this edge to the opposite one; if `periodic`, the edge is closed. `angle` is
-    the angle in degrees between the edge and the lines that leave it, `height` the first-cell height, 0 if it
-    is free.
+    The grid has `across` nodes from this edge to the opposite edge; if `periodic`, the edge is closed.
+    `angle` is the angle in degrees between the edge and the lines that leave it. `height` is the first-cell
+    height, 0 if it is free.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class ControlledEdge:
         self._count = across
 
     def errors(self, nodes: Floats) -> tuple[Floats, Floats]:
-        """Return the errors (n,) of the angle (as a sine) and of the logarithm of the first-cell height.
+        """Return two errors (n,): of the angle (as a sine), and of the logarithm of the first-cell height.
 
         The errors are multiplied by weights that decrease to 0 at corners and ends of the edge, where the
         angle cannot be prescribed.
@@ -127,7 +127,7 @@ def first_heights(lines: Floats) -> Floats:
 
 
 def leaning(lines: Floats, tangent: Floats) -> Floats:
-    """Return the cosine (n,) of the angle between a wall's unit `tangent` (n, 2) and `lines` (n, m, 2) there.
+    """Return the cosine (n,) of the angle between the unit `tangent` (n, 2) of a wall and `lines` (n, m, 2).
 
     The direction of a line at the wall is that of the parabola through its first three nodes.
     """

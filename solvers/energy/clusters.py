@@ -41,14 +41,14 @@ class Window:
         return rows, *(slice(low + less, high + 1 - less) for low, high in ends)
 
     def cut(self, nodes: Floats, periodic: bool = False) -> Floats:
-        """Return a copy of the window's nodes, from `nodes` (ni, nj, 2) or (ni, nj, nk, 3).
+        """Return a copy of those `nodes` (ni, nj, 2) or (ni, nj, nk, 3) that are in the window.
 
         The copy is in planar layout (`meshonet.geometry.arrays`): each coordinate is contiguous in memory.
         """
         return as_planar(nodes[self._index(self.rows(len(nodes), periodic), 0)])
 
     def put(self, nodes: Floats, periodic: bool, patch: Floats) -> None:
-        """Set the inner nodes of the window in `nodes` to those of `patch`, which `cut` returned."""
+        """Set the window's inner nodes in `nodes` to those of `patch`, a changed result of `cut`."""
         inner = (slice(1, -1),) * len(self.first)
         nodes[self._index(self.rows(len(nodes), periodic)[1:-1], 1)] = patch[inner]
         if periodic:
@@ -58,11 +58,12 @@ class Window:
 def windows(
     bad: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodic: bool, largest: int
 ) -> Iterator[Window]:
-    """Yield windows around the groups of cells `bad` (n, d), with at least `margin` cells around each.
+    """Yield windows around the groups of the cells `bad` (n, d), with at least `margin` cells around each.
 
-    Bad cells form a group if their tiles of `margin` cells touch. A group that needs more than `largest`
-    cells is divided, if necessary down to single tiles. Windows stay inside the nodes of `shape`, (ni, nj) or
-    (ni, nj, nk); if `periodic`, a window may extend across the seam, but not overlap itself.
+    The grid is divided into tiles of `margin` cells; bad cells form a group if their tiles touch. A group
+    that needs more than `largest` cells is divided, if necessary down to single tiles. Windows stay inside
+    the nodes of `shape`, (ni, nj) or (ni, nj, nk); if `periodic`, a window may extend across the seam, but
+    not overlap itself.
 
     >>> list(windows(np.array([[20, 0], [22, 1]]), 6, (100, 50), False, 2500))
     [Window(first=(12, 0), last=(30, 12))]

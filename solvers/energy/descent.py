@@ -39,10 +39,11 @@ def descend(
 
     Return the iterations and whether the grid is valid.
 
-    `still` is the `tol` of `variational.solve` and `most` the largest number of iterations. If `first` is
+    `still` is the `tol` of `variational.solve`, and `most` is the largest number of iterations. If `first` is
     given, the iteration stops after `first` iterations unless the value is then above `HARD`. Around a body
     (`periodic`) the last row of nodes repeats the first row, and both move. `stiffness` is the Hessian on a
-    coarse copy with its node counts, a preconditioner for smooth displacements (`stiffness_of`).
+    coarse copy of the grid, and the node counts of the copy; it preconditions smooth displacements
+    (`stiffness_of`).
     """
     ni, nj = nodes.shape[:2]
     if min(ni, nj) < 3:
@@ -68,9 +69,9 @@ def descend(
 def newton(nodes: Floats, weights: Weights, most: int) -> int:
     """Take up to `most` Newton steps from planar `nodes` (ni, nj, 2) of a quad; return the number of steps.
 
-    A step reduces the error much more than an iteration of `descend`; with 33 x 33 nodes it costs as much as
-    about six iterations. The iteration ends after a step that lowers the functional by less than `WON`. If
-    folded cells cannot be repaired, no step is taken.
+    A step reduces the error much more than an iteration of `descend` does; with 33 x 33 nodes it costs as
+    much as about six such iterations. The iteration ends after a step that lowers the functional by less than
+    `WON`. If folded cells cannot be repaired, no step is taken.
     """
     if min(nodes.shape[:2]) < 3 or (count_folded(nodes) and repair(nodes, periodic=False)):
         return 0
@@ -90,7 +91,7 @@ def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int,
 
 
 def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
-    """Return a function that calls the listeners with `nodes` (ni, nj, 2); None if there are no listeners."""
+    """Return a function that calls the listeners with `nodes` (ni, nj, 2); None if there is no listener."""
     if not listened_to():
         return None
     first = 0.0
@@ -119,8 +120,9 @@ def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:
 def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floats) -> None:
     """Repair and minimise planar `nodes` (ni, nj, 2) of an O grid in windows around skewed cells, in place.
 
-    Splines smooth the effect of wall corners on the grid lines that leave them. There the functional is far
-    from quadratic, and a minimisation over the whole grid would spend most of its iterations on a few cells.
+    The given nodes come from splines, which smooth the effect of wall corners on the grid lines that leave
+    them. There the functional is far from quadratic, so that a minimisation over the whole grid would spend
+    most of its iterations on a few cells.
     """
     skewed = corner_distortion(nodes)
     poor = np.argwhere(skewed > SKEWED)
@@ -142,7 +144,7 @@ def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floa
 
 
 def corner_distortion(nodes: Floats) -> Floats:
-    """Return the largest 1/sin⁴ of the angles of each cell of `nodes` (ni, nj, 2), infinite if folded."""
+    """Return, for each cell of `nodes` (ni, nj, 2), the largest 1/sin⁴ of its angles; infinite if folded."""
     z = nodes[..., 0] + 1j * nodes[..., 1]
     along, across = np.diff(z, axis=0), np.diff(z, axis=1)
     g, h = modulus(along), modulus(across)

@@ -54,11 +54,11 @@ def value(nodes: Floats, weights: Weights) -> float:
 
 
 def relief_of(wall: Floats) -> Floats:
-    """Return the factor (ni,) of the angle term of cell corners at the nodes of a closed `wall` (ni, 2).
+    """Return the factors (ni,) of the angle terms of cell corners at the nodes of a closed `wall` (ni, 2).
 
-    If the interior angle of the domain exceeds 320 degrees, as at a trailing edge, the two angles there
-    cannot both be near 90 degrees. The factor is then sin⁴ of half that angle, so that the smallest possible
-    value of the term equals that of right angles.
+    If the angle of the domain at a node exceeds 320 degrees, as at a trailing edge, the two cell angles there
+    cannot be near 90 degrees. The factor is then sin⁴ of half the domain's angle, so that the smallest
+    possible value of the term equals that for right angles.
     """
     half = 0.5 * (np.pi - turning(wall[:-1], closed=True))
     share = np.where(half > 8.0 / 9.0 * np.pi, (np.maximum(sin(half), 1e-3) ** 2) ** 2, 1.0)

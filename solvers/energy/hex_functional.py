@@ -37,7 +37,7 @@ class HexWeights:
     """Weights of the terms: `shape` q, `smoothness` β, `power` p (1 or 2).
 
     Power 0 selects the functional for cubes, with q = 1 and β = 0. A minimisation ends after two consecutive
-    steps that each lower the value by less than the fraction `gain`.
+    steps, each of which lowers the value by less than the fraction `gain` of it.
     """
 
     shape: float = 0.9

@@ -31,14 +31,14 @@ class HexTables:
     Parameters
     ----------
     blocks : (b, 6) node counts along each direction, and the starts of positions, cells and rows.
-    node : number of the node at each position (p,), -1 for none.
-    target : (3, p) logarithms of target lengths of the edges that start there.
+    node : (p,) index of the node at each position, -1 for none.
+    target : (3, p) logarithms of the target lengths of the three edges that start at each position.
     inverse : (3, c) inverse target lengths of cells.
-    skip : (c,) bits of corners that are ignored.
+    skip : (c,) for each cell, bits that say which of its corners are ignored.
     busy : for each row of cells, whether it has a corner that is not ignored.
     free : free nodes (k,).
-    start, place : the forces on free node k are those at positions place[start[k]] to place[start[k + 1] -
-        1].
+    start, place : the force on free node k is the sum over the positions place[start[k]] to place[start[k +
+        1] - 1].
     """
 
     blocks: NDArray[np.int64]

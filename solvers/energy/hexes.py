@@ -43,7 +43,7 @@ OPENED = 20, 10, 10
 
 @dataclass(frozen=True, eq=False)
 class Slides:
-    """Nodes that move in planes or along lines: their numbers (k,) and projections (k, 3, 3)."""
+    """Nodes that move in planes or along lines: their indices (k,), and projections (k, 3, 3) onto these."""
 
     nodes: Indices
     projections: Floats
@@ -54,18 +54,18 @@ class Slides:
         return cls(np.empty(0, dtype=np.intp), np.empty((0, 3, 3)))
 
     def among(self, nodes: Indices) -> Slides:
-        """Return the sliding nodes among `nodes` (m,), sorted numbers.
+        """Return the sliding nodes among `nodes` (m,), which are sorted node indices.
 
-        They are numbered by their indices in `nodes`.
+        In the result, the index of a node is its position in `nodes`.
         """
         place = np.minimum(np.searchsorted(nodes, self.nodes), len(nodes) - 1)
         some = nodes[place] == self.nodes
         return Slides(place[some], self.projections[some])
 
     def kept(self, before: Floats, after: Floats, moves: Bools) -> Floats:
-        """Return the nodes `after` (n, 3) a displacement, with sliding nodes in their planes or lines.
+        """Return the nodes `after` (n, 3) a displacement, with sliding nodes moved back to planes and lines.
 
-        The planes and lines go through the nodes `before`.
+        The planes and lines pass through the positions `before` the displacement.
         """
         nodes, at = after.copy(), self.nodes
         nodes[at] = before[at] + (self.projections * (after[at] - before[at])[:, None]).sum(axis=2)
@@ -106,7 +106,7 @@ class HexProblem:
         self.descent = descent_of(self.nodes, tables, 1.0 / sizes, mesh.cells, (unknowns, projections))
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
-        """Do at most `most` iterations; return the smallest Jacobian and the value."""
+        """Do at most `most` iterations; return the smallest Jacobian and the value of the functional."""
         size = SIZE if epsilon > 0.0 else 0.0
         self.descent.weigh(weights.shape, weights.smoothness, weights.power, epsilon, size)
         value, smallest, done = self.descent.run(weights.gain, most, RENEWED, STILL, REACH)

@@ -24,8 +24,8 @@ MODES = 512  # modes along a direction that are kept; finer ones are all divided
 class Descent:
     """Minimisation of the functional over planar nodes (ni, nj, 2), in place; boundary nodes are fixed.
 
-    Around a body (`periodic`) the last row is the first one and moves. `aspect` is the ratio a of the
-    functional; None computes it from `nodes`.
+    Around a body (`periodic`) the last row is the same as the first, and moves. `aspect` is the ratio a of
+    the functional; None computes it from `nodes`.
     """
 
     def __init__(
@@ -50,11 +50,11 @@ class Descent:
 
 
 def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights) -> VariationalDescent:
-    """Return the compiled minimisation for ni x nj nodes; if `periodic`, the last row is the first one.
+    """Return the compiled minimisation for ni x nj nodes; if `periodic`, the last row repeats the first.
 
-    On squares with steps 1, for a displacement (p, q) along (xi, eta) and a = 1, the second variation is
-    about (1-w) (‖∇p‖² + ‖∇q‖²) + 4 w (p_η² + q_ξ²) + 2 β (‖∇p_ξ‖² + ‖∇q_η‖²), with ∇ in units of the whole
-    square in the last term. The coupling p_η q_ξ is not included.
+    For squares of side 1, a displacement (p, q) along (xi, eta) and a = 1, the second variation is about
+    (1-w) (‖∇p‖² + ‖∇q‖²) + 4 w (p_η² + q_ξ²) + 2 β (‖∇p_ξ‖² + ‖∇q_η‖²), where ∇ in the last term is in units
+    of the whole square. The coupling p_η q_ξ is omitted.
     """
     rows, along = _fourier(ni - 1) if periodic else _sines(ni - 1)
     columns, across = _sines(nj - 1)

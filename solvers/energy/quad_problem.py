@@ -37,7 +37,7 @@ class Unknowns:
 
 
 def unknowns_of(mesh: QuadMesh, held: Bools | None) -> Unknowns:
-    """Return the fixed nodes and periodic images of a mesh; `held` nodes (n,) are fixed, like corners."""
+    """Return the fixed nodes and the periodic images of a mesh; corners and `held` (n,) nodes are fixed."""
     places = mesh.places
     fixed = (places.cells > 0) if held is None else (places.cells > 0) | held
     images = np.flatnonzero((places.partner >= 0) & ~fixed)
@@ -48,7 +48,7 @@ def unknowns_of(mesh: QuadMesh, held: Bools | None) -> Unknowns:
 
 
 def smallest_jacobian(nodes: Floats, quads: Indices, areas: Floats | None = None) -> float:
-    """Return the smallest corner Jacobian of `quads` (m, 4) of `nodes` (n, 2), relative to `areas` (m,)."""
+    """Return the smallest corner Jacobian of `quads` (m, 4) of `nodes` (n, 2), divided by `areas` (m,)."""
     least = smallest_jacobians(nodes, quads)
     return float((least if areas is None else least / areas).min(initial=np.inf))
 
@@ -81,9 +81,9 @@ class Problem:
         self.descent = self._descent(aspects, targets, turning)
 
     def take(self, mesh: QuadMesh) -> None:
-        """Begin again with a mesh of the same quads with other inner nodes.
+        """Start again with a mesh that has the same quads and other positions of inner nodes.
 
-        All wall nodes must be at the same positions, and be fixed.
+        All wall nodes must be fixed, and at the same positions as before.
         """
         self.mesh = mesh
         self.nodes[:] = (mesh.nodes - self.centre) / self.unit

@@ -53,15 +53,16 @@ def optimise(
 ) -> QuadOptimum:  # fmt: skip
     """Return the mesh with all nodes at the minimum of the functional.
 
-    Corners (`Places.cells` > 0) and `held` nodes (n,) are bitwise unchanged. A node with a partner is
-    displaced from it by the domain's period, and both move. `aspects` (m,) are the target ratios of the sides
-    1-2 and 0-3 of a quad to its sides 0-1 and 3-2. `targets` (e,), for `mesh.edges`, are lengths in any unit;
-    the ratios of neighbouring edges should be those of the targets. Edges along which a wall turns by more
-    than `turning` radians are penalised. The minimisation ends after `iterations`, not including those of
-    untangling, or if three consecutive iterations gain less than a hundredth of `tolerance` times the value.
-    Cells without free nodes are ignored, but if one of them is folded the mesh is not valid. `weights` are w
-    and β of the functional if there are `targets` or if growth counts. `growth` has two values: the weight of
-    the ratios of consecutive edges, and the logarithm of a ratio above which it counts.
+    Corners (`Places.cells` > 0) and `held` nodes (n,) are bitwise unchanged. A node with a periodic partner
+    is at the partner's position plus the period of the domain; both move. `aspects` (m,) are, for each quad,
+    the target ratios of its sides 1-2 and 0-3 to its sides 0-1 and 3-2. `targets` (e,), for `mesh.edges`, are
+    lengths in any unit: the ratios of neighbouring edges should be those of their targets. Edges along which
+    a wall turns by more than `turning` radians are penalised. The minimisation ends after `iterations`, not
+    including those of untangling, or if three consecutive iterations gain less than a hundredth of
+    `tolerance` times the value. Cells without free nodes are ignored, but if one of them is folded, the mesh
+    is not valid. `weights` are w and β of the functional if there are `targets` or if growth is penalised.
+    `growth` has two values: the weight of the penalty for ratios of consecutive edges, and the logarithm of
+    the ratio above which it applies.
     """
     problem = problem_of(mesh, held, aspects, targets, turning)
     if problem is None:
@@ -89,7 +90,7 @@ def minimise(
 ) -> QuadOptimum:  # fmt: skip
     """Return the mesh of a problem with all nodes at the minimum; see `optimise`.
 
-    `steps` are w and β of the functionals that are minimised one after the other.
+    `steps` has w and β of each functional; the functionals are minimised one after another.
     """
     low, done = problem.smallest(), 0
     if low <= 0.0:

@@ -47,9 +47,9 @@ FUTILE = 2.4e7  # nodes times iterations that may be spent on patches which stay
 
 @dataclass
 class UnfoldingBudget:
-    """Remaining budget, in nodes times iterations, for untangling that fails.
+    """Remaining budget for untangling that fails, in nodes times iterations.
 
-    Successful untangling is free.
+    Untangling that succeeds does not reduce it.
     """
 
     left: float = FUTILE
@@ -60,8 +60,8 @@ def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
 
     Return the number of folded cells left.
 
-    If `periodic` (O grids), the last row repeats the first one, and both move. The first windows have
-    `margin` cells around the folded ones.
+    If `periodic` (O grids), the last row repeats the first, and both move. The first windows have `margin`
+    cells around the folded cells.
     """
     bad = folded_cells(nodes)
     if min(nodes.shape[:2]) < 3 or len(bad) == 0:
@@ -114,7 +114,7 @@ def _smooth_windows(nodes: Floats, periodic: bool, cells: NDArray[np.int64], mar
 
 
 def untangle(patch: Floats, periodic: bool, budget: UnfoldingBudget) -> int:
-    """Untangle and smooth all nodes of planar `patch` (m, n, 2), in place; return as `repair`."""
+    """Untangle and smooth planar `patch` (m, n, 2), in place; return the number of folded cells left."""
     if budget.left <= 0 or min(patch.shape[:2]) < 3:
         return count_folded(patch)
     spent, valid, tried = 0, False, patch

@@ -47,9 +47,9 @@ LONG = 300  # iterations with each of them
 def widen(nodes: Floats, weights: Weights) -> None:
     """Lower the functional of valid planar `nodes` (ni, nj, 2) with nearly folded cells, in place.
 
-    In these cells the functional's barrier is so steep that a minimisation hardly moves the nodes. With
-    regularised Jacobians it does move them; the regularisation is reduced to zero step by step. If cells are
-    folded at the end, or the functional is not lower, the nodes stay.
+    In nearly folded cells the barrier of the functional is so steep that a minimisation hardly moves the
+    nodes. With regularised Jacobians it does; the regularisation is then reduced step by step to zero. If
+    cells are folded at the end, or the functional is not lower than before, the nodes are not changed.
     """
     trial = nodes.copy(order="K")
     descent, before = Descent(trial, weights), value(nodes, weights)

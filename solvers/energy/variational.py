@@ -71,13 +71,14 @@ def solve(
 ) -> Solution:  # fmt: skip
     """Minimise the functional of `meshonet.solvers.energy.functional` over the nodes inside `boundary`.
 
-    The nodes of the seam of an O grid are unknowns; a wake of a C grid is fixed. At the end no node moves by
-    more than `tol` times the size of the domain, which is estimated as √cells times the mean cell size. If
-    `tol` is None, it is 1e-4, and the number of iterations is at most `FEW`, or `FEW_AROUND` for O grids.
-    `max_cycles` limits the iterations on the finest level. `initial`, a grid with the same node counts,
-    replaces nested iteration. If no initial grid could be untangled, the result is folded and has a note.
+    The nodes of the seam of an O grid are unknowns; a wake of a C grid is fixed. The iteration ends when no
+    node moves by more than `tol` times the size of the domain, which is estimated as √cells times the mean
+    cell size. If `tol` is None, it is 1e-4, and the number of iterations is at most `FEW`, or `FEW_AROUND`
+    for O grids. `max_cycles` limits the iterations on the finest level. `initial`, a grid with the same node
+    counts, replaces nested iteration. If no initial grid could be untangled, the result is folded and has a
+    note.
 
-    Raises InputError: `initial` with other node counts; `tol` or `max_cycles` not positive.
+    Raises InputError: `initial` has other node counts; `tol` or `max_cycles` is not positive.
     """
     check_settings(boundary, tol, max_cycles, initial)
     weights = weights or WEIGHTS[boundary.topology]
@@ -163,7 +164,7 @@ def _coarsest(
 
 
 def winslow_start(boundary: Boundary) -> Floats:
-    """Return approximately Winslow's solution inside `boundary`, planar (ni, nj, 2).
+    """Return approximately Winslow's solution inside `boundary`, (ni, nj, 2) in planar layout.
 
     If the discrete equations have no solution, the result is the transfinite interpolation, which may be
     folded.

@@ -29,7 +29,7 @@ class Walls:
     """(e,) value to add to the arc length of the second node: 0 or the length of the loop."""
 
     def range_of(self, loop: int) -> tuple[int, int, int, int]:
-        """Return first and end index of the nodes of a loop, and first and end index of its edges."""
+        """Return the index ranges of a loop: first and end index of its nodes, then those of its edges."""
         of_edge = self.loop[self.edges[:, 0]]
         n = [int(k) for k in np.searchsorted(self.loop, [loop, loop + 1])]
         e = [int(k) for k in np.searchsorted(of_edge, [loop, loop + 1])]
@@ -37,10 +37,10 @@ class Walls:
 
 
 def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
-    """Return the walls of a mesh, with nodes that overtook others moved back.
+    """Return the walls of a mesh; nodes that have overtaken others along a wall are moved back.
 
-    `fixed` (n,) are fixed nodes, `tied` (n,) those of periodic sides, which are not walls. None if fixed
-    nodes are not in order.
+    `fixed` (n,) is the mask of fixed nodes, `tied` (n,) that of the nodes of periodic sides, which are not
+    walls. The result is None if fixed nodes are not in order.
     """
     places = mesh.places
     on = (places.loop >= 0) & ~tied
@@ -121,7 +121,7 @@ def _spread(arc: Floats, chain: Indices, length: float, ends: bool) -> None:
 
 @lru_cache(maxsize=256)
 def turned(loop: Loop) -> Floats:
-    """Return the accumulated absolute turning angle (n + 1,) of a loop in radians, without its corners.
+    """Return the accumulated absolute turning angle (n + 1,) of a loop, in radians, without corners.
 
     Jumps of the tangent at points that are not corners are spread over both adjacent intervals.
     """

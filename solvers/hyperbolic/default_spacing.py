@@ -31,7 +31,7 @@ STEEPEST = 1.3  # growth beyond which marched grids have larger angles than vari
 
 
 def first_cell(boundary: Boundary) -> float:
-    """Return the height of first cells, in the unit of a C `boundary`."""
+    """Return the default first-cell height for a C `boundary`, in the unit of the boundary."""
     behind = boundary.wake
     wall = boundary.south[behind : boundary.ni - behind]
     smallest = float(np.hypot(*np.diff(wall, axis=0).T).min())
@@ -40,9 +40,9 @@ def first_cell(boundary: Boundary) -> float:
 
 
 def first_cell_around_base(width: float, away: float, chord: float, ni: int, nj: int) -> float:
-    """Return the height of first cells of a C grid with `ni` x `nj` nodes that keeps a base of this `width`.
+    """Return the first-cell height of a C grid of `ni` x `nj` nodes that keeps a blunt base of this `width`.
 
-    The grid need not exist yet: its smallest cell is the cell behind a sharp edge, or a cell on the base.
+    The grid is not needed: its smallest cell is assumed to be that behind a sharp edge, or one on the base.
     """
     return _height(min(C_EDGE / ni * chord, COARSEST * width), away, nj)
 
@@ -55,8 +55,8 @@ def _height(smallest: float, away: float, nj: int) -> float:
 def march_by_default(boundary: Boundary) -> Solution | None:
     """Return the C grid marched from `boundary`, or None where another method suits better.
 
-    Another method is better in three cases: the nodes of the far field are given, because a march makes a far
-    field of its own; rows are so few that cells would grow by more than `STEEPEST`; cells are folded.
+    Another method is better in three cases: the nodes of the far field are given (a march makes its own far
+    field); there are so few rows that cells would grow by more than `STEEPEST`; cells are folded.
     """
     if boundary.wall is None:
         return None

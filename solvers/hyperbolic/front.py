@@ -99,7 +99,7 @@ class Front:
         return self._south[:-1] if self._closed else self._south
 
     def reach(self, levels: Floats) -> float:
-        """Return the smallest distance of the last of the `levels` (2, m, n) from the centre of the body."""
+        """Return the smallest distance from the body's centre to the last of the `levels` (2, m, n)."""
         return float(np.hypot(*(levels[:, -1].T - self._middle).T).min())
 
     def nodes(self, levels: Floats) -> Floats:
@@ -128,10 +128,10 @@ class Front:
 
 
 def opening(behind: Floats, higher: Floats) -> Floats:
-    """Return the factors (n,) by which first cells are higher at distances `behind` (n,) the trailing edge.
+    """Return the factors (n,) by which first cells along a wake are higher than at the wall.
 
-    The distances are in chords. `higher` (n,) is the `rise` of first cells there, divided by the height at
-    the wall.
+    `behind` (n,) are the distances behind the trailing edge in chords. `higher` (n,) is the `rise` of first
+    cells there, divided by the height at the wall.
     """
     return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR) + higher)
 
@@ -150,12 +150,12 @@ def _middle(wall: Floats) -> Floats:
 def distance_to_march(
     front: Front, first: float, cells: int, settings: MarchSettings, constant: int, edge: Edge | None
 ) -> float:
-    """Return the sum of the steps with which a march from the body reaches the radius of the far field.
+    """Return the sum of all steps that a march from the body needs to reach the radius of the far field.
 
     Around a circle of n nodes a step s leads from radius r to r + s (1 - e)/(1 + f s/r + 2 e s/r): f is the
-    weight of the flux along a level, e = 2π ε q/n + b h/r the dissipation, q its reduction where lines
-    diverge. The same holds in front of a C. For other bodies, constants fitted on airfoils correct the
-    distance.
+    weight of the flux along a level; e = 2π ε q/n + b h/r is the dissipation, where q is its reduction where
+    lines diverge. The same holds in front of the body in a C grid. For other bodies, constants fitted on
+    airfoils correct the distance.
     """
     distance = front.outer - front.inner
     around = 2.0 * math.pi * settings.dissipation / len(front.start())

@@ -27,16 +27,16 @@ _LEAST_TURN = math.radians(60.0)  # of an edge that counts as sharp
 
 
 class Edge(NamedTuple):
-    """A sharp edge of a wall: the size of the cells beside it, and its sharpness, 0 to 1."""
+    """A sharp edge of a wall: the size of the cells next to it, and its sharpness, from 0 to 1."""
 
     size: float
     sharpness: float
 
 
 def sharpest_edge(ring: Floats) -> Edge | None:
-    """Return the sharpest convex corner of a clockwise closed wall (n, 2), the first node not repeated.
+    """Return the sharpest convex corner of a wall (n, 2), closed and clockwise, first node not repeated.
 
-    None if no corner turns by 60 degrees.
+    Return None if no corner turns by at least 60 degrees.
     """
     turn = -turning(ring, closed=True)
     k = int(np.argmax(turn))
@@ -53,11 +53,11 @@ def fastest(nodes: Floats) -> Floats:
 
 
 def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Floats:
-    """Return weights (n,) of the growth at each level, for steps with which no cell should grow too much.
+    """Return the weights (n,) for `level_steps` with which cells should grow equally fast at each level.
 
-    `rate` is the logarithm of the largest growth ratio. `nodes` is a grid marched with `steps` (n,). At each
-    level, the logarithm of the growth of the steps is changed by the difference between `rate` and the
-    largest growth of cells there.
+    `rate` is the logarithm of the largest permitted growth ratio. `nodes` is a grid marched with `steps`
+    (n,). At each level, the logarithm of the growth ratio of the steps is changed by `rate` minus the
+    logarithm of the largest growth ratio of cells there.
     """
     grown = np.diff(log(steps))
     shares = np.maximum(grown + rate - fastest(nodes), 0.0)
@@ -71,9 +71,9 @@ def level_steps(
     """Return `cells` step lengths (cells,), which start with `first` and add up to `distance`.
 
     The first `constant` steps are equal; the others grow by one ratio. If there is a sharp `edge`, the ratio
-    is reduced at the distances from the wall at which lines diverge from the edge, more at a sharper edge, so
-    that growth is nearly equal along all lines (constants are fitted on airfoils). With `shares` (cells,),
-    the logarithms of growth ratios are proportional to `shares`.
+    is reduced at those distances from the wall at which lines diverge from the edge (the sharper the edge,
+    the more), so that growth is nearly equal along all lines. Constants are fitted on airfoils. With `shares`
+    (cells,), the logarithms of growth ratios are proportional to `shares`.
 
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]

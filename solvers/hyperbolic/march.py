@@ -73,17 +73,17 @@ def hyperbolic(
     boundary: Boundary, *, wall_spacing: float, growth: float | None = None, free_rows: bool = False,
     constant: int = 1, multiple: int = 1,
 ) -> Solution:  # fmt: skip
-    """Return an O or C grid marched from the wall of `boundary`, whose nodes are kept bitwise.
+    """Return an O or C grid marched from the wall of `boundary`; the nodes of the wall are kept bitwise.
 
     The far field of `boundary` determines the distance to march, and its `nj` the number of rows. With
     `free_rows`, the number of rows follows from `growth`, the largest growth ratio; it is then a multiple of
-    `multiple`. The ends of the rows of a C grid move along west and east, which are taken as straight.
-    `wall_spacing` is the first-cell height in chords, met to a relative error of 1e-8; the first `constant`
-    rows have this height. The far field of the solution is where the march ended. If all attempts have folded
-    cells, the grid has folded cells.
+    `multiple`. In a C grid, both ends of each row move along the sides west and east, which are assumed to be
+    straight. `wall_spacing` is the first-cell height in chords, met to a relative error of 1e-8; the first
+    `constant` rows have this height. The far field of the solution is where the march ended. If all attempts
+    have folded cells, the grid has folded cells.
 
-    Raises InputError: a four-sided boundary; a spacing or growth out of range; too few rows. Raises
-    SolverError: no attempt gave finite nodes.
+    Raises InputError: the boundary is four-sided; spacing or growth is out of range; there are too few rows.
+    Raises SolverError: no attempt gave finite nodes.
     """
     check_layers(wall_spacing, growth)
     if boundary.topology == "quad":
@@ -107,7 +107,7 @@ def marched(
     constant: int,
     multiple: int = 1,
 ) -> Floats:
-    """Return the nodes (ni, nj, 2) of a march of `asked` rows of cells.
+    """Return the nodes (ni, nj, 2) of a march with `asked` rows of cells.
 
     With `free_rows` the number of rows follows from `growth`, and is a multiple of `multiple`.
 

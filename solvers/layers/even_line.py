@@ -57,12 +57,12 @@ SLACK = np.array([2.0, 1.0, 0.9])
 
 @dataclass(frozen=True, eq=False)
 class Measures:
-    """Measures along a curve whose steps should be even.
+    """Functions along a curve (such as arc length) whose steps from node to node should be even.
 
     Parameters
     ----------
     arcs : (m,) positions along the curve, ascending.
-    values : (k, m) increasing measures there, linear in between.
+    values : (k, m) increasing values of the k measures at these positions, linear in between.
     slack : (k,) for each measure, the factor by which the limit (a logarithm) is multiplied.
     """
 
@@ -96,7 +96,7 @@ class PlaceLinks:
 
     Parameters
     ----------
-    pairs : (p, 2) numbers of the places.
+    pairs : (p, 2) indices of the two places.
     factors : (p, 2) factors of the two places.
     rest : (p,) constant terms.
     """
@@ -117,12 +117,12 @@ def evened_places(
     places: Floats, fixed: Bools, measures: Measures, limit: float, closed: bool,
     links: PlaceLinks = NO_LINKS, most: float = MOST, change: float = CHANGE,
 ) -> Floats:  # fmt: skip
-    """Return places (n,) near the given ascending ones whose neighbouring steps differ by a limited ratio.
+    """Return `places` (n,), ascending, moved until neighbouring steps differ by a limited ratio.
 
-    Places that are `fixed` (n,) do not change. `limit` is the logarithm of the ratio; if it cannot be kept,
-    it is exceeded as little as possible. On a closed curve the last step leads to the first place. Where
-    places would move by more than `most` steps, the limit is less strict. `change` is the weight μ of
-    `GrowthLimit`.
+    Places in the mask `fixed` (n,) do not change. `limit` is the logarithm of the largest ratio; if it cannot
+    be satisfied, it is exceeded as little as possible. On a closed curve the last step leads to the first
+    place. Where places would move by more than `most` steps, the limit is relaxed. `change` is the weight μ
+    of `GrowthLimit`.
     """
     line = _Line.of(places, fixed, measures, closed, links, change)
     new = places
@@ -137,9 +137,9 @@ def evened_places(
 
 
 def evened_steps(steps: Floats, limit: float) -> Floats:
-    """Return `steps` (n,) around a closed curve, changed so that the ratio of neighbours is limited.
+    """Return `steps` (n,) around a closed curve, changed until ratios of neighbouring steps are limited.
 
-    Their sum stays the same. `limit` is the logarithm of the largest ratio.
+    The sum of the steps stays the same. `limit` is the logarithm of the largest ratio.
     """
     places = np.concatenate([[0.0], np.cumsum(steps)])
     ends = places[[0, -1]]
@@ -151,10 +151,11 @@ def evened_steps(steps: Floats, limit: float) -> Floats:
 def evened_loops(
     layout: Layout, measures: Mapping[int, Measures], limit: float, most: float = MOST
 ) -> Layout:
-    """Return the layout with nodes moved along some loops, and less and less in the adjacent blocks.
+    """Return the layout with nodes moved along some loops; displacements decrease in the adjacent blocks.
 
-    Neighbouring steps of the measures of each loop then differ by at most the exponential of `limit`; corners
-    are fixed. `most` is that of `evened_places`. If cells would fold, the given layout is returned.
+    `measures` has the loops by index. Neighbouring steps of the measures of a loop then differ by a ratio of
+    at most exp(`limit`); corners are fixed. `most` is that of `evened_places`. If cells would fold, the given
+    layout is returned.
     """
     mesh = layout.mesh
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()
@@ -217,7 +218,7 @@ class _Line:
 
     @cached_property
     def unknown(self) -> Indices:
-        """(n,) number of each place among those that move, -1 for others."""
+        """(n,) index of each place among the places that move, -1 for the others."""
         unknown = np.full(self.triples.max() + 1, -1, dtype=np.intp)
         unknown[self.free] = np.arange(len(self.free))
         return unknown

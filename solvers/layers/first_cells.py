@@ -55,7 +55,7 @@ class Heights:
 
 
 def check_fit(heights: Heights, boundary: Boundary) -> None:
-    """Raise InputError if `boundary` cannot have the heights: wrong edges, too few or too high cells."""
+    """Raise InputError if `boundary` cannot have the heights: other edges, too few or too high cells."""
     if boundary.around_body and (heights.north or heights.west or heights.east):
         raise InputError(
             f"a spacing off north, west or east in topology {boundary.topology}",
@@ -95,8 +95,8 @@ def cells_needed(length: float, first: float, last: float, heights: Heights) -> 
 def edge_in_layers(edge: Floats, count: int, first: float, last: float, heights: Heights) -> Floats:
     """Return `count` nodes (count, 2) on the curve through an open edge, with layers at its ends.
 
-    The distance between the first two nodes is `first`, that between the last two `last`; 0 prescribes
-    nothing.
+    The distance between the first two nodes is `first`, that between the last two is `last`; 0 means that the
+    distance is free.
     """
     curve = Curve(edge)
     nodes = curve.at(arcs_in_layers(curve, count, first, last, heights)[0])
@@ -107,7 +107,7 @@ def edge_in_layers(edge: Floats, count: int, first: float, last: float, heights:
 def arcs_in_layers(
     curve: Curve, count: int, first: float, last: float, heights: Heights
 ) -> tuple[Floats, float]:
-    """Return arc lengths (count,) on an open curve with layers at its ends, and the largest step ratio."""
+    """Return arc lengths (count,) on an open curve with layers at its ends, and the largest growth ratio."""
     steps = np.empty(count - 1)
     begin = _arc_at(curve, 0.0, first) if first else 0.0
     end = _arc_at(curve, curve.length, last) if last else 0.0

@@ -71,10 +71,10 @@ class GrowthLimit:
 
 
 def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part: Indices) -> Numbers:
-    """Return a step (m,), of which each part is reduced until the value that depends on it decreases.
+    """Return a step (m,), each part of which is shortened until the value that depends on it decreases.
 
-    A part that would have to be reduced too much becomes 0. `values` returns all values (p,); `part` (m,) is
-    the index of the value that depends on each unknown.
+    A part that would have to be shortened too much becomes 0. `values` returns all values (p,); `part` (m,)
+    has, for each unknown, the index of the value that depends on it.
     """
     start = values(at)
     share = np.ones(len(start))

@@ -18,10 +18,10 @@ def layer_arcs(
 ) -> Floats:  # fmt: skip
     """Return distances (k, cells + 1) from 0 to `length` (k,) of cells that start at the wall.
 
-    The first `constant` cells have the height `first`, a number or (k,). The logarithm of the others is a
-    quadratic function of their index. It ends at about `last` (k,), or, where `last` is infinite, at the
-    value for a constant ratio. Neighbouring cells grow by at most `growth`, or by `steeper` more, in
-    logarithms, than with a constant ratio. They do not shrink.
+    The first `constant` cells have the height `first`, a number or (k,). The logarithms of the other heights
+    are a quadratic function of the index. The last height is about `last` (k,), or, where `last` is infinite,
+    that with a constant ratio. Heights never decrease. Their ratio is at most `growth`; but the logarithm of
+    the ratio may always exceed that of the constant ratio by `steeper`.
     """
     rows = cells - constant + 1  # the last constant cell and those that grow
     first = np.broadcast_to(np.asarray(first, dtype=np.float64), length.shape)

@@ -34,13 +34,13 @@ class LayerSettings:
 
     Parameters
     ----------
-    first : first-cell height in the domain's unit; without `heights` that of all walls.
+    first : first-cell height in the domain's unit, of all walls that are not in `heights`.
     growth : largest mean ratio of neighbouring cells along a column.
-    constant : number of cells with the height of the first one.
+    constant : number of cells, from the wall, that have the height of the first cell.
     multiple : divisor of the number of layers, so that coarser grids are nested.
     heights : first-cell heights of walls by name.
     limit : largest ratio of neighbouring cells along lines from walls. If 0, the logarithm of the ratio may
-        be a fifth more than that of `growth`, because columns differ.
+        exceed that of `growth` by a fifth, because columns differ.
     """
 
     first: float
@@ -52,13 +52,13 @@ class LayerSettings:
 
     @classmethod
     def limited(cls, first: float, limit: float, **others: Any) -> LayerSettings:
-        """Return layers whose cells, and those beyond, do not grow faster than a limit."""
+        """Return layers with a limit of the growth ratio, inside the layers and beyond them."""
         return cls(first, math.exp(NOMINAL * math.log(limit)), limit=limit, **others)
 
     def at(self, names: Collection[str]) -> LayerSettings:
-        """Return the layers of a wall that consists of stretches with some `names`.
+        """Return the settings for a wall whose stretches have the given `names`.
 
-        Raises InputError: stretches of one wall with different heights.
+        Raises InputError: stretches of the wall have different heights.
         """
         if not self.heights:
             return self
@@ -97,11 +97,11 @@ class LayerSettings:
         return min(GRADING, SPREAD * (self.limit - 1.0)) if self.limit else GRADING
 
     def below(self, growth: float) -> float:
-        """Return the growth ratio of cells outside of layers: `growth`, or less if that is near the limit."""
+        """Return the growth ratio of cells outside the layers: `growth`, or less if it is near the limit."""
         return min(growth, 1.0 + NOMINAL * (self.limit - 1.0)) if self.limit else growth
 
     def arcs(self, length: Floats, first: float | Floats, last: Floats, cells: int) -> Floats:
-        """Return distances (k, cells + 1) from walls, as `layer_arcs`, that grow no faster than the limit."""
+        """Return distances (k, cells + 1) from walls by `layer_arcs`, with the growth limit of the layers."""
         most, steeper = self.growth, STEEPER
         if self.limit:
             most, steeper = math.exp(STEEPEST * math.log(self.limit)), STEEPEST / NOMINAL - 1.0
@@ -119,7 +119,7 @@ def layer_lines(
 ) -> Floats:
     """Return the nodes (k, rows + 1, 2) of layers along columns (k, m, 2), from the wall to `ends` (k, 2).
 
-    `inner` (k,) are the heights of the cells beyond the layers, `first` (k,) the heights of first cells.
+    `inner` (k,) are the heights of the cells just beyond the layers, `first` (k,) those of the first cells.
     """
     columns = columns + arc_parts(columns)[..., None] * (ends - columns[:, -1])[:, None]
 
@@ -135,6 +135,6 @@ def exact(lines: Floats, first: float | Floats) -> None:
 
 
 def spaced(lines: Floats, law: Callable[[Floats], Floats]) -> Floats:
-    """Return lines (k, m, 2) with new nodes (k, n, 2) at arc lengths that `law` gives for their lengths."""
+    """Return new nodes (k, n, 2) on `lines` (k, m, 2), at the arc lengths that `law` returns for lengths."""
     arc = arc_lengths(lines)
     return sampled(lines, arc, law(arc[:, -1]))

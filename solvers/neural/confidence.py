@@ -48,7 +48,7 @@ class Confidence:
 
 
 def expected_error(grid: Grid, boundary: Boundary, goal: Goal) -> float:
-    """Return the expected relative L2 distance of `grid` from the grid of the method `goal`.
+    """Return the expected relative L2 distance of `grid` from the grid that the method `goal` makes.
 
     `goal` is ``winslow`` or ``variational``. The error is infinite if the solver cannot start from `grid`.
     """

@@ -37,11 +37,11 @@ def infer_many(
 
     `model` is the name of a shipped model, the path of a ``.safetensors`` file, ``base`` for the conformal
     solver, or None for the default of the topology. `polish` are steps after the network
-    (`operator.Operator.solve`). On a `device` torch computes the grids, where polish ``auto`` means 3 Picard
-    steps of a strip operator and none of a quad operator; without one NumPy does. Solutions have the
-    `confidence` in the network's answers; with `fallback`, answers that are not accepted are replaced by
-    grids of the method that the network imitates. Raises InputError: a model that does not exist, cannot be
-    read or does not suit a boundary; no such device.
+    (`operator.Operator.solve`). With a `device`, torch computes the grids, and polish ``auto`` means 3 Picard
+    steps of a strip operator and none of a quad operator; without a `device`, NumPy computes them. Each
+    solution has a `confidence` in the network's answer; with `fallback`, answers that are not accepted are
+    replaced by grids of the method that the network imitates. Raises InputError: a model that does not exist,
+    cannot be read or does not suit a boundary; no such device.
     """
     named = None if model is None else load(model)
     solutions: dict[int, Solution] = {}
@@ -92,7 +92,7 @@ def _solved(boundary: Boundary, goal: Goal) -> Solution:
 
 
 def grid_of_body(boundary: Boundary, why: str) -> Solution | None:
-    """Return the grid of a compact body by `hole-o`, with a note of `why` it was used; None if folded."""
+    """Return the grid of a compact body by the model `hole-o`, with the note `why`; None if it is folded."""
     from meshonet.solvers.algebraic.resample.grids import thinned
     from meshonet.solvers.neural.quad.encoding import LATENT
     from meshonet.solvers.neural.quad.o_grids import compact
@@ -148,7 +148,7 @@ class OperatorMethod:
 
     @cached_property
     def together(self) -> Topology | None:
-        """The topology of boundaries that the network processes in one batch; None if one by one."""
+        """The topology of the boundaries that the network computes in batches; None if one by one."""
         if self.device is None and self.model == BASE:
             return None  # no network
         if self.model is not None and makes_volumes(self.model):

@@ -18,7 +18,7 @@ OURS = "use a file made by meshonet train"  # remedy for a file that is no model
 
 
 class Kind(NamedTuple):
-    """A kind of model: `text` is the entry ``kind`` of its header, `version` the entry `key`."""
+    """A kind of model, by its header: `text` is the value of ``kind``, `version` the value of `key`."""
 
     text: str
     key: str
@@ -37,7 +37,8 @@ KINDS = {kind.text: kind for kind in (STRIP, QUAD, PAPER, VOLUME)}
 def read_model(path: Path) -> tuple[Kind, dict[str, Any], dict[str, NDArray[Any]]]:
     """Return the kind, the header and the arrays of a model file.
 
-    Raises InputError: not safetensors, not one of ours, of another version; an array that is not finite.
+    Raises InputError: the file is not safetensors, no model of meshonet, or of another version; an array is
+    not finite.
     """
     header, arrays = read_tensors(path)
     kind = KINDS.get(str(header.get("kind")))
@@ -49,7 +50,7 @@ def read_model(path: Path) -> tuple[Kind, dict[str, Any], dict[str, NDArray[Any]
 
 
 def read_tensors(path: Path) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    """Return the header and the arrays of any safetensors file, size and finiteness checked."""
+    """Return the header and the arrays of any safetensors file; sizes and finiteness are checked."""
     from safetensors import SafetensorError, safe_open
 
     source = str(path)

@@ -46,10 +46,10 @@ class Operator(ABC):
     ) -> list[Solution]:
         """Return a grid inside each boundary; it may be folded (see `meshonet.solvers.pipeline.fallback`).
 
-        `polish`: number of steps after the network, for operators with such steps; `paste`: replace the edges
-        by the nodes of the boundary, for networks that do not reproduce these; `dtype`: ``float64`` or
-        ``float32`` arithmetic of the quad network, whose grids then differ by about 1e-6; `threads`: number
-        of concurrent batches of the quad network, without effect on grids. Raises InputError: a boundary of
+        `polish`: number of steps after the network, for operators with such steps; `paste`: whether edges are
+        replaced by the given boundary, for networks that do not reproduce it; `dtype`: arithmetic of the quad
+        network, ``float64`` or ``float32`` (grids differ by about 1e-6); `threads`: number of batches of the
+        quad network that run at the same time, without effect on grids. Raises InputError: a boundary of
         another topology.
         """
 
@@ -61,7 +61,7 @@ class Operator(ABC):
     def expected_error(self, boundary: Boundary, solution: Solution) -> float:
         """Return the expected relative L2 error of a solution of `solve` (see `confidence`).
 
-        It is infinite if the solver that the operator imitates cannot continue from the solution.
+        It is infinite if the solver that the operator imitates cannot start from the solution.
         """
         return expected_error(solution.grid, boundary, self.goal)
 

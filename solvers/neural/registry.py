@@ -55,7 +55,8 @@ def model_path(name: str) -> Path:
 def load(name: str | Path) -> Operator:
     """Return a shipped operator by name, the operator of a file by path, or ``base``.
 
-    Raises InputError: no such model; a file that is not a model file, or whose arrays do not match its model.
+    Raises InputError: there is no such model; the file is no model file, or its arrays do not match its
+    model.
 
     >>> operator = load("quad-general")
     >>> operator.name, operator.topology

@@ -21,10 +21,10 @@ _REACH = 0.8
 
 
 def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) -> Result:
-    """Return the grid around an aircraft or its half, with its quality.
+    """Return the grid around an aircraft or its half, with the quality of the grid.
 
-    Raises InputError: a wing that does not begin in the body, does not leave it or reaches the far field.
-    Raises NoValidGridError: cells are folded, unless folded cells are allowed.
+    Raises InputError: a wing does not begin in the body, does not leave it, or reaches the far field. Raises
+    NoValidGridError: cells are folded, unless folded cells are allowed.
     """
     request = request or aircraft_request()
     seconds: dict[str, float] = {}

@@ -39,10 +39,10 @@ class Auto(OneByOne):
 
 @dataclass(frozen=True)
 class Fewer(Wrapper):
-    """`method` on fewer nodes if the quality is the same; on twice as many if the result has folded cells."""
+    """`method` on fewer nodes if the quality is the same; on twice as many nodes if cells are folded."""
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary; on all nodes if there is an initial grid."""
+        """Return the solution of a boundary; all nodes are used if there is an initial grid."""
         above, n = FEWER_NODES.get(self.name, (0, 0))
         if not n or start is not None or max(boundary.ni, boundary.nj) <= above:
             return self.inner(boundary, start)
@@ -66,10 +66,10 @@ class Anew(Wrapper):
 
 @dataclass(frozen=True)
 class AroundWake(OneByOne):
-    """C grids: marched with a default first cell, or by the variational method if marching does not suit.
+    """C grids: marched with a default first-cell height, or variational if marching does not suit.
 
-    Winslow's equations are not used: their grid lines deviate from the normal by up to 70 degrees along the
-    wake, where small cells face the large ones of the far field.
+    Winslow's equations are not used: along the wake, where small cells face the large cells of the far field,
+    their grid lines deviate from the normal by up to 70 degrees.
     """
 
     note: str = ""  # begins the notes, before the method's name

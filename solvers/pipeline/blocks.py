@@ -45,7 +45,7 @@ def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
 
 
 def smooths(shape: DomainShape, request: GridRequest) -> bool:
-    """Return whether a request smooths the blocks of a given grid, rather than making other blocks."""
+    """Return whether a request smooths the blocks of a given grid instead of making new blocks."""
     new_blocks = request.asks_for_blocks or request.sampling.ni or request.at_walls
     return shape.given is not None and request.method in SMOOTHERS and not new_blocks
 
@@ -81,8 +81,8 @@ def check_asked(request: GridRequest) -> None:
 def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str, float]]:
     """Return the blocks that `request` makes of a shape, and the seconds of each stage.
 
-    If the request has no number of cells, the layout has the number of cells of the decomposition. Raises
-    InputError: see `as_blocks`. Raises SolverError: the decomposition fails.
+    If the request has no number of cells, the layout has the default number of cells. Raises InputError: see
+    `as_blocks`. Raises SolverError: the decomposition fails.
     """
     seconds: dict[str, float] = {}
     with stage("load", seconds):

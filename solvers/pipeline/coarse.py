@@ -38,12 +38,12 @@ class Coarse(Wrapper):
 def solve_coarse(
     boundary: Boundary, solve: Callable[[Boundary], Solution], n: int, *, smooth: bool
 ) -> Solution:
-    """Solve by `solve` on at most n x n nodes, and return the grid at the node counts of `boundary`.
+    """Solve by `solve` on at most n x n nodes; return the grid interpolated to the nodes of `boundary`.
 
-    With `smooth`, sweeps of Winslow's equations at full resolution follow near kinks of the boundary: always
-    for solutions of these equations and for folded grids, otherwise if they improve angles. The edges equal
-    those of `boundary` bitwise; residual and cycles are those of the coarse solution. Raises InputError: `n`
-    is below 9.
+    With `smooth`, sweeps of Winslow's equations on all nodes follow near kinks of the boundary: always for
+    solutions of these equations and for folded grids, otherwise only if the sweeps improve angles. The edges
+    are bitwise those of `boundary`; residual and cycles are those of the coarse solution. Raises InputError:
+    `n` is below 9.
     """
     check_coarse(n)
     counts = min(n, boundary.ni), min(n, boundary.nj)

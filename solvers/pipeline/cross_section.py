@@ -37,9 +37,9 @@ def section_grid(
 ) -> tuple[Grid, tuple[str, ...]]:
     """Return the planar grid inside a closed curve or domain, and notes; a given grid is returned unchanged.
 
-    A circle gets five blocks, a four-sided outline one, and other shapes those of the decomposition. All
-    sides, or those that the request names, are walls with a first cell. `around` is the number of cells
-    along a circle.
+    A circle gets five blocks, a four-sided outline one block, and any other shape the blocks of its
+    decomposition. All sides, or those that the request names, are walls with a first-cell height. `around` is
+    the number of cells along a circle.
 
     Raises InputError: parameters that do not suit the shape; see also `make_grid`.
     """

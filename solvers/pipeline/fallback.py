@@ -26,14 +26,14 @@ REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"
 def guard(
     solution: Solution, boundary: Boundary, *, allow_invalid: bool = False, margin: int | None = None
 ) -> Solution:
-    """Return `solution` if its grid is valid, otherwise the first valid result of the following stages.
+    """Return `solution` if its grid is valid, otherwise the first valid grid from the following stages.
 
-    First comes a local repair in regions with `margin` cells around folded ones; then each method of `ORDER`,
-    started from the repaired grid if the method uses an initial grid, and a repair of the grid of this
-    method. `boundary` is the boundary of the grid unless `solution` has one. The path of the result ends with
-    the stages that made the grid, such as ``("repair",)``, ``("winslow", "repair")`` or ``("tfi",)``. Raises
-    NoValidGridError, with the ten worst cells of the best attempt: cells stay folded in all stages and
-    `allow_invalid` is not set.
+    The first stage is a local repair in regions of `margin` cells around folded cells. Then each method of
+    `ORDER` makes a grid, from the repaired grid if the method uses an initial grid; if that grid is folded,
+    it is repaired too. `boundary` is the boundary of the grid unless `solution` has one. The path of the
+    result ends with the stages that made the grid, such as ``("repair",)``, ``("winslow", "repair")`` or
+    ``("tfi",)``. Raises NoValidGridError, with the ten worst cells of the best attempt: cells stay folded in
+    all stages and `allow_invalid` is not set.
     """
     grid, boundary = solution.grid, solution.boundary or boundary
     if count_folded(grid.nodes) == 0:

@@ -33,11 +33,11 @@ class FirstCells:
     multiple: int = 1  # of which the number of rows is one then
 
     def in_chords(self) -> float:
-        """Return the height at a body. Raises InputError: no height, or heights of single walls."""
+        """Return the height at a body. Raises InputError: no height is given, or several by wall."""
         return self.prescribed.height() or 0.0
 
     def heights(self, boundary: Boundary) -> Heights:
-        """Return the heights in the unit of `boundary`. Raises InputError: no side is a wall by its name."""
+        """Return the heights in the unit of `boundary`. Raises InputError: no side has the name of a wall."""
         off: dict[str, float] = {}
         if self.prescribed.at_walls and boundary.around_body:
             off = {"south": self.in_chords() * boundary.chord}
@@ -69,9 +69,10 @@ def sides_called(boundary: Boundary, name: str) -> list[Side]:
 def wall_sides(boundary: Boundary) -> list[Side]:
     """Return the sides of a four-sided boundary that get layers if the request names no walls.
 
-    South and north get layers, except sides whose names exclude a wall, such as ``inlet``; sides with the
-    name of a wall along their whole length also get layers. If there is no such side, west and east are tried
-    with the same exception. Raises InputError: no side is left.
+    South and north get layers, unless their names say that they are no walls, such as ``inlet``. West and
+    east get layers if their names say that they are walls along their whole length. If no side gets layers by
+    these rules, west and east do, unless their names say that they are no walls. Raises InputError: no side
+    is left.
     """
     patches = {side: [p for p in boundary.patches if p.side == side] for side in SIDES}
     possible = [side for side in SIDES if any(patch.may_be_wall for patch in patches[side])]
@@ -87,19 +88,20 @@ def wall_sides(boundary: Boundary) -> list[Side]:
 
 
 def along_walls(boundary: Boundary, request: OneBlock) -> bool:
-    """Return whether south or north of a four-sided boundary is a wall with layers; xi then runs along it."""
+    """Return whether south or north of a four-sided boundary has layers; xi then runs along a wall."""
     names = request.by_wall or request.walls
     sides = [side for name in names for side in sides_called(boundary, name)] or wall_sides(boundary)
     return not {"south", "north"}.isdisjoint(sides)
 
 
 def has_walls_on_sides(shape: Shape, request: GridRequest) -> bool:
-    """Return whether the walls that a request names are whole sides of a four-sided domain made as one block.
+    """Return whether the walls named by a request are whole sides of a four-sided domain of one block.
 
-    If the request neither asks for one block nor has node counts in both directions, the walls must also be
-    opposite sides, and the request must not refine; otherwise the domain becomes many blocks.
+    If the request neither asks for one block nor gives node counts in both directions, it is also necessary
+    that the walls are opposite sides and that the request does not refine. If not, the domain becomes many
+    blocks.
 
-    Raises InputError: a four-sided domain has no wall of such a name, or not along a whole side of the block.
+    Raises InputError: the domain has no wall of such a name, or only along a part of a side of the block.
     """
     heights = request.first_cell if request.y_plus is None else request.y_plus
     off = heights if isinstance(heights, Mapping) else dict.fromkeys(request.walls, 0.0)
@@ -121,7 +123,7 @@ def has_walls_on_sides(shape: Shape, request: GridRequest) -> bool:
 
 
 def names_of_sides(shape: Shape) -> list[list[str]]:
-    """Return the names along each of the four sides of a shape that is one block by default; else none."""
+    """Return the names along each of the four sides, if the shape is one block by default; else no names."""
     if isinstance(shape, Boundary):
         return [] if shape.around_body else [[p.name for p in shape.patches if p.side == s] for s in SIDES]
     if not isinstance(shape, DomainShape) or shape.many or not four_sided(shape.domain):

@@ -77,9 +77,9 @@ def make_grid(shape: Shape, request: GridRequest) -> Result:
 def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result | Exception]:
     """Yield the grid of each shape, or the error in which it ended, in the order of the shapes.
 
-    Shapes are read when their results are requested. Some methods solve several shapes together, because this
-    is faster; a limited number of shapes is then read ahead. Their grids differ from those of separate calls
-    only in the last digits.
+    A shape is read when its result is requested. Some methods solve several shapes together, because this is
+    faster; a limited number of shapes is then read ahead, and grids differ from those of separate calls only
+    in the last digits.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
 def make_grids_of(
     keys: Iterable[K], request: GridRequest, shape_of: Callable[[K], Shape]
 ) -> Iterator[tuple[K, Result | Exception]]:
-    """Yield each of the keys with the grid of its shape, or with the error (see `make_grids`).
+    """Yield each of the `keys` together with the grid of its shape, or with the error (see `make_grids`).
 
     `shape_of` returns the shape of a key. Raises InputError: a setting that the method does not have.
     """

@@ -32,13 +32,13 @@ if TYPE_CHECKING:
 
         @property
         def together(self) -> Topology | None:
-            """The topology of boundaries that it solves faster in one call; None: one after the other."""
+            """The topology of boundaries that are solved faster in one call; None: all are solved singly."""
             ...
 
         def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
             """Return a solution for each of the boundaries; `start` may have an initial grid for each.
 
-            Raises MeshonetError: one of them cannot be solved; the others are then best solved one by one.
+            Raises MeshonetError: one of the boundaries cannot be solved; callers then solve them one by one.
             """
             ...
 

@@ -69,7 +69,7 @@ class OneBlock(Request):
 
     @property
     def sides(self) -> dict[str, float]:
-        """First-cell heights by side, for sides that have one of their own."""
+        """First-cell heights by side, only of sides that have their own height."""
         heights = self.spacing_south, self.spacing_east, self.spacing_north, self.spacing_west
         if heights == (None,) * 4:
             return {}
@@ -143,7 +143,7 @@ class Volume(Request):
 
     @property
     def of_surface(self) -> bool:
-        """Whether the options ask for marching from a surface, even if the surface is flat."""
+        """Whether the options require marching from a surface, even if the surface is flat."""
         return self.method == "hyperbolic" and not (OF_SURFACE | {"far_field"}).isdisjoint(self.chosen)
 
 
@@ -155,17 +155,15 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     ----------
     sampling : Sampling, optional
         Numbers of nodes and spacing of the boundary.
-    method : str, optional
-        A key of `METHODS`, ``best`` or ``auto``. ``best`` is the default method for the topology; around
-        bodies with a first cell this is marching. ``auto`` uses marching in the same cases, and Winslow's
-        equations in all others.
+    method : str, optional A key of `METHODS`, ``best`` or ``auto``. ``best`` is the default method for the
+        topology, or marching around bodies with a first-cell height. ``auto`` is Winslow's equations, or
+        marching in the same cases.
     settings : dict, optional
         Settings of the method by name.
-    first_cell : float or mapping, optional
-        Height of the first cell at every wall node. The unit is the chord around a body, and otherwise that
-        of the domain. In a four-sided domain the walls are south and north, unless sides have names such as
-        ``inlet``. In four-sided and multi-block domains, a mapping from names to heights selects the walls
-        that get layers.
+    first_cell : float or mapping, optional Height of the first cell at every wall node, in chords around a
+        body, otherwise in the unit of the domain. In a four-sided domain the walls are south and north,
+        unless sides have names such as ``inlet``. In four-sided and multi-block domains, a mapping from names
+        to heights selects the walls that get layers.
     y_plus : float or mapping, optional
         First-cell height as y+, or y+ of several walls by name, instead of `first_cell`. The conversion
         assumes a turbulent flat plate.
@@ -183,9 +181,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         Number of rows at the wall that have the height of the first cell.
     spacing_south, spacing_north, spacing_west, spacing_east : float, optional
         First-cell heights at single sides of a four-sided domain.
-    slide : bool, optional
-        Whether nodes slide along the walls south and north. None: only if a first cell is given and the
-        program has placed the wall nodes.
+    slide : bool, optional Whether nodes slide along the walls south and north. None: only if a first-cell
+        height is given and the wall nodes were not given but placed by the program.
     wall_angle : float, optional
         Angle between grid lines and walls in degrees, for ``steger-sorenson``.
     coarse : int or 'auto', optional
@@ -229,8 +226,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         coarsest grid.
     layers : int, optional
         Number of nodes along each grid line of a volume marched from a surface, including the wall node.
-    symmetry : {'x', 'y', 'z', 'none'}, optional
-        Axis normal to the plane of symmetry in which open edges of a surface lie.
+    symmetry : {'x', 'y', 'z', 'none'}, optional Axis that is normal to the plane of symmetry, the plane that
+        contains the open edges of a surface.
     poles : {'replace', 'refuse'}, optional
         Treatment of a pole, a side of a surface patch that is a single point: a core patch replaces it, or it
         is an error.

@@ -81,10 +81,9 @@ def judged(
 ) -> Result:
     """Return a solution with its quality; the time of the measurement is added to `seconds`.
 
-    The provenance of the grid lists the changes of the shape. A note says where cells grow by more than the
-    growth ratio that was prescribed for the solution; if none was prescribed, where they grow by more than
-    `JUMP` along a wall. Raises NoValidGridError: folded cells, unless these are allowed; the error has the
-    given `remedy`.
+    The provenance of the grid lists the changes of the shape. If a growth ratio was prescribed, a note says
+    where cells grow by more; otherwise, where cells grow by more than `JUMP` along a wall. Raises
+    NoValidGridError, with the given `remedy`: cells are folded, and the request does not allow that.
     """
     with stage("quality", seconds):
         quality = measure(solution.grid, percentiles=request.percentiles)

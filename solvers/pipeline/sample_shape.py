@@ -100,8 +100,8 @@ def _check_refined(ni: int, nj: int, halvings: int) -> None:
 def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
     """Return whether the request is a marched C grid that keeps the blunt base of an airfoil.
 
-    Without layers, thin bases, and bases of grids that are refined after the first solution, are kept only if
-    the request says so.
+    Three kinds of bases are kept only if the request says so: bases without layers, thin bases, and bases of
+    grids that are refined after the first solution.
     """
     sampling = request.sampling
     if request.method not in MARCHING or sampling.te not in ("auto", "exact"):

@@ -13,7 +13,7 @@ from meshonet.solvers.solution import Solution
 
 @dataclass(frozen=True)
 class Sequenced(Wrapper):
-    """Solves by `method` on every 2^levels-th node, then on twice as many cells, and so on to all nodes.
+    """Solves by `method` on every 2^levels-th node, then with half the step, and so on up to all nodes.
 
     The boundary nodes of each grid are among those of the next finer one.
     """
@@ -28,10 +28,11 @@ class Sequenced(Wrapper):
 def solve_refined(
     boundary: Boundary, solve: Callable[..., Solution], levels: int, initial: Grid | None = None
 ) -> Solution:
-    """Solve on every 2^levels-th node of `boundary`, then on grids with twice as many cells, up to all nodes.
+    """Solve on every 2^levels-th node of `boundary`, then with half the step, and so on up to all nodes.
 
-    `solve` takes ``initial``, an initial grid; that of the coarsest level is `initial`. The solution has the
-    total time, and a note with the counts of all levels. Raises InputError: counts that cannot be halved.
+    `solve` has a parameter ``initial``, an initial grid; on the coarsest level it is the given `initial`. The
+    solution has the total time, and a note with the counts of all levels. Raises InputError: the counts
+    cannot be halved so often.
     """
     solution = solve(coarser_boundary(boundary, 2**levels), initial=initial)
     seconds, counts = dict(solution.seconds), [_counts(solution)]

@@ -21,7 +21,7 @@ Sections: TypeAlias = Stack | Row | Aircraft
 
 
 def with_tip(what: Sections, tip: Tip | None, *, surface: bool = False) -> Sections:
-    """Return `what`; if it is a stack and `tip` is not None, with a tip of this shape.
+    """Return `what`; if it is a stack and `tip` is not None, its tip gets the shape `tip`.
 
     Raises InputError: a tip for a row or an aircraft; `surface` for a row, which has no surface grid.
     """

@@ -29,8 +29,8 @@ def make_sweep(
 
     `request` and `around` describe the planar grid of the section (`section_grid`).
 
-    Raises InputError: parameters, section and path that do not suit each other; NoValidGridError: folded
-    cells, unless these are allowed.
+    Raises InputError: parameters, section and path do not suit each other; NoValidGridError: cells are
+    folded, and the request does not allow that.
     """
     seconds: dict[str, float] = {}
     with limited_to(request.threads):

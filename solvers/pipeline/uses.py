@@ -88,7 +88,7 @@ def counted(res: Counts | None, options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def refuse(options: Iterable[str], way: str) -> None:
-    """Raise InputError for the first of the options that does not apply to the kind of grid `way`."""
+    """Raise InputError for the first of the `options` that does not apply to grids of the kind `way`."""
     for name in options:
         if name not in USES[way]:
             raise InputError(f"{{{name}}} is of no use to {way}", f"drop {{{name}}}")

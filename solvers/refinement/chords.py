@@ -28,16 +28,16 @@ TURNING_DEG = 25.0
 
 @dataclass(frozen=True, eq=False)
 class Chords:
-    """The edges of a layout's blocks, each once, and the chords that they form.
+    """The distinct edges of a layout's blocks, and the chords that the edges form.
 
     A chord is a set of edges that must have the same number of cells, because they are opposite each other in
     blocks.
 
-    `sides` (b, 4) are the numbers of the edges at south, north, west and east of each block; `reversed` (b,
-    4) says whether the block runs along the edge in the opposite direction; `wall` (e,) whether an edge is on
-    a wall. The `partner` (e,) of an edge on a periodic side is the corresponding edge of the other side, else
-    -1; `chord` (e,) is the number of the chord. `images` contains, for each mirror, the number (n,) of the
-    mirror image of each node; an edge and its mirror image belong to the same chord.
+    `sides` (b, 4) are the indices of the edges at south, north, west and east of each block; `reversed` (b,
+    4) says whether the edge runs against the direction of the block; `wall` (e,) whether an edge is on a
+    wall. `partner` (e,) is, for an edge on a periodic side, the corresponding edge of the other side, else
+    -1; `chord` (e,) is the index of the edge's chord. `images` has, for each mirror, the index (n,) of each
+    node's mirror image; an edge and its mirror image belong to the same chord.
     """
 
     layout: Layout
@@ -94,10 +94,10 @@ class Chords:
 
     @cached_property
     def multiple(self) -> Indices:
-        """(chords,) divisors of the counts of symmetric layouts, so that finer layouts are symmetric too.
+        """(chords,) divisors that the counts of a symmetric layout must have, to be symmetric when refined.
 
-        For the chord around a ring this is the number of its mirrors; for a chord along a wall that a mirror
-        crosses at a corner it is two.
+        For the chord around a ring it is the number of the ring's mirrors; for a chord along a wall that a
+        mirror crosses at a corner it is two; otherwise it is one.
         """
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):
@@ -119,7 +119,7 @@ class Chords:
     def arcs(self, edge: int) -> Floats:
         """Return the arc lengths (n,) of the nodes of a wall edge.
 
-        They are monotonic: they do not jump at the first point of the loop.
+        The arc lengths are monotonic: they do not jump at the first point of the loop.
         """
         nodes, places = self.edges[edge], self.layout.mesh.places
         length = self.layout.mesh.domain.loops[places.loop[nodes[0]]].length
@@ -138,7 +138,7 @@ class Chords:
 
     @cached_property
     def least(self) -> Indices:
-        """(chords,) smallest numbers of cells: `LEAST`, and more for corners and turns of walls."""
+        """(chords,) smallest numbers of cells: `LEAST`, or more because of corners and turns of walls."""
         least = np.full(self.count, LEAST, dtype=np.intp)
         for edge, loop, arcs in self._walls():
             ends = np.sort(arcs[[0, -1]])
@@ -162,7 +162,7 @@ class Chords:
         return along
 
     def cut_off(self) -> Floats:
-        """Return the absolute areas (e,) between the walls and the cells along each edge."""
+        """Return the absolute area (e,) between each edge's wall and the straight sides of its cells."""
         lost = np.zeros(len(self.edges))
         part = np.linspace(0.0, 1.0, 5)
         for edge, loop, arcs in self._walls():
@@ -179,9 +179,9 @@ class Chords:
         return float(np.radians(turning_between(loop, arcs[:-1], arcs[1:]).max()))
 
     def counts_for_size(self, size: float, least: Indices | None = None) -> Indices:
-        """Return counts (chords,) for a cell size: the geometric mean over edges of length / size.
+        """Return counts (chords,) for a cell size: the geometric mean of length / size over a chord's edges.
 
-        They are at least `least` (chords,), by default the property with that name.
+        They are at least `least` (chords,), which is by default the property with this name.
         """
         wanted = log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)
@@ -193,7 +193,7 @@ class Chords:
         return times * np.maximum(-(-least // times), nearest_whole(wanted / times).astype(np.intp))
 
     def counts_for_cells(self, cells: int, least: Indices | None = None) -> Indices:
-        """Return counts (chords,) for about `cells` cells in total, or for the fewest possible."""
+        """Return counts (chords,) for about `cells` cells in total, or for as few cells as possible."""
         size = np.sqrt(self.layout.mesh.domain.area / cells)
         best = self.counts_for_size(size, least)
         for _ in range(12):

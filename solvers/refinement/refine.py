@@ -32,9 +32,9 @@ def refine(
 ) -> Layout:
     """Return the layout with `counts` (chords,) of cells along the edges of each of its `Chords`.
 
-    `places` has for each edge the positions (cells + 1,) of its new nodes, as fractional indices of the old
-    ones; without `places` they are at equal steps. If a corner of the domain is inside an edge, the new node
-    nearest to the corner is moved to it. Layers are not preserved.
+    `places` has, for each edge, the positions (cells + 1,) of its new nodes as fractional indices of old
+    nodes; without `places`, new nodes are at equal steps. If a corner of the domain is inside an edge, the
+    new node nearest to the corner is moved to it. Layers are not preserved.
     """
     chords = chords or Chords.of(layout)
     return _Refined(chords, counts, places).layout
@@ -43,7 +43,7 @@ def refine(
 def multiplied(layout: Layout, times: int) -> Layout:
     """Return the layout with `times` as many cells in each direction.
 
-    Its nodes are bitwise among the new ones.
+    The nodes of the given layout are bitwise among the new nodes.
     """
     chords = Chords.of(layout)
     return refine(layout, chords.counts * times, chords)

@@ -22,13 +22,13 @@ SWEEPS = 20
 
 @dataclass(frozen=True, eq=False)
 class Near:
-    """Edges, and for each part of a metric the nearest point and its relation to them.
+    """For edges: the nearest point of each part of a metric, and how the edge lies relative to it.
 
     Parameters
     ----------
-    point : (p, m) nearest point of each of p parts to each edge.
+    point : (p, m) nearest point to each of m edges, for each of p parts.
     distance : (p, m) distance to this point.
-    square : (p, m) squared cosine of the angle between edge and normal.
+    square : (p, m) squared cosine of the angle between the edge and the normal at this point.
     """
 
     point: Indices
@@ -36,7 +36,7 @@ class Near:
     square: Floats
 
     def length(self, sizes: SizeMetric) -> Floats:
-        """Return the target lengths (m,) of the edges, the smallest of all parts, for other sizes."""
+        """Return the target lengths (m,) of the edges for `sizes`: the smallest over all parts."""
         rise = sizes.grading * self.distance
         high = np.minimum(sizes.across[self.point] + rise, sizes.largest)
         wide = np.minimum(sizes.along[self.point] + rise, sizes.largest)
@@ -48,15 +48,15 @@ class Near:
 class SizeMetric:
     """Target lengths of edges across and along walls.
 
-    In other directions, lengths are the radii of an ellipse with these two axes.
+    In other directions, the length is the radius of the ellipse whose axes are these two lengths.
 
     Parameters
     ----------
     points : (n, 2) points on walls and fronts.
-    normals : (n, 2) unit normals there.
-    across, along : (n,) lengths of edges along the normal and along the wall.
+    normals : (n, 2) unit normals at the points.
+    across, along : (n,) target lengths of edges along the normal, and along the wall.
     largest : length of edges far from all points.
-    grading : growth of lengths per distance from a point.
+    grading : increase of the target length per distance from a point.
     starts : indices of the points at which parts start; each part is a wall with its own sizes. An edge gets
         the smallest of the lengths of all parts, so that sizes change gradually from one wall to the next.
     """
@@ -85,7 +85,7 @@ class SizeMetric:
         return self.near(places, directions).length(self)
 
     def near(self, places: Floats, directions: Floats) -> Near:
-        """Return the part of the computation of `length` that does not depend on the sizes.
+        """Return that part of the computation of `length` which does not depend on the sizes.
 
         `places` (m, 2) are the midpoints of edges, `directions` (m, 2) their directions.
         """
@@ -109,8 +109,8 @@ class SizeMetric:
     def gradual(self, mesh: QuadMesh, sweeps: int = SWEEPS) -> Floats:
         """Return the target lengths (e,) of the edges of a mesh, smoothed from edge to edge.
 
-        Unsmoothed lengths jump where the nearest wall point changes, on the centre lines between walls; grid
-        lines would have wrinkles there.
+        Without smoothing, lengths jump where the nearest wall point changes, on the centre lines between
+        walls, and grid lines would have wrinkles there.
         """
         return _evened(self.edges(mesh), mesh, sweeps)
 

@@ -22,7 +22,7 @@ _SMALL = 0.02
 
 
 def held_back(grid: Grid, given: Layout, layout: Layout, before: PlaneMeasures) -> Grid | None:
-    """Return `grid`, whose layout is `given`, moved towards `layout` only where it does not become worse.
+    """Return `grid`, whose layout is `given`, moved towards `layout` where that does not make it worse.
 
     `before` are the measures of `grid`. The result is None if hardly any node would move.
     """

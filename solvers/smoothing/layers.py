@@ -25,8 +25,8 @@ def with_layers(mesh: QuadMesh, given: QuadMesh) -> tuple[QuadMesh, Bools]:
 
     Both meshes have the same quads.
 
-    Layers are rows of cells at the boundary that are `THIN`. If wall nodes have moved, heights are those at
-    the same arc length. Nodes in the layers of two walls do not move.
+    Layers are rows of cells at the boundary that are `THIN`. If wall nodes have moved, the heights are those
+    of `given` at the same arc length. Nodes in the layers of two walls do not move.
     """
     lines = _lines(given)
     held = np.zeros(len(given.nodes), dtype=bool)

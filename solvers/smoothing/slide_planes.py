@@ -17,7 +17,7 @@ _SAME = 1e-6
 
 
 def slides_of(grid: Grid, mesh: HexMesh) -> tuple[Slides, Bools]:
-    """Return the constraints of sliding outer nodes, and a mask (n,) of them among all nodes.
+    """Return the constraints of the outer nodes that slide, and the mask (n,) of these nodes.
 
     Nodes are fixed on patches that are not flat, on borders between different patches in one plane, and where
     three planes meet.

@@ -38,7 +38,7 @@ _AS_GOOD = "the grid is kept as it was: its optimum is no better"
 def smooth(grid: Grid, *, slide: bool = False, iterations: int = ITERATIONS) -> Solution:
     """Return `grid` with its nodes moved to the optimum of all blocks; boundary nodes may `slide`.
 
-    Raises InputError: blocks that are not planar, or do not form a domain.
+    Raises InputError: the blocks are not planar, or do not form a domain.
     """
     given = layout_of(grid)
     before = measures(grid)

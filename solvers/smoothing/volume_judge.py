@@ -47,9 +47,9 @@ def measures(mesh: HexMesh) -> VolumeMeasures:
 
 
 def cells_below(mesh: HexMesh, bound: float) -> list[Bools]:
-    """Return for each cell of each block whether its scaled Jacobian is below `bound`.
+    """Return, for each cell of each block, whether its scaled Jacobian is below `bound`.
 
-    At 0, whether it is folded.
+    If `bound` is 0, this is whether the cell is folded.
     """
     scaled = solid_metric(_grid(mesh), "scaled_jacobian")
     return [least < bound if bound > 0 else least <= 0.0 for least in scaled]

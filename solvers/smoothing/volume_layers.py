@@ -30,10 +30,10 @@ _ROOM = 0.9
 
 @dataclass(frozen=True, eq=False)
 class VolumeLayers:
-    """Lines from outer sides into the volume, as node numbers (n,), the first one on the side.
+    """Lines from outer sides into the volume, as node indices; the first node is on the side.
 
-    For each of m lines, `rows` (m,) is the number of thin cells and `heights` (m, n-1) are the target lengths
-    of its edges.
+    For each of m lines (m, n), `rows` (m,) is the number of thin cells and `heights` (m, n-1) are the target
+    lengths of the edges.
     """
 
     lines: Indices
@@ -140,7 +140,7 @@ def _at(points: Floats, place: Floats, wanted: Floats) -> Floats:
 
 
 def with_first_heights(nodes: Floats, first: Indices, heights: Floats) -> Floats:
-    """Return `nodes` with the second node of each edge (m, 2) exactly at a height (m,) above the first."""
+    """Return `nodes` with the second node of each edge in `first` (m, 2) exactly `heights` (m,) away."""
     foot = nodes[first[:, 0]]
     way = nodes[first[:, 1]] - foot
     moved = nodes.copy()

@@ -34,8 +34,8 @@ class CoarserCopy:
     Parameters
     ----------
     mesh : the copy.
-    nodes : (m,) numbers, in the finer mesh, of the nodes of the copy.
-    kept : for each block and direction, the indices of the layers of nodes that the copy has.
+    nodes : (m,) for each node of the copy, its index in the finer mesh.
+    kept : for each block and direction, the indices of the layers of nodes that the copy contains.
     """
 
     mesh: HexMesh
@@ -44,7 +44,7 @@ class CoarserCopy:
 
 
 def coarser(mesh: HexMesh) -> CoarserCopy | None:
-    """Return a copy of a mesh with about half of the nodes along each direction, None if it has few."""
+    """Return a copy of a mesh with about half of the nodes along each direction; None if it has few nodes."""
     kept = tuple(tuple(_halved(sorted(cuts)) for cuts in block) for block in _cuts(mesh))
     lattices = [block[np.ix_(*each)] for block, each in zip(mesh.blocks, kept, strict=True)]
     if len(mesh.nodes) <= SMALL or sum(each.size for each in lattices) > 0.6 * sum(

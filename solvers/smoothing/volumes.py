@@ -48,10 +48,10 @@ _AS_GOOD = "the grid is kept as it was: its optimum is no better"
 def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = False) -> Solution:
     """Return `grid` with its nodes moved to the optimum of all blocks.
 
-    Nodes of outer and periodic sides are bitwise unchanged; with `slide`, those of flat patches move in their
-    planes. `iterations` limits those of the optimisation.
+    Nodes of outer and periodic sides are bitwise unchanged, except that with `slide` the nodes of flat
+    patches move in their planes. `iterations` is the largest number of iterations of the optimisation.
 
-    Raises InputError: blocks that are not volumes, or are left-handed.
+    Raises InputError: the blocks are not volumes, or are left-handed.
     """
     given = hex_mesh_of(grid)
     before = measures(given)

@@ -21,15 +21,15 @@ neighbours.
 
 
 def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
-    """Return target lengths (e,) of `mesh.edges` whose neighbours differ by about the factor `most` at most.
+    """Return target lengths (e,) of `mesh.edges`; neighbours differ by a factor of at most about `most`.
 
     ::
 
         given    o---o---o---o---o-o-o-o-o-o      if neighbours differ by more than a factor, the
         target   o---o---o--o--o-o-o-o-o-o-o      excess is diffused along and across grid lines
 
-    Only ratios of neighbours matter. Edges that leave thin first cells at the boundary, and edges of a
-    boundary with fixed nodes, keep their lengths.
+    Only ratios of neighbouring lengths matter. Edges across thin first cells at the boundary, and edges along
+    a boundary with fixed nodes, keep their lengths.
 
     Nodes of the boundary are fixed unless they `slide`.
     """
@@ -55,7 +55,7 @@ def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
 def thin_heights(mesh: QuadMesh) -> Bools:
     """Return a mask (e,) of the edges that lead from the boundary across a thin cell.
 
-    Such a cell is `THIN`, and short in the direction of the edge.
+    A cell is thin if it is `THIN` and its short direction is that of the edge.
     """
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     ratio = mesh.aspects(mesh.edge_lengths)[cell]

@@ -18,10 +18,10 @@ _ENOUGH = 1.1
 def with_counts(
     stack: Stack, request: StackRequest, cells: int, rows: int
 ) -> tuple[StackRequest, tuple[str, ...]]:
-    """Return the request with node counts around and along the span for about `cells` cells, and notes.
+    """Return the request with node counts (around, along the span) for about `cells` cells, and notes.
 
-    Lines away from the wall have `rows` cells, a number that follows from first cell and growth. Node counts
-    that the request contains are kept.
+    Lines away from the wall have `rows` cells, a number that follows from first-cell height and growth. Node
+    counts that the request already has are kept.
 
     Raises InputError: cells, nodes around and nodes along the span are all given.
     """
@@ -35,9 +35,9 @@ def with_counts(
         return cap.cells(around) if cap else 0
 
     def away(around: int) -> float:
-        """Return by how much the number of cells of the surface differs from the wanted number.
+        """Return by how much the number of cells of the surface differs from the desired number.
 
-        The difference has one minimum.
+        As a function of `around` it has a single minimum.
         """
         along = request.span or max(least_span, round(_ALONG * (around - 1)) + 1)
         return abs((around - 1) * (along - 1) + beside(around) - surface)

@@ -27,8 +27,8 @@ class StackRequest(FirstCell):
 
     Parameters
     ----------
-    around : int, optional
-        Number of nodes around a section, an odd number; the closing node is counted. None: 129.
+    around : int, optional Number of nodes around a section, an odd number; the first node is counted again as
+        the last. None: 129.
     span : int, optional
         Number of nodes from the first section to the last. None: 49.
     cells : int, optional
@@ -48,9 +48,8 @@ class StackRequest(FirstCell):
         Growth ratio of cells away from the wall, if `layers` is not given; None: 1.2.
     far_field : float, optional
         Distance of the far field.
-    revolve : float, optional
-        Bend the z axis of a blade or duct around `axis`, by this angle in degrees from the first section to
-        the last.
+    revolve : float, optional Angle in degrees, from the first section to the last, by which the z axis of a
+        blade or duct is bent around `axis`.
     axis : AxisLine, optional
         Axis of `revolve`, in the plane of the sections; None: the x axis.
     threads : int, optional
@@ -115,7 +114,7 @@ class StackRequest(FirstCell):
         )
 
     def height(self, unit: float = 1.0) -> float:
-        """Return the first-cell height in chords; `unit` is the reference length of a y+, in chords."""
+        """Return the first-cell height in chords; `unit` is the reference length for y+, in chords."""
         height = super().height(unit)
         return DEFAULT_FIRST_CELL if height is None else height
 
@@ -123,7 +122,7 @@ class StackRequest(FirstCell):
 def stack_request(**parameters: Any) -> StackRequest:
     """Return a request from keyword parameters, which are the fields of `StackRequest`.
 
-    ``wall_spacing`` is another name of ``first_cell``. Raises InputError: as `StackRequest`, or an unknown
+    ``wall_spacing`` is another name of ``first_cell``. Raises InputError: as `StackRequest`; an unknown
     parameter.
     """
     return request_from(StackRequest, "a stack", parameters)

@@ -42,11 +42,12 @@ class Around:
 
     Parameters
     ----------
-    cells : number of cells on a side.
-    base : number of cells on the base, even.
+    cells : number of cells on each side (upper, lower) of a section.
+    base : number of cells on the base (blunt trailing edge), an even number.
     gap : smallest height of the base in chords.
-    edge, nose : lengths of the cells next to the base and at the nose, in chords; None: 1.2 times the length
-        of the cells on the base, and 0.35 times the mean length of the cells on a side.
+    edge, nose : lengths of the cells next to the base and at the nose, in chords. If None: for `edge` 1.2
+        times the length of the cells on the base, for `nose` 0.35 times the mean length of the cells on a
+        side.
     """
 
     cells: int
@@ -61,14 +62,14 @@ class Around:
         return 2 * self.cells + self.base + 1
 
     def law(self, height: float, length: float) -> Callable[[Floats], Floats]:
-        """Return the law from base to nose for a side of the given length and base height, both in chords.
+        """Return the node distribution from base to nose on a side; `length` and base `height` are in chords.
 
         Raises InputError: cell lengths that are impossible with this number of nodes.
         """
         return TanhLaw.fitted(self.cells, *self.ends(height, length))
 
     def ends(self, height: float, length: float) -> tuple[float, float]:
-        """Return the lengths of the cells next to the base and at the nose, relative to that of the side."""
+        """Return the lengths of the cells next to the base and at the nose, relative to the side's length."""
         edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
         first = edge if self.edge is None else self.edge / length
         last = NOSE_CELL / self.cells if self.nose is None else self.nose / length
@@ -79,7 +80,7 @@ def around(
     nodes: int, *, gap: float = GAP, base: int = BASE_CELLS,
     edge: float | None = None, nose: float | None = None,
 ) -> Around:  # fmt: skip
-    """Return the distribution of `nodes` nodes around sections, including the repeated first one.
+    """Return the distribution of `nodes` nodes around sections; the repeated first node is counted.
 
     Raises InputError: too few nodes, or an even number.
     """
@@ -93,7 +94,7 @@ def around(
 
 
 def unit_nodes(section: Section, plan: Around) -> tuple[Floats, str]:
-    """Return nodes (n, 2) around a section of unit chord, upper side first, and a note if it was changed.
+    """Return nodes (n, 2) around a section, scaled to unit chord, upper side first; and a note on changes.
 
     Raises InputError: the outline through the nodes intersects itself.
     """

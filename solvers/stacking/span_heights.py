@@ -22,11 +22,11 @@ def span_heights(
 ) -> Floats:
     """Return z (nodes,) from the first of the `sections` to the last, with a node at each of them.
 
-    Cells decrease towards the tip to the length `last`; if it is None, cells are nearly equal. `panels` are
-    the numbers of cells between sections that are given; the others share the rest, so that neighbouring
-    cells differ little.
+    Cell lengths decrease towards the tip to `last`; if `last` is None, they are nearly equal. `panels` has
+    the numbers of cells between sections where these are prescribed, else None; the remaining cells are
+    shared among the other panels so that neighbouring cells differ little.
 
-    Raises InputError: more sections than nodes; numbers of cells that do not fit on the nodes.
+    Raises InputError: there are more sections than nodes; the prescribed numbers of cells do not fit.
     """
     cells, span = nodes - 1, float(sections[-1] - sections[0])
     q = np.linspace(0.0, 1.0, nodes)

@@ -43,9 +43,9 @@ class Cap:
 
     Parameters
     ----------
-    short : number of cells on each side of the trailing edge, and of the nose, that end at a short side of
-        the core.
-    rows : number of cells of the ring from the section to the core; they grow by a constant ratio.
+    short : number of cells on each side of the trailing edge, and on each side of the nose, whose lines end
+        at a short side of the core.
+    rows : number of cells across the ring, from the section to the core; they grow by a constant ratio.
     bulge : height of the cap divided by half the local thickness of the section; 0 is flat.
     """
 
@@ -54,7 +54,7 @@ class Cap:
     bulge: float = 1.0
 
     def cells(self, nodes: int) -> int:
-        """Return the number of cells of ring and core, for `nodes` nodes around a section.
+        """Return the total number of cells of ring and core, for `nodes` nodes around a section.
 
         The repeated first node is counted among the `nodes`.
         """
@@ -63,9 +63,9 @@ class Cap:
     def patches(self, loop: Floats) -> tuple[Floats, Floats]:
         """Return nodes of the ring (n, rows + 1, 3) and of the core (n // 2 - 2 short + 1, 2 short + 1, 3).
 
-        The closed `loop` (n, 3) repeats its first node at its end, lies in a plane of constant z and runs
-        from the trailing edge along the upper side first. The cap is above the plane; the normals of both
-        patches point to +z.
+        The closed `loop` (n, 3) repeats its first node at its end and lies in a plane of constant z. It
+        starts at the trailing edge and runs first along the upper side. The cap is above the plane; the
+        normals of both patches point to +z.
         """
         made = {(1.0, 1.0): self._placed(loop, 1.0, 1.0)}
         best = 1.0, 1.0
@@ -171,7 +171,7 @@ class Cap:
     def connections(self, n: int, ring: int, core: int) -> tuple[Connection, ...]:
         """Return the connections of the ring to itself and to the core.
 
-        `ring` and `core` are the numbers of these blocks; the ring has `n` nodes around.
+        `ring` and `core` are the indices of these two blocks; the ring has `n` nodes around it.
         """
         m, half = self.short, (n - 1) // 2
         whole = ((0, self.rows),)

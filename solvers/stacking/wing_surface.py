@@ -36,7 +36,7 @@ class WingSurface:
 
     Parameters
     ----------
-    around : number of nodes around a section, including the repeated first one; odd.
+    around : odd number of nodes around a section; the repeated first node is counted.
     span : number of nodes from the root to the last section.
     base : smallest height of trailing edges, in chords.
     """
@@ -54,8 +54,9 @@ class WingSurface:
 def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Grid, tuple[str, ...]]:
     """Return the surface patches of a wing, with normals that point outwards, and notes about changes.
 
-    The first block goes around the sections, from the trailing edge along the upper side first, and along the
-    span. A round or flat tip adds the ring and the core of its cap. The root is the patch ``symmetry``.
+    The first block goes around the sections (from the trailing edge, first along the upper side) and along
+    the span. A round or flat tip adds the ring and the core of its cap. The edge at the root is the patch
+    ``symmetry``.
 
     Raises InputError: node counts that are too small; sections whose outlines intersect themselves.
     """
@@ -84,7 +85,7 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
 
 
 def refuse_crossing(stack: Stack, unit: Floats) -> None:
-    """Raise InputError if neighbouring sections are turned so far that they cross; `unit` as in `lofted`."""
+    """Raise InputError if neighbouring sections are rotated until they cross; `unit` is as in `lofted`."""
     cants = stack.cants
     if not cants.any():
         return

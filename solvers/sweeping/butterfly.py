@@ -42,7 +42,7 @@ Sides: TypeAlias = Sequence[Floats]
 
 
 class FiveBlocks(NamedTuple):
-    """Division of the inside of closed curves: size of the core, rows of the ring, alignment with radii."""
+    """How the inside of closed curves is divided: size of the core, rows of the ring, use of radii."""
 
     core: float
     rows: int
@@ -55,7 +55,7 @@ class CrossSection:
 
     Parameters
     ----------
-    arcs : nodes of the curve on four sides, which meet at corners of blocks.
+    arcs : nodes of the curve, on four sides that meet at corners of blocks.
     first : first-cell height at the wall; None: about that of the cells of the core.
     """
 
@@ -63,7 +63,7 @@ class CrossSection:
     first: float | None = None
 
     def inner(self, core: float, radial: float) -> list[Floats]:
-        """Return the nodes (n, 2) on the sides of a core with the size `core` and the alignment `radial`."""
+        """Return the nodes (n, 2) on the four sides of a core of size `core` and alignment `radial`."""
         middle = np.concatenate([arc[:-1] for arc in self.arcs]).mean(axis=0)
         u = np.linspace(-1.0, 1.0, len(self.arcs[0]))
         t = (0.5 + 0.5 * ((1.0 - radial) * u + radial * tan(0.25 * np.pi * u)))[:, None]
@@ -74,7 +74,7 @@ class CrossSection:
         return [middle + core * ((1.0 - bend) * line + bend * arc - middle) for line, arc in both]
 
     def across(self, core: float, radial: float, *, eighth: bool = False) -> tuple[Floats, Floats]:
-        """Return the lengths of lines through the ring, and of the core cells at their ends, (k,) each.
+        """Return the lengths (k,) of lines through the ring, and those (k,) of the core cells at their ends.
 
         With `eighth`, only an eighth of the lines is used, which suffices for a circle.
         """
@@ -99,10 +99,10 @@ class CrossSection:
 def planned(
     sections: Sequence[CrossSection], growth: float = GROWTH, rows: int | None = None, *, radial: bool = False
 ) -> FiveBlocks:
-    """Return one division for all sections in which neighbouring cells differ by at most `growth`.
+    """Return one division for all sections, such that neighbouring cells differ by at most `growth`.
 
-    If no division meets this limit, the one with the smallest ratio is returned. If `rows` is None, the
-    number of rows is determined. With `radial`, which suits circles, lines of the ring are aligned with
+    If no division satisfies this limit, the one with the smallest ratio is returned. If `rows` is None, the
+    number of rows is chosen too. With `radial`, which suits circles, lines of the ring are aligned with
     radii.
     """
     best, least = FiveBlocks(_SIZES[0], rows or 1), np.inf

@@ -29,14 +29,14 @@ class Disc:
     Parameters
     ----------
     radius : radius in any unit.
-    cells : approximate number of cells; None: as few as `around` permits.
+    cells : approximate number of cells; None: as few cells as `around` permits.
     first_cell : first-cell height at the wall; None: about that of the cells in the middle.
     growth : largest ratio of neighbouring cells; None is 1.2.
-    around : cells along the circle, a multiple of four; None: as many as `cells` requires, at least 84;
-        without `cells`, `AROUND`.
+    around : number of cells along the circle, a multiple of four. None: as many as `cells` requires, but at
+        least 84; or `AROUND`, if `cells` is None too.
 
-    Raises InputError: a value that is not positive; a first cell wider than the ring; no multiple of four;
-    both `cells` and `around`.
+    Raises InputError: a value is not positive; the first cell is wider than the ring; `around` is no multiple
+    of four; both `cells` and `around` are given.
     """
 
     radius: float

@@ -24,8 +24,8 @@ _CLOSE = 1e-9  # of the length, to which steps fill it
 def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -> Floats:
     """Return steps (k, rows) that fill `lengths` (k,) and end in cells of length `sizes` (k,).
 
-    The steps at the wall are `first`, or follow from a constant ratio. If no ratio up to `LARGEST` fills a
-    length, the steps do not fill it (see `largest_ratio`).
+    The steps at the wall are `first`; if it is None, all ratios along a line are the same. If no ratio up to
+    `LARGEST` fills a length, the steps do not fill it (see `largest_ratio`).
     """
     most = math.log(LARGEST)
     low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)
@@ -47,7 +47,7 @@ def _steps(sizes: Floats, rows: int, first: float | None, rate: Floats) -> Float
 
 
 def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: float) -> int:
-    """Return the smallest number of rows with which `ring_steps` grow by at most `growth`."""
+    """Return the smallest number of rows with which the results of `ring_steps` grow by at most `growth`."""
     if first is None:
         return max(1, round(float((lengths / sizes).mean())) - TRIED // 2)
     even = math.ceil(float((lengths / np.maximum(sizes, first)).max()) - _CLOSE)

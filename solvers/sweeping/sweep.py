@@ -38,9 +38,8 @@ class Sweep:
 
     Parameters
     ----------
-    planes : int, optional
-        Number of planes of nodes. None: the path turns by at most 4 degrees per cell, and cells are at most
-        three times as long as the mean cell width of the section.
+    planes : int, optional Number of planes of nodes. None: so many that the path turns by at most 4 degrees
+        per cell, and cells are at most three times as long as the mean cell width of the section.
     up : tuple of 3 float, optional
         Direction (3,) in which the y axis of the section points at the start of the path, as closely as
         possible. None: z, or y for a path along z.
@@ -72,12 +71,12 @@ class Sweep:
 def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
     """Return the volume grid of a planar section swept along a path.
 
-    The first plane is the patch ``inlet`` and the last ``outlet``; a closed path has neither and is connected
-    to itself. Outer patches without a name are called ``wall``; those whose names imply no kind are walls
-    too.
+    The first plane is the patch ``inlet``, the last plane is ``outlet``; on a closed path there is neither,
+    and the grid is connected to itself. Outer patches without a name are called ``wall``; patches whose names
+    imply no kind are walls too.
 
-    Raises InputError: a section that is not planar or is periodic; with the place, a bend that is too tight
-    for the section; a path that takes too many planes; as `frames_along`.
+    Raises InputError: the section is not planar, or is periodic; a bend is too tight for the section (with
+    the place); the path needs too many planes; also as `frames_along`.
     """
     settings = settings or Sweep()
     check_planes(section, settings.planes)
@@ -100,7 +99,7 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
 
 
 def check_planes(section: Grid, planes: int | None) -> None:
-    """Raise InputError if a section has more cells in so many planes than grids can have."""
+    """Raise InputError if the grid of a section with so many `planes` would have too many cells."""
     if planes is not None:
         shapes = (block.nodes.shape for block in section.blocks)
         cells = sum((shape[0] - 1) * (shape[1] - 1) for shape in shapes) * (planes - 1.0)
@@ -186,10 +185,10 @@ def walled(section: Grid) -> Grid:
 
 
 def self_crossing(path: Path, reach: float) -> tuple[float, float, float] | None:
-    """Return a place where a swept section with the extent `reach` intersects itself, if there is one.
+    """Return a point where a swept section of the extent `reach` intersects itself, if there is one.
 
-    It is a place where two points of the path are closer than twice the reach, although the path between them
-    is longer than half a circle with this radius.
+    There, two points of the path are closer than twice `reach`, although the path between them is longer than
+    half a circle with the radius `reach`.
     """
     count = int(min(1500, max(64, 4 * path.length / max(reach, 1e-300))))
     s = np.linspace(0.0, path.length, count)

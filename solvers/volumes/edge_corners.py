@@ -10,10 +10,10 @@ from meshonet.solvers.volumes.near_faces import closed_place
 
 
 def check_corners(faces: SixFaces) -> None:
-    """Raise InputError, with the node, if `faces` fold a cell whatever the interior nodes are.
+    """Raise InputError, with the node, if a cell is folded because of `faces`, for any interior nodes.
 
-    At a node of an edge of the volume, the three edges of a cell that meet there lie in the two faces. If
-    their Jacobian is not positive, the cell is folded.
+    At a node on an edge of the volume, all three cell edges that meet at a corner of a cell lie in the two
+    adjacent faces. If their Jacobian is not positive, the cell is folded.
     """
     check_hand(faces)
     worst = []

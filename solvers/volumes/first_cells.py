@@ -20,9 +20,9 @@ REACH = 12.0
 def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, ...]:
     """Redistribute grid lines of `planes` (3, ni, nj, nk), in place, at faces with clustered nodes.
 
-    Splines continue the node distributions of the faces as parameters, so heights of cells depend on the
-    lengths of the lines. First-cell heights at such a face are interpolated between those of its four edges,
-    and each line is redistributed, less and less away from the face.
+    Splines continue the node distributions of the faces as parameters, so that heights of cells depend on the
+    lengths of the lines. Here, first-cell heights at such a face are interpolated between those of its four
+    edges. The nodes of each line are moved accordingly, less and less away from the face.
 
     Returns the names of these faces.
     """

@@ -22,8 +22,8 @@ SAME = 1e-9
 def uniform_laws(counts: tuple[int, int, int]) -> Laws:
     """Return equal steps along each direction with `counts` nodes.
 
-    Laws of one direction are (4, n), parameters from 0 to 1: those of its edges at the (low, low), (high,
-    low), (low, high) and (high, high) ends of the other two directions.
+    The laws of a direction are an array (4, n) of parameters from 0 to 1: one row for each of the four edges,
+    at the (low, low), (high, low), (low, high) and (high, high) ends of the other two directions.
     """
     xi, eta, zeta = (np.tile(np.linspace(0.0, 1.0, n), (4, 1)) for n in counts)
     return xi, eta, zeta
@@ -62,8 +62,8 @@ class Spline:
     Parameters
     ----------
     coefficients : (3, m1, m2, m3)
-    first : (n,) for each direction, index of the first of four coefficients at a node.
-    weights : weights of these four, (n, 4) along xi and eta, (4, n) along zeta.
+    first : for each direction, (n,) index of the first of the four coefficients for each node.
+    weights : weights of these four coefficients, (n, 4) along xi and eta, (4, n) along zeta.
     """
 
     coefficients: Floats
@@ -74,7 +74,7 @@ class Spline:
 def interpolate(
     faces: SixFaces, laws: Laws, spline: Spline | None = None, out: Floats | None = None
 ) -> Floats:
-    """Return the Boolean sum of the three directions at `laws`, plus the `spline`.
+    """Return the Boolean sum of the interpolations along three directions at `laws`, plus the `spline`.
 
     The result is an array of nodes (ni, nj, nk, 3) in planar layout.
 

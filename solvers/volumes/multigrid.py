@@ -26,10 +26,11 @@ SWEEPS, FIRST = 12, 30  # on the coarsest level: in a cycle, and to start with
 
 @dataclass(frozen=True, eq=False)
 class Transfer:
-    """Transfer between the nodes of a level along one direction and those of the coarser one.
+    """Transfer, along one direction, between the nodes of a level and those of the next coarser level.
 
-    Each operator is a first node and weights: `up` (n, 2) is linear interpolation, `down` (m, terms) its
-    transpose divided by the ratio of steps, `at` (m, 4) cubic interpolation at the coarse nodes.
+    An operator is given by the first node and the weights of each result. `up` (n, 2) is linear interpolation
+    to the fine nodes, `down` (m, terms) its transpose divided by the ratio of the steps, `at` (m, 4) cubic
+    interpolation at the coarse nodes.
     """
 
     up: tuple[NDArray[np.intp], Floats]
@@ -56,13 +57,13 @@ class Level:
             winslow_smooth(x, self.right if forced else None, factor, self.threads, self.room)
 
     def norm(self, x: Floats, forced: bool) -> float:
-        """Return the norm of the residual of x (3, ni, nj, nk); the residual is stored in `residual`."""
+        """Return the norm of the residual of x (3, ni, nj, nk), which is stored in the array `residual`."""
         right = self.right if forced else None
         return float(np.sqrt(winslow_residual(x, right, self.residual, self.threads, self.room)))
 
 
 class VolumeMultigrid:
-    """Cycles over the levels of a volume inside `faces`, with `sweeps` relaxations before and after."""
+    """Multigrid cycles for a volume inside `faces`; `sweeps` relaxations before and after each transfer."""
 
     def __init__(self, faces: SixFaces, sweeps: int = 1, factor: float = 1.0) -> None:
         self.levels = [Level(faces, coarse=False)]
@@ -77,9 +78,9 @@ class VolumeMultigrid:
     def nested(self) -> tuple[Floats, float, float]:
         """Return x (3, ni, nj, nk) after a cycle on each level, starting with the coarsest, and two numbers.
 
-        Each level starts from transfinite interpolation plus the interpolated correction of the next coarser
-        level. The first number is the largest difference of a coordinate between the last two levels, about
-        three times the discretisation error; the second is the largest change of a coordinate by the last
+        Each level starts from transfinite interpolation plus a correction, interpolated from the next coarser
+        level. The first number is the largest difference of a coordinate between the two finest levels, about
+        three times the discretisation error. The second is the largest change of a coordinate in the last
         cycle.
         """
         last = len(self.levels) - 1
@@ -100,8 +101,8 @@ class VolumeMultigrid:
     def cycle(self, x: Floats) -> tuple[float, float]:
         """Do one V cycle on `x` (3, ni, nj, nk) in place.
 
-        Returns the norm of the residual before the cycle, and the largest change of a coordinate at every
-        third node of each direction.
+        Returns the norm of the residual before the cycle, and the largest change of a coordinate, evaluated
+        at every third node of each direction.
         """
         some = x[:, ::SOME, ::SOME, ::SOME]
         before = some.copy()

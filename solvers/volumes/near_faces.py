@@ -20,11 +20,11 @@ Ranges = list[tuple[int, int]]
 def closed_place(faces: SixFaces) -> Place | None:
     """Return indices i, j, k of an interior node that has no valid position, or None.
 
-    The corners of cells at a node q of a face have one edge into the volume, to the interior node p, and two
-    edges in the face with the normal n. They are valid if n · (p - q) > 0. So p must lie in half-spaces, four
-    for each face next to it. By Helly's theorem these have no common point exactly if four of them have none.
-    By Farkas' lemma, four have none if λ >= 0 with Σ λ n = 0 implies Σ λ n·q >= 0; for four normals, λ are
-    the determinants of three of them.
+    A corner of a cell at a node q of a face has two edges in the face, with the normal n, and one edge to an
+    interior node p. It is valid if n · (p - q) > 0. So p must lie in half-spaces, four for each face next to
+    it. By Helly's theorem the half-spaces have no common point exactly if some four of them have none. By
+    Farkas' lemma, four have none if λ >= 0 with Σ λ n = 0 implies Σ λ n·q >= 0; for four normals, each λ is
+    the determinant of the other three.
     """
     for sides, ranges in next_to_faces(faces.counts):
         walls = tuple((np.ascontiguousarray(getattr(faces, side)), *PLACES[side]) for side in sides)
@@ -38,7 +38,7 @@ def closed_place(faces: SixFaces) -> Place | None:
 
 
 def next_to_faces(counts: tuple[int, int, int]) -> Iterator[tuple[tuple[Side, ...], Ranges]]:
-    """Yield sets of three, two or one sides, and the interior nodes next to all sides of the set."""
+    """Yield sets of three, two or one sides; and for each set the interior nodes next to all its sides."""
     for size in (3, 2, 1) if min(counts) > 2 else ():
         for sides in combinations(FACES, size):
             if len({PLACES[side][0] for side in sides}) == size:

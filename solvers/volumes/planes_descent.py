@@ -12,7 +12,7 @@ from meshonet.solvers.energy.hexes import HexProblem, Slides, descent_of
 
 
 class PlanesDescent(HexProblem):
-    """Minimisation over planes of nodes (3, ni, nj, nk), in place, at interior nodes.
+    """Minimisation of a functional over the interior nodes of planes (3, ni, nj, nk), in place.
 
     With `cubes`, edges of all directions have the same target length.
     """
@@ -41,7 +41,7 @@ class PlanesDescent(HexProblem):
 
 
 def inverse_lengths(planes: Floats) -> tuple[float, float, float]:
-    """Return for each direction of `planes` (3, ni, nj, nk) 1 / mean step along the edges of the volume."""
+    """Return 1 / mean step along the volume's edges, for each direction of `planes` (3, ni, nj, nk)."""
     lengths = []
     for axis in range(3):
         rows = np.moveaxis(planes, axis + 1, -1)

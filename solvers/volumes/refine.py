@@ -31,7 +31,7 @@ def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws:
 
 
 def spline_of(values: Floats, places: tuple[Floats, ...]) -> Spline:
-    """Return the spline through `values` (3, mi, mj, mk) on uniform knots, at `places` (n,) per direction."""
+    """Return the spline through `values` (3, mi, mj, mk) on uniform knots, evaluated at the `places`."""
     coefficients = values
     for axis in range(3):
         matrix = coefficient_matrix(values.shape[axis + 1])

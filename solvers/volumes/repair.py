@@ -38,7 +38,7 @@ def repair(planes: Floats) -> int:
 
 
 def open_flat_cells(planes: Floats) -> None:
-    """Open flat cells of planes (3, ni, nj, nk) in windows, in place."""
+    """Open flat cells of planes (3, ni, nj, nk), in place, in windows around them."""
     nodes = np.moveaxis(planes, 0, -1)
     (scaled,) = solid_metric(Grid.from_nodes(nodes), "scaled_jacobian")
     for window in windows(np.argwhere(scaled < NEARLY), MARGINS[0], nodes.shape[:3], False, LARGEST_CELLS):

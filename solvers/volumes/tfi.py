@@ -15,8 +15,8 @@ def tfi(faces: SixFaces, *, blending: Blending = "arclength") -> Solution:
     """Return the grid of a volume by transfinite interpolation between its six faces.
 
     With `blending` ``arclength`` the parameters of a node are interpolated between the relative arc lengths
-    of the edges, so that clustering along the edges continues inside. With ``linear`` they are relative
-    indices. Cells may fold where faces are bent.
+    along the edges, so that clustering along the edges continues inside. With ``linear`` the parameters are
+    index / number of cells. Cells may fold where faces are bent.
 
     Raises InputError: an edge without length; an unknown `blending`; a left-handed volume.
     """

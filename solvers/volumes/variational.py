@@ -43,14 +43,14 @@ def variational(
 ) -> Solution:
     """Minimise a functional of `meshonet.solvers.energy.hex_functional` over the nodes inside `faces`.
 
-    The minimum is computed on at most `coarse` nodes in each direction ("auto": 33; None: those of the
-    faces), evenly spaced in the mean arc length of the edges, by nested iteration. It is then evaluated at
-    all nodes by splines, and cells that this folds at faces are repaired in windows. `max_cycles` limits the
-    iterations on the finest level that is solved. `energy` selects the functional: ``angles``, with gradual
-    changes of lengths, or ``shape``, for cells like cubes.
+    The minimum is computed by nested iteration on at most `coarse` nodes in each direction ("auto": 33; None:
+    all nodes of the faces), which are evenly spaced in the mean arc length of the edges. Splines then give
+    the positions of all nodes; where this folds cells at faces, they are repaired in windows. `max_cycles`
+    limits the iterations on the finest level that is solved. `energy` selects the functional: ``angles``, for
+    right angles and gradual changes of lengths, or ``shape``, for cells like cubes.
 
-    Raises InputError: faces that fold cells for any interior nodes (with the node, before the computation);
-    an edge without length; settings that are not positive.
+    Raises InputError: cells are folded because of the faces, whatever the interior nodes (the error names the
+    node); an edge has no length; a setting is not positive.
     """
     begun = time.perf_counter()
     _check(max_cycles, coarse, energy)
@@ -85,10 +85,10 @@ def _terms(weights: HexWeights) -> dict[str, float]:
 def optimum(
     faces: SixFaces, most: int | None = None, weights: HexWeights = OPTIMAL
 ) -> tuple[Floats, int]:  # fmt: skip
-    """Return the minimum inside evenly spaced `faces`, (3, ni, nj, nk), and iterations on the finest level.
+    """Return the minimum (3, ni, nj, nk) inside evenly spaced `faces`, and the finest level's iterations.
 
-    Coarser copies are solved first, the coarsest from the interpolation. A grid that cannot be untangled is
-    returned folded.
+    Coarser copies are solved first; the coarsest starts from transfinite interpolation. A grid that cannot be
+    untangled is returned folded.
     """
     levels = [faces]
     while max(levels[-1].counts) > COARSEST:

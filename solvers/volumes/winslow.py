@@ -23,15 +23,15 @@ CAREFUL = ((1, 1.0), (2, 0.7))
 
 @timed
 def winslow(faces: SixFaces, *, tol: float | None = None, max_cycles: int | None = None) -> Solution:
-    """Solve Winslow's equations inside `faces`: the inverse map has harmonic coordinates.
+    """Solve Winslow's equations inside `faces`: computational coordinates are harmonic functions of x, y, z.
 
-    ``a11 x_11 + a22 x_22 + a33 x_33 + 2 (a12 x_12 + a13 x_13 + a23 x_23) = 0``, a the adjugate of the
-    metric, by central differences and multigrid cycles. Without `tol` these end when they change nodes by
-    less than the discretisation error; with it, when the residual is `tol` times that of the interpolation.
-    Cells can fold where walls are re-entrant.
+    ``a11 x_11 + a22 x_22 + a33 x_33 + 2 (a12 x_12 + a13 x_13 + a23 x_23) = 0``, where a is the adjugate of
+    the metric, is solved by central differences and multigrid cycles. Without `tol`, cycles end when they
+    change nodes by less than the discretisation error; with `tol`, when the residual is `tol` times that of
+    the transfinite interpolation. Cells can fold where walls are re-entrant.
 
-    Raises InputError: faces that fold cells whatever is inside; settings not positive; SolverError: cycles
-    diverge. Winslow, J. Comput. Phys. 1 (1966) 149-172.
+    Raises InputError: cells are folded because of the faces, whatever the interior nodes; a setting is not
+    positive; SolverError: cycles diverge. Winslow, J. Comput. Phys. 1 (1966) 149-172.
     """
     check_tolerances(tol, max_cycles)
     check_corners(faces)

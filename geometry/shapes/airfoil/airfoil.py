@@ -36,9 +36,9 @@ _WIDEST_WEDGE = 50.0  # degrees; a C grid by default needs surfaces that meet at
 
 
 class CrossingError(InputError):
-    """Error if the polygon of the wall nodes crosses itself.
+    """Error: the polygon through the wall nodes crosses itself.
 
-    There are then too few nodes where the section is thin.
+    The reason is that there are too few nodes where the section is thin.
     """
 
 
@@ -53,9 +53,9 @@ class Airfoil:
                '-------------------'''      upper side. The leading edge is the point of the curve that
                   lower  ---->              is farthest from the trailing edge.
 
-    The `points` (n, 2) are in any unit and of either orientation, begin anywhere, and are cleaned
-    (`clean_section`), unless they are a clean section. `places` (n,) are the positions of the points in the
-    input, such as ``line 12``, for messages; `notes` say how the points were changed before.
+    The `points` (n, 2) may have any unit, orientation and first point; they are cleaned (`clean_section`)
+    unless they are already a clean section. `places` (n,) are the positions of the points in the input, such
+    as ``line 12``, for messages. `notes` say how the points were changed before.
 
     Raises InputError, with the place: the points are no airfoil.
     """
@@ -135,13 +135,14 @@ class Airfoil:
         """Unit of wall cell sizes: the chord, or 1 if that is the nominal chord.
 
         In a cambered section the distance from the trailing edge to the farthest point exceeds the nominal
-        chord, for NACA 2412 by 8e-5. A chord within 1 % of 1 is taken as nominally 1.
+        chord (for NACA 2412 by 8e-5). If this distance is within 1 % of 1, the nominal chord is taken to be
+        1.
         """
         return 1.0 if abs(self.chord - 1.0) < 0.01 else self.chord
 
     @cached_property
     def wedge(self) -> float:
-        """Angle in degrees between the surfaces over the last 1 % of the chord."""
+        """Angle in degrees between upper and lower surface over the last 1 % of the chord."""
         first, last = self.half_base, self.upper_end
         step = 0.01 * self.chord
         lower, a, b, upper = self.curve.at(np.array([first + step, first, last, last - step]))
@@ -150,24 +151,24 @@ class Airfoil:
 
     @property
     def outline_notes(self) -> tuple[str, ...]:
-        """Notes on the outline: `notes`, an oblique base, a curve that deviates much from the polygon."""
+        """Notes on the outline: `notes`; an oblique base; a curve that deviates much from its polygon."""
         return self.notes + shape_notes(self._section, self.curve, self.chord)
 
     @cached_property
     def inner_corners(self) -> Floats:
-        """Arc lengths of the corners that are not those of the trailing edge."""
+        """Arc lengths of all corners except those of the trailing edge."""
         corners = self.curve.corners
         return corners[(corners > self.half_base) & (corners < self.upper_end)]
 
     def normalised(self) -> Airfoil:
-        """Return the airfoil rotated, scaled and moved so that its edges are at (0, 0) and (1, 0)."""
+        """Return the airfoil moved, rotated and scaled: leading edge at (0, 0), trailing edge at (1, 0)."""
         axis = (self.trailing_edge - self.leading_edge) / self.chord**2
         off = self.curve.points[1 if self.blunt else 0 :] - self.leading_edge
         points = np.stack(along_and_across(off, axis), axis=1)
         return Airfoil(points, self.name, notes=self.notes)
 
     def smoothed(self, tolerance: float) -> Airfoil:
-        """Return the airfoil with its points on smoothing splines within `tolerance` chords; corners stay."""
+        """Return the airfoil with points on smoothing splines within `tolerance` chords; corners stay."""
         from meshonet.geometry.shapes.airfoil.smooth import smooth_ring, smoothing_notes
 
         ring, most = smooth_ring(self._section, self.nose_radius, tolerance * self.chord)
@@ -197,7 +198,7 @@ class Airfoil:
         return body
 
     def moved_apart(self) -> Airfoil:
-        """Return the airfoil with its surfaces moved apart to 9e-5 chords where they nearly touch."""
+        """Return the airfoil with its surfaces moved apart to 9e-5 chords where they are closer."""
         section = self._section.moved_apart()
         return Airfoil(section.points, self.name, notes=(*self.notes, moved_note(self._section, section)))
 
@@ -233,10 +234,11 @@ class Airfoil:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return this wall in a far field: a circle (O grid), or a half circle and a wake (C grid).
 
-        Topology ``auto`` becomes ``c`` if cells at the wall will be thin, and if the trailing edge, after the
-        change by `Sampling.te`, is sharp and its surfaces meet at 50 degrees at most; otherwise ``o``.
+        Topology ``auto`` becomes ``c`` if cells at the wall will be thin and the trailing edge (after the
+        change by `Sampling.te`) is sharp, with an angle of at most 50 degrees; otherwise it becomes ``o``.
 
-        Raises InputError: the topology ``quad``; a C boundary with a blunt trailing edge; too few nodes.
+        Raises InputError: the topology is ``quad``, or ``c`` with a blunt trailing edge; there are too few
+        nodes.
         """
         if sampling.topology == "quad":
             raise InputError("topology quad is not made from an airfoil", "use o or c")

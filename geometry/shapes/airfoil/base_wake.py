@@ -65,10 +65,11 @@ _LEAST_WALL = 24  # fewest cells on a wall
 
 @dataclass(frozen=True, eq=False)
 class BaseWake:
-    """Lines of nodes around and behind a section with a base, that is with a blunt trailing edge.
+    """Lines of nodes around and behind a section with a base (a blunt trailing edge).
 
-    The `wall` (n, 2) runs clockwise from the lower to the upper corner, the `base` (m, 2) from the lower to
-    the upper corner, and the wakes (k, 2) from their corners to the outlet; corners are bitwise shared.
+    The `wall` (n, 2) runs clockwise from the lower to the upper corner of the base; the `base` (m, 2) runs
+    straight from the lower to the upper corner. The wakes `lower` and `upper` (k, 2) run from these corners
+    to the outlet. Corners are bitwise shared.
     """
 
     wall: Floats
@@ -199,9 +200,9 @@ def _fewest(width: float, first: float, ratio: float) -> int:
 
 
 def end_fractions(ends: Floats, cells: int) -> Floats:
-    """Return m rows of numbers (m, cells + 1) from 0 to 1, with first and last steps `ends` (m,).
+    """Return m rows of numbers (m, cells + 1) from 0 to 1; the first and the last step of each is in `ends`.
 
-    `ends` must be at most 1/cells.
+    `ends` (m,) must be at most 1/cells.
     """
     out = np.zeros((len(ends), cells + 1))
     steps = np.empty(cells)
@@ -232,9 +233,9 @@ def _wake_cells(
 
 
 def corner_cell(cells: float, first: float, chord: float) -> float:
-    """Return the length of the wall cells beside a base: `first`, or more if the `cells` of the wall are few.
+    """Return the length of the wall cells beside a base: `first`, or more if the wall has few `cells`.
 
-    From this length, cells must grow to the mean length within half of each side.
+    The reason is that cells must grow from this length to the mean length within half of each side.
     """
     side = 0.5 * cells
     return max(first, chord / side * math.pow(_STEEP, -0.5 * side))

@@ -35,8 +35,8 @@ _REACH = 8  # number of first and of last points among which the corners of a ba
 class CleanSection:
     """A clean closed polygon (n, 2), clockwise from the trailing edge.
 
-    A sharp section begins with its trailing edge. A blunt one begins with the lower corner of its base and
-    ends with the upper one; the base is the segment from the last point to the first.
+    A section with a sharp trailing edge begins at this edge. A section with a base begins at the lower corner
+    of its base and ends at the upper corner; the base is the segment from the last point to the first.
     """
 
     points: Floats
@@ -62,10 +62,11 @@ def clean_section(points: Floats) -> CleanSection:
     """Return the section described by `points` (n, 2), of either orientation.
 
     The points are assumed to start at the trailing edge, unless the other end of the section is clearly
-    sharper. Repeated points and points on a straight base are dropped; neighbours in the wrong order are
-    swapped.
+    sharper. Repeated points and points on a straight base are removed; neighbouring points in the wrong order
+    are swapped.
 
-    Raises InputError: fewer than 4 distinct points, no area, ends too far apart to be a trailing edge.
+    Raises InputError: there are fewer than 4 distinct points, or no area; the ends are too far apart for a
+    trailing edge.
     """
     raw = np.asarray(points, dtype=np.float64)
     extent = float(np.hypot(*np.ptp(raw, axis=0))) if len(raw) else 0.0

@@ -54,7 +54,7 @@ def naca(designation: str) -> Airfoil:
 
 
 def naca_points(designation: str, n: int = POINTS) -> Floats:
-    """Return points (2 n - 1, 2) from the trailing edge over the upper side to the leading edge and back.
+    """Return points (2 n - 1, 2) from the trailing edge over the upper side and back over the lower side.
 
     Each surface has `n` points, with cosine spacing in x.
     """
@@ -69,7 +69,7 @@ def naca_points(designation: str, n: int = POINTS) -> Floats:
 
 
 def thickness(x: Floats, ratio: float, *, sharp: bool = False) -> Floats:
-    """Return the half thickness in chords at x (any shape, 0 to 1) of a section with thickness `ratio` = t.
+    """Return the half thickness in chords, at x (any shape, 0 to 1), of a section of thickness `ratio` t.
 
     y = 5 t (0.2969 √x - 0.1260 x - 0.3516 x² + 0.2843 x³ - 0.1015 x⁴), with 0.1036 in place of 0.1015 if
     sharp.

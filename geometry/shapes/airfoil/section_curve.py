@@ -40,7 +40,7 @@ _PARTS = 128  # parts of a stretch in the search for the point farthest from the
 
 
 def swapped_note(section: CleanSection, places: Sequence[str]) -> tuple[str, ...]:
-    """Return a note on points of a section that stood in the wrong order."""
+    """Return a note on points of a section that were in the wrong order."""
     named = ", ".join(places[k] if places else f"point {k}" for k in section.swapped[:6])
     more = ", ..." if len(section.swapped) > 6 else ""
     return (Change(f"the outline is changed: points in the wrong order are swapped ({named}{more})"),)
@@ -99,7 +99,7 @@ def moved_note(before: CleanSection, section: CleanSection) -> str:
 
 
 def sign_changes(curve: Curve, chord: float) -> int:
-    """Return the number of changes of sign of the curvature of a section's curve; corners do not count."""
+    """Return how often the curvature of a section's curve changes its sign; corners do not count."""
     points = curve.points
     steps = norms(np.concatenate([points[1:], points[:1]]) - points)
     bend = turning(points, closed=True) * (2.0 * chord) / (steps + np.concatenate([steps[-1:], steps[:-1]]))
@@ -109,7 +109,7 @@ def sign_changes(curve: Curve, chord: float) -> int:
 
 
 def nose_radius(curve: Curve, middle: float, edge: Floats, chord: float) -> float:
-    """Return the radius at arc length `middle`, the leading edge; see `Airfoil.nose_radius`."""
+    """Return the radius of curvature at arc length `middle`, the leading edge (`Airfoil.nose_radius`)."""
     nose = curve.at(np.array([middle]))[0]
     axis = (edge - nose) / chord
     step = np.linspace(0.0, 0.2 * chord, 81)
@@ -161,12 +161,10 @@ def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
 
 
 def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, asked: bool) -> tuple[str, ...]:
-    """Return a note if a base takes most nodes, or if cell sizes jump at its lower corner.
+    """Return a note if a base uses most nodes, or if cell sizes jump at its lower corner.
 
-    The upper corner mirrors the lower one.
-
-    `wall` (n, 2) runs from the middle of the base, which has length `base` and ends at `corner` (2,); the
-    number of its nodes may be `asked` for.
+    The upper corner is like the lower one. `wall` (n, 2) runs from the middle of the base, which has length
+    `base` and ends at `corner` (2,); the number of its nodes may be `asked` for.
     """
     steps = norms(np.diff(wall, axis=0))
     arcs = np.cumsum(steps)
@@ -194,7 +192,7 @@ def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, asked:
 
 
 def opened_note(height: float, thickness: float) -> str:
-    """Return the note on a trailing edge that is opened to a base; both are in chords."""
+    """Return the note on a trailing edge that is opened to a base; `height`, `thickness` are in chords."""
     was = f"its trailing edge, {height:.2g} chords thick,"
     return Change(f"the outline is changed: {was} is opened to {thickness:g}")
 
@@ -228,8 +226,9 @@ def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -
 def farthest_arc(curve: Curve, point: Floats) -> float:
     """Return the arc length of the point of the curve that is farthest from `point`.
 
-    If several points are equally far (a flat nose), it is the middle one, so that a symmetric section stays
-    symmetric. Where the distance is smooth, the zero of its derivative is found.
+    If several points are equally far (a flat nose), the middle of these is taken, so that a symmetric section
+    stays symmetric. Where the distance is a smooth function of arc length, the zero of its derivative is
+    found.
     """
     s = np.concatenate([curve.knots, 0.5 * (curve.knots + np.append(curve.knots[1:], curve.length))])
     s = np.sort(s)

@@ -20,8 +20,8 @@ def moved_apart(ring: Floats, nose: int) -> Floats:
     """Return a closed polygon (n, 2) with its surfaces moved apart, each by at most `MOST` chords.
 
     The surfaces are then 2 `MOST` chords apart, or less where points would have to move farther than `MOST`.
-    The polygon runs clockwise from the trailing edge. The trailing edge and the leading edge, point `nose`,
-    do not move.
+    The polygon runs clockwise from the trailing edge. The trailing edge and the leading edge (the point with
+    index `nose`) do not move.
     """
     chord = float(np.hypot(*(ring[nose] - ring[0])))
 
@@ -32,7 +32,7 @@ def moved_apart(ring: Floats, nose: int) -> Floats:
 
 
 def wedged_apart(ring: Floats, nose: int, thin: float) -> Floats:
-    """Return a closed polygon (n, 2) that is nowhere thinner than a wedge near its trailing edge.
+    """Return a closed polygon (n, 2), thickened near its trailing edge to at least a wedge.
 
     The wedge begins at the trailing edge, as thick as the base if there is one, and ends where its thickness
     is `thin`.

@@ -37,8 +37,8 @@ _HEAVIER = 2.0  # factor of the weight of an outlier in each round
 def smooth_ring(section: CleanSection, nose_radius: float, limit: float) -> tuple[Floats, float]:
     """Return the points (n, 2) of a section moved to splines within `limit`, and the largest displacement.
 
-    Corners are kept. A base that is narrower than `limit`, or whose two ends are swapped by noise, is closed
-    at its middle. Where noise could close the section, the section stays as thick as a wedge.
+    Corners are kept. A base is closed at its middle if it is narrower than `limit`, or if noise has swapped
+    its two ends. Where noise could close the section, it remains at least as thick as a wedge.
 
     Raises InputError: SciPy is not installed.
     """

@@ -53,11 +53,11 @@ _WEDGE_POINTS = 9  # on each side of a wedge
 
 
 def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
-    """Return the curve of a blunt section with rounded trailing corners, and the arc length of their end.
+    """Return the curve of a blunt section with rounded corners of the base, and where the rounding ends.
 
     The first point of the closed curve is the middle of the base, the second and the last are its corners.
-    The new curve also begins at the middle of the base; it is rounded up to the arc length returned, and over
-    the same length before its end.
+    The new curve also begins at the middle of the base. It is rounded from there up to the arc length that is
+    returned, and over the same length before its end.
     """
     length, half = curve.length, float(curve.knots[1])
     across = min(_ACROSS * half, _CAP * chord)
@@ -77,14 +77,13 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
 
 
 def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
-    """Return the distances (n + 1,) of the nodes on each half of a rounded base from its middle.
+    """Return, for each half of a rounded base, the distances (n + 1,) of its nodes from the middle.
 
-    The first array is the lower half, the second the upper half.
-
-    The node density follows length and turning angle. The turning angle is averaged over two cells on each
-    side, because the cells at the largest turns are the most skewed ones of the grid. An oblique base turns
-    more at one end, which gets more cells. `curve` and `end` are results of `rounded_base`; `cells`, at least
-    3, is the number of cells of a half that turns by 90 degrees.
+    The first array is the lower half, the second the upper half. The node density follows length and turning
+    angle. The turning angle is averaged over two cells on each side, because the cells at the largest turns
+    are the most skewed cells of the grid. An oblique base turns more at one of its ends, and gets more cells
+    there. `curve` and `end` are results of `rounded_base`; `cells`, at least 3, is the number of cells of a
+    half that turns by 90 degrees.
     """
     per_cell = 64
     n = per_cell * cells  # on either half; index n is the middle
@@ -122,8 +121,9 @@ def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:
 def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> CleanSection:
     """Return a blunt section with a wedge added; the result starts at the tip of the wedge.
 
-    `tangents` are the unit directions (2,) in which the lower and the upper surface end at the corners of the
-    base. The wedge of a narrow base can be finer than the points of a file; unlike these, it is not cleaned.
+    `tangents` are the unit directions (2,) of the lower and of the upper surface at the corners of the base.
+    The points of the wedge are not cleaned, because on a narrow base they may be closer than points of a
+    file.
     """
     points, (lower, upper) = section.points, tangents
     gap = float(np.hypot(*(points[0] - points[-1])))
@@ -154,7 +154,7 @@ def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> Clean
 def opened_base(airfoil: Airfoil, gap: float) -> CleanSection:
     """Return the section of an airfoil with a trailing edge opened to the thickness `gap`.
 
-    Points move in proportion to the distance from the nose.
+    Points move in proportion to their distance from the nose.
     """
     curve, section = airfoil.curve, airfoil._section
     points, knots, index, corners = curve.points, curve.knots, section.index, section.corners

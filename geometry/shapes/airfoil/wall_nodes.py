@@ -21,8 +21,8 @@ def wall_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
 
     Spacings: ``conformal`` has equal angles on the circle that the section is mapped to
     (`meshonet.geometry.conformal.spacing`); ``tanh`` and ``auto`` stretch each side between the cell sizes at
-    its two edges; ``cosine`` is cosine spacing on each side, or ``tanh`` with the same end cells if a cell
-    size is given or the trailing edge is blunt; ``uniform`` has equal cells on a side; ``curvature`` follows
+    its two ends; ``cosine`` is cosine spacing on each side, or, if a cell size is given or the trailing edge
+    is blunt, ``tanh`` with the same end cells; ``uniform`` has equal cells on each side; ``curvature`` uses
     `meshonet.geometry.spacing.size_field`.
 
     `le_spacing` and `te_spacing` are met within 1 %.

@@ -62,7 +62,7 @@ _SMALLER = 64.0  # largest factor by which cells beside a base are smaller for t
 
 @dataclass(frozen=True)
 class WallCells:
-    """Numbers of cells on half the base and on a side, and the cell sizes at trailing and leading edge."""
+    """Numbers of cells on half the base and on a side; sizes of the cells at trailing and leading edge."""
 
     half: int
     cells: float
@@ -102,7 +102,7 @@ def planned_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
 
 
 def arcs_to_corners(body: Airfoil, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
-    """Return arc lengths (cells + 1,) from the lower to the upper corner of a base, by curvature.
+    """Return arc lengths (cells + 1,) of nodes from the lower to the upper corner of a base, by curvature.
 
     Cells at the two corners have the length `first`, unless `te_spacing` is given, and grow by at most
     `ratio`. Other corners of the curve are nodes.
@@ -128,7 +128,7 @@ def arcs_to_corners(body: Airfoil, cells: int, sampling: Sampling, first: float,
 def half_of_base(cells: int, nodes: int, sampling: Sampling) -> int:
     """Return the number of cells on half of a base with `nodes` nodes.
 
-    Raises InputError: there is no node in its middle, or its cells leave too few for the sides.
+    Raises InputError: the middle of the base would not be a node, or too few cells are left for the sides.
     """
     base = nodes - 1
     if base % (2 * sampling.refined):

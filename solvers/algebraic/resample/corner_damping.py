@@ -45,7 +45,7 @@ def openings(z: Any, xp: Any) -> Any:
 
 @lru_cache(maxsize=16)
 def fading(m: int, n: int) -> Floats:
-    """Return the fraction (4, m, n) of each corner's damping that applies at each node of an m x n grid."""
+    """Return, for each corner, the fraction (4, m, n) of its damping at each node of an m x n grid."""
     cells = np.maximum(*np.ogrid[0.0:m, 0.0:n])
     first = np.clip((FAR - cells) / (FAR - NEAR), 0.0, 1.0)
     return np.stack([first, first[:, ::-1], first[::-1], first[::-1, ::-1]])
@@ -53,7 +53,7 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) from second derivatives at n knots to their part of the spline.
+    """Return the matrix (count, n) from second derivatives at n knots to their contribution to the spline.
 
     The knots are uniform; the spline is evaluated at `count` uniform places.
     """

@@ -25,7 +25,7 @@ def check_coarse(n: int) -> None:
 
 
 def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
-    """Return `boundary` with ni x nj nodes, interpolated linearly at equal steps of the index.
+    """Return `boundary` with only ni x nj nodes, interpolated linearly at equal steps of the index.
 
     A C boundary becomes a quad, because its trailing edge need not be one of the new nodes.
     """
@@ -38,7 +38,7 @@ def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
 def refine_grid(coarse: Floats, boundary: Boundary) -> Floats:
     """Return the nodes (ni, nj, 2) inside `boundary`, interpolated from a `coarse` grid (m, n, 2).
 
-    The coarse grid must have been made in the boundary that `thinned` returns.
+    The boundary of the coarse grid must be the one that `thinned` returns.
     """
     if boundary.periodic:
         return refine_around(coarse, boundary)

@@ -56,7 +56,7 @@ def refine_around(coarse: Floats, boundary: Boundary) -> Floats:
 
 
 def along_lines(z: Any, nj: int, xp: Any = np) -> tuple[Any, Any]:
-    """Return nj nodes (..., nj) on each of the lines `z` (..., n), complex, and their arc-length fractions.
+    """Return nj nodes (..., nj) on each complex line `z` (..., n), and the arc-length fractions of the nodes.
 
     `xp` is numpy or torch, the module of `z`.
     """

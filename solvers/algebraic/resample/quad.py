@@ -56,10 +56,11 @@ def refine_quad(coarse: Floats, sides: Sides) -> Floats:
 
 
 def mended(coarse: Floats, sides: tuple[Floats, ...], nodes: Floats) -> Straight | None:
-    """Interpolate `coarse` (2, m, n) again into `nodes` (2, ni, nj), linearly around folded cells of `nodes`.
+    """Interpolate `coarse` (2, m, n) to `nodes` (2, ni, nj) again, but linearly around folded cells.
 
-    Return an array (m, n) that is 1 at coarse nodes with linear interpolation. Return None, without a change,
-    if `coarse` has folded cells or if no attempt reduces the number of folded cells.
+    `nodes` are changed in place. Return an array (m, n) that is 1 at the coarse nodes with linear
+    interpolation. Return None, and leave `nodes` unchanged, if `coarse` has folded cells or if no attempt
+    reduces the number of folded cells.
     """
     if count_folded(coarse.transpose(1, 2, 0)):
         return None

@@ -22,9 +22,9 @@ from meshonet.geometry.elementary import power, product
 
 @lru_cache(maxsize=16)
 def bending(m: int, periodic: bool) -> Floats:
-    """Return the matrix (m, m) that takes values at m >= 2 uniform knots to the second derivatives there.
+    """Return the matrix (m, m) from values at m >= 2 uniform knots to the spline's second derivatives there.
 
-    The last knot repeats the first when `periodic`. 2 knots give a straight line, 3 a parabola.
+    If `periodic`, the last knot repeats the first. 2 knots give a straight line, 3 knots a parabola.
     """
     if m == 2 or (periodic and m == 3):
         return np.zeros((m, m))
@@ -78,10 +78,10 @@ def between(values: Floats, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def places(m: int, n: int) -> tuple[NDArray[np.intp], Floats]:
-    """Return for each of n uniform places over m knots the knot before it (n,) and four weights (n, 4).
+    """Return, for n uniform places over m knots, the knot before each (n,) and four weights (n, 4).
 
-    The first two weights apply to the values at this knot and the next, the others to the second derivatives
-    there.
+    The first two weights apply to the values at this knot and the next, the other two to the second
+    derivatives at these knots.
     """
     at = np.arange(n) * ((m - 1) / (n - 1))
     first = np.minimum(at.astype(np.intp), m - 2)
@@ -93,7 +93,7 @@ def places(m: int, n: int) -> tuple[NDArray[np.intp], Floats]:
 
 @lru_cache(maxsize=16)
 def spline_matrix(m: int, n: int, periodic: bool = False) -> Floats:
-    """Return the matrix (n, m) that evaluates the spline of values at m uniform knots at n uniform places.
+    """Return the matrix (n, m) from values at m uniform knots to those of their spline at n uniform places.
 
     >>> cubes = np.arange(5.0) ** 3
     >>> np.abs(spline_matrix(5, 9) @ cubes - np.linspace(0, 4, 9) ** 3).max() < 1e-12

@@ -17,14 +17,14 @@ SYMMETRY, FREE = "symmetry", "free"
 
 
 def blocks_of(surface: Surface, lines: Floats) -> tuple[Block, ...]:
-    """Return a block for each patch of a surface, from the nodes `lines` (3, n, levels) above its n nodes."""
+    """Return a block for each patch of a surface; `lines` (3, n, levels) are the lines from its n nodes."""
     return tuple(Block(np.moveaxis(lines[:, lattice], 0, -1)) for lattice in surface.lattices)
 
 
 def volume_grid(surface: Surface, blocks: tuple[Block, ...], in_plane: Indices) -> Grid:
     """Return the grid of `blocks` on a surface.
 
-    `in_plane` (k,) is a mask of open edges that lie in planes of symmetry.
+    `in_plane` (k,) is the mask of those open edges that lie in planes of symmetry.
     """
     top = blocks[0].counts[2] - 1
     sides = [

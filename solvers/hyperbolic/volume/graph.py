@@ -55,14 +55,14 @@ class Seen:
         )
 
     def opposite(self, splay: float) -> Seen:
-        """Return the ghost opposite this neighbour, at 1 + `splay` times its distance from the node."""
+        """Return the ghost node opposite this neighbour, 1 + `splay` times as far from the node."""
         far = 1.0 + splay
         return Seen(self.base, 1.0 + far, -far * self.sign, -far * self.shift)
 
 
 @dataclass(frozen=True, eq=False)
 class MarchGraph:
-    """Arrays of ``kernels/surfaces/graph.h``; `order` (n,) are the indices of its nodes on the surface."""
+    """Arrays of ``kernels/surfaces/graph.h``; `order` (n,) has the surface index of each of its nodes."""
 
     order: Indices
     red: int
@@ -86,9 +86,9 @@ def march_graph(
 ) -> MarchGraph:
     """Return the graph of a surface; mask `in_plane` (p, k) marks the open edges that lie in `planes`.
 
-    `hollow` (n,) are distances from concave edges (`meshonet.geometry.surface.hollows`), `splay` is the
-    relative excess distance of ghosts at free edges (`Seen.opposite`), `boost` the additional smoothing at
-    irregular nodes, relative to others.
+    `hollow` (n,) are the distances from concave edges (`meshonet.geometry.surface.hollows`). `splay` says how
+    much farther ghost nodes are at free edges (`Seen.opposite`). `boost` is the additional smoothing at
+    irregular nodes, relative to that at other nodes.
     """
     n = len(surface.nodes)
     regular = surface.valence == 4

@@ -28,11 +28,11 @@ def growth_of_levels(lines: Floats) -> Floats:
 
 
 def slower_steps(steps: Floats, found: Floats, growth: float) -> Floats:
-    """Return steps that grow less where cells grew too much with the `steps` (m,) of the last march.
+    """Return `steps` (m,), those of the last march, changed to grow less where cells grew too much.
 
-    `found` (m - 1,) are the largest growth ratios of cells in the last march, which exceed those of the steps
-    because levels spread and turn. The excess, as a fraction of the growth in logarithms, is assumed to be
-    the same at the same distance from the wall. `growth` is the largest growth ratio.
+    `found` (m - 1,) are the largest growth ratios of cells in the last march. They exceed the ratios of the
+    steps because levels spread and turn. The quotient of both ratios' logarithms is assumed to stay the same
+    at the same distance from the wall. `growth` is the largest permitted growth ratio.
     """
     length, most = float(steps.sum()), math.log(growth)
     ratio = np.maximum(log(steps[1:] / steps[:-1]), _LEAST * most)
@@ -60,7 +60,7 @@ def slower_steps(steps: Floats, found: Floats, growth: float) -> Floats:
 
 
 def limit_growth(lines: Floats, growth: float) -> None:
-    """Move nodes of `lines` (3, n, levels) along them, in place; first cells and last nodes stay.
+    """Move nodes of `lines` (3, n, levels) along the lines, in place; first cells and last nodes stay.
 
     Lines whose cells differ by at most `growth` do not change. On lines that are too long for this limit,
     cells grow by the smallest possible constant ratio.

@@ -66,14 +66,14 @@ def march_surface(
     """Return the volume between a surface and a far field, with one block per patch.
 
     Blocks have the indices i and j of their patches; k goes from the wall (``bottom``) to the far field
-    (``top``). Sides in planes of symmetry are patches ``symmetry``, sides that grow from free edges patches
-    ``free``; all others are connected. First cells have the given height along every line. For a `wing` other
-    smoothing is tried not only if cells are folded, but also if cells are poor. The error for folded cells
-    names the `remedy`, if one is given.
+    (``top``). Sides in planes of symmetry are patches ``symmetry``; sides that grow from free edges are
+    patches ``free``; all other sides are connected. First cells have the given height along every line. For a
+    `wing`, other smoothing is tried not only if cells are folded, but also if they are poor. The error for
+    folded cells names the `remedy`, if it is given.
 
     Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` lists the differences.
 
-    Raises InputError: settings that no march can meet; parts whose grids would overlap. Raises
+    Raises InputError: no march can satisfy the settings; the grids of two parts would overlap. Raises
     NoValidGridError, with the worst cells: in every attempt a corner Jacobian or a Bezier coefficient of a
     Jacobian is not positive.
     """
@@ -175,7 +175,7 @@ def _least_jacobian(blocks: tuple[Block, ...]) -> float:
 def march_levels(
     surface: Surface, graph: MarchGraph, nodes: Floats, steps: Floats, smoothing: Smoothing
 ) -> Floats:
-    """Return the levels (made + 1, 3, n) of a march by `steps` (m,), until it fails; nodes as in `graph`."""
+    """Return the levels (made + 1, 3, n) of a march by `steps` (m,) until it fails; nodes as in `graph`."""
     levels = np.empty((len(steps) + 1, 3, len(nodes)))
     levels[0] = nodes[graph.order].T
     numbers = smoothing.numbers(0.5 * surface.size)

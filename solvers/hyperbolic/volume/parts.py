@@ -13,7 +13,7 @@ _SAMPLES = 2000
 
 
 def check_parts(surface: Surface, far: float) -> None:
-    """Raise InputError for parts whose grids, marched to the distance `far`, would overlap."""
+    """Raise InputError if the grids of two parts of a surface, marched to `far`, would overlap."""
     for a, b in combinations(_parts(surface), 2):
         gap = _distance(surface.nodes[a], surface.nodes[b])
         if gap < 2.0 * far:

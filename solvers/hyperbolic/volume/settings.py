@@ -28,10 +28,11 @@ class VolumeMarch:
     layers : number of nodes along each line, including the wall node; None: as many as `growth` needs.
     far_field : distance of the far field, in the surface's unit; None: 15 times the longest extent of the
         surface.
-    symmetry : axis to which planes of symmetry are normal; ``none``: all open edges are free; None: open
-        edges in a plane normal to an axis, with the surface on one side, lie in a plane of symmetry.
-    growth : largest growth ratio of cells along a line; None: 1.2 if `layers` is None, else as much as
-        `layers` need.
+    symmetry : axis to which planes of symmetry are normal. ``none``: all open edges are free. None: a plane
+        normal to an axis is a plane of symmetry if it contains open edges and the surface is on one side of
+        it.
+    growth : largest growth ratio of cells along a line. None: 1.2 if `layers` is None, otherwise the ratio
+        that `layers` require.
     """
 
     first_cell: float
@@ -89,7 +90,7 @@ class Smoothing(NamedTuple):
 
     The parameter `size` of that file is left out.
 
-    `outer` is the factor by which the explicit smoothing within levels is larger far from the wall. Up to 6
+    `outer` is the factor from the explicit smoothing within levels near the wall to that far away. Up to 6
     the levels around a sphere remain spheres; 16 makes better cells behind swept wings.
     """
 
@@ -147,5 +148,5 @@ CONCAVE_ATTEMPTS = (
 
 
 def attempts_for(*, concave: bool, wing: bool) -> tuple[Smoothing, ...]:
-    """Return the parameters tried in turn on a surface with or without concave edges, or on a wing."""
+    """Return the parameters that are tried in turn, on a surface with `concave` edges or not, or a `wing`."""
     return CONCAVE_ATTEMPTS if concave else WING_ATTEMPTS if wing else ATTEMPTS

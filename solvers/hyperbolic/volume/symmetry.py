@@ -26,7 +26,7 @@ surface.
 
 
 class Symmetry(NamedTuple):
-    """Planes of symmetry, the open edges `inside` (p, k) that lie in each, and notes on both."""
+    """Planes of symmetry, the mask `inside` (p, k) of the open edges in each plane, and notes on both."""
 
     planes: tuple[Plane, ...]
     inside: Indices
@@ -36,11 +36,11 @@ class Symmetry(NamedTuple):
 def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
     """Return the planes of symmetry of a surface that is marched to a distance `far`.
 
-    `axis` is the normal of the planes, ``none`` for no plane, None to detect planes. Detected planes that
-    walls face are left out, with a note (`closes_in`).
+    `axis` is the normal of the planes, ``none`` for no plane, None to detect planes. A detected plane is left
+    out, with a note, if walls face it (see `closes_in`).
 
-    Raises InputError: no open edge lies in a plane normal to `axis`; a wall faces such a plane at less than
-    the distance of the far field.
+    Raises InputError: no open edge lies in a plane normal to `axis`; a wall faces such a plane and is nearer
+    to it than the far field.
     """
     planes, inside = symmetry_planes(surface, axis)
     kept, notes = [], []
@@ -63,7 +63,7 @@ def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
 def closes_in(surface: Surface, plane: Plane) -> float:
     """Return the mean distance of the walls that face a plane.
 
-    Infinity if as much area faces away from it.
+    The result is infinite unless more area faces the plane than faces away from it.
     """
     a, b, c, d = (surface.nodes[surface.quads[:, k]] for k in range(4))
     area = 0.5 * np.cross(c - a, d - b)
@@ -76,11 +76,11 @@ def closes_in(surface: Surface, plane: Plane) -> float:
 
 
 def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ...], Indices]:
-    """Return planes normal to an axis in which open edges lie, and a mask (p, k) of the edges in each.
+    """Return the planes normal to an axis that contain open edges, and the mask (p, k) of edges in each.
 
     `axis` is the normal direction of the planes, ``none`` for no plane, None to detect them.
 
-    Raises InputError: no open edge lies across the axis.
+    Raises InputError: no open edge lies in a plane normal to the axis.
     """
     sides, nodes = surface.open_sides, surface.nodes
     if axis in (None, "none"):

@@ -16,7 +16,7 @@ TINY = 1e-300  # keeps quotients finite where a step repeats the one before
 def limit(
     step: Callable[[Tensor, Tensor], Tensor], start: Tensor, tol: Tensor, most: int
 ) -> tuple[Tensor, Tensor]:
-    """Return the limits (batch, n) of x -> step(x), and whether (batch,) they have been reached.
+    """Return the limits (batch, n) of the iteration x -> step(x), and whether (batch,) each was reached.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ def limit(
         ``step(x, members)`` returns the next iterates of `x` (m, n), which are the iterates of `members`
         (m,).
     start : (batch, n) first values.
-    tol : (batch,) largest change of a value in a step at which a member has converged.
+    tol : (batch,) a member has converged if no value changes by more than this in a step.
     most : int
         Largest number of steps.
     """
@@ -63,9 +63,9 @@ class _Past:
         return few
 
     def after(self, x: Tensor, change: Tensor) -> Tensor:
-        """Return the values after `x`, at which a linear model of the steps predicts the smallest step.
+        """Return the values after `x`: those at which a linear model of the steps predicts the least step.
 
-        `change` is the plain step from `x`. The model is fitted to the last steps.
+        `change` is the plain step from `x`. The linear model is fitted to the most recent steps.
         """
         if self._count:
             self._add(x, change)

@@ -95,7 +95,7 @@ def batched(
 
 
 def unit_of(values: Tensor) -> Tensor:
-    """Return powers of 2 near the extents of `values` (batch, ...), shaped to broadcast with them.
+    """Return powers of 2 near the extents of `values` (batch, ...), in a shape that broadcasts with them.
 
     The division by a power of 2 is exact. Afterwards, fourth powers of the values neither overflow nor
     vanish.

@@ -58,8 +58,9 @@ class Functional:
     def hessian(self, nodes: Tensor, aspect: Tensor, *, convex: bool = False) -> Stencil:
         """Return the second derivatives of E at valid `nodes`, with `aspect` constant.
 
-        With `convex`, return a positive definite matrix near them: negative eigenvalues of the matrices of
-        cells are set to zero, and differences of log lengths are linearised (Gauss-Newton).
+        With `convex`, the result is a positive definite matrix near the second derivatives: negative
+        eigenvalues of the matrices of cells are set to zero, and differences of log lengths are linearised
+        (Gauss-Newton).
         """
         zero = nodes.new_zeros(len(nodes), 2, 2, *nodes.shape[2:])
         offsets = ((0, 0), (0, 1), (0, 2), (1, -1), (1, 0), (1, 1), (2, 0))

@@ -20,9 +20,9 @@ def gmres(
 ) -> Tensor:
     """Return approximate solutions x (batch, n) of A x = `right` (batch, n).
 
-    `times(x)` returns A x. A member has converged if the Euclidean norm of its residual is `tol` times that
-    of `right`. The iteration restarts when the Krylov space has the dimension `space`. After at most `most`
-    products with the matrix the last iterate is returned, converged or not.
+    `times(x)` returns A x. A member has converged if the Euclidean norm of its residual is at most `tol`
+    times that of its `right`. The iteration restarts when the Krylov space has the dimension `space`. After
+    at most `most` products with the matrix the last iterate is returned, converged or not.
     """
     x, goal = torch.zeros_like(right), tol * right.norm(dim=1)
     rest, done = right, 0

@@ -44,20 +44,17 @@ def winslow(
     Parameters
     ----------
     south, north, west, east : as in `transfinite`.
-    coarse : int, optional
-        Solve on at most this number of nodes along a direction, and interpolate the grid to all nodes of the
-        sides, as ``--coarse`` does, without its sweeps near kinks.
-    failed : {"raise", "nan"}
-        With "nan", nodes of members without a solution are NaN and have no gradients, in place of an error;
-        the other members are solved again without them.
+    coarse : int, optional Solve on at most this number of nodes along a direction, and interpolate the grid
+        to all nodes of the sides. The option ``--coarse`` does the same, and sweeps near kinks afterwards.
+    failed : {"raise", "nan"} With "nan", there is no error if members have no solution: their nodes are NaN
+        and have no gradients, and the other members are solved again without them.
 
     Raises
     ------
     InputError
         As `transfinite`, and for `coarse` below 9.
-    SolverError
-        The equations of members of the batch did not converge, or they have a coordinate that is not
-        finite; the message has their indices, as has the attribute ``members``.
+    SolverError The equations of a member of the batch do not converge, or it has a coordinate that is not
+        finite. The message and the attribute ``members`` have the indices of such members.
     """
     return _solved(Winslow(), coarse, failed, south, north, west, east)
 
@@ -68,14 +65,14 @@ def variational(
 ) -> Tensor:  # fmt: skip
     """Return the nodes (..., ni, nj, 2) at the optimum of the variational functional, to rounding.
 
-    The compiled solver computes the starts on the CPU. Gradients are those of the optimum, by one linear
-    system for each backward pass; the weights that the solver chose are constant in them.
+    The compiled solver computes the initial grids on the CPU. Gradients are those of the optimum, by one
+    linear system for each backward pass; they treat the weights that the solver chose as constants.
 
     Parameters
     ----------
     south, north, west, east : as in `transfinite`.
-    coarse : int, optional
-        As in `winslow`: 65 makes all grids cheap, at the price of an optimum between the coarse nodes.
+    coarse : int, optional As in `winslow`. 65 makes all grids cheap, but only the coarse grid is then
+        optimal.
     failed : {"raise", "nan"}
         As in `winslow`.
 
@@ -83,9 +80,8 @@ def variational(
     ------
     InputError
         As `winslow`, and for more than about 400 x 400 nodes to solve on, whose systems need too much memory.
-    SolverError
-        No grid without folded cells was found for members of the batch, or they have a coordinate that is
-        not finite; the message has their indices, as has the attribute ``members``.
+    SolverError No grid without folded cells was found for a member of the batch, or it has a coordinate that
+        is not finite. The message and the attribute ``members`` have the indices of such members.
     """
     return _solved(Optimum(), coarse, failed, south, north, west, east)
 

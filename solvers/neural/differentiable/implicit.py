@@ -18,21 +18,21 @@ class Equations(Protocol):
     """Equations for the inner nodes of four-sided grids."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return the number of members of the batch `nodes` (batch, 2, ni, nj) to solve at once."""
+        """Return how many members of the batch `nodes` (batch, 2, ni, nj) should be solved at once."""
         ...
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions (batch, 2, ni, nj), and a number (batch,) on which the equations depend.
+        """Return the solutions (batch, 2, ni, nj), and for each the number (batch,) in its equations.
 
         Only the boundary nodes of `nodes` are used. Raises MemberError: there is no solution.
         """
         ...
 
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivative of a functional with respect to the boundary nodes of `nodes`, a solution.
+        """Return the derivative of a functional of the solution `nodes` with respect to its boundary nodes.
 
-        `gradient` is its derivative with respect to all nodes, taken as independent. The result, of the shape
-        of `nodes`, is ignored at inner nodes.
+        `gradient` is the derivative of the functional with respect to all nodes as independent variables. The
+        result has the shape of `nodes`; its values at inner nodes are ignored.
         """
         ...
 
@@ -42,7 +42,7 @@ class Converged(torch.autograd.Function):
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solution, and the number of each member on which its equations depend."""
+        """Return the solution, and for each member the number in its equations (see `Equations.solve`)."""
         unit = unit_of(nodes)
         solution, number = in_parts(equations.solve, equations.most(nodes), nodes / unit)
         return unit * solution, number
@@ -66,7 +66,7 @@ class Converged(torch.autograd.Function):
 
 
 class Adjoint(torch.autograd.Function):
-    """The derivative with respect to boundary nodes, computed from the one with respect to all nodes."""
+    """The derivative with respect to boundary nodes, computed from that with respect to all nodes."""
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:

@@ -18,7 +18,7 @@ from meshonet.solvers.neural.quad.unrolled import middles
 
 @dataclass(frozen=True)
 class TorchWalls:
-    """The two walls of a body in the strip: F (n,) on the `wall` and on the `far` field (`StripWalls`).
+    """F (n,) on both walls of the strip of a body: the `wall` and the `far` field (see `StripWalls`).
 
     `lift` holds the conformal lift as tensors, `numpy` the same as NumPy arrays.
     """
@@ -33,7 +33,7 @@ class TorchWalls:
 
 
 def torch_walls(z: Tensor, far: Tensor) -> TorchWalls:
-    """Return the walls of a body in the strip, from nodes `z` and `far` (n,), both counter-clockwise.
+    """Return both walls of the strip of a body with nodes `z` and `far` (n,), both counter-clockwise.
 
     Raises InputError: the body has no conformal lift.
     """

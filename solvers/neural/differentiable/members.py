@@ -13,12 +13,11 @@ Failed = Literal["raise", "nan"]
 
 
 class MemberError(SolverError):
-    """No grids for some members of a batch.
+    """Error: there are no grids for some members of a batch.
 
     Parameters
     ----------
-    reasons : dict
-        By the index of a member, from 0: what is wrong with it, and what a user can do.
+    reasons : dict By index of a member (from 0): what is wrong with this member, and what a user can do.
     """
 
     members: tuple[int, ...]
@@ -36,7 +35,7 @@ class MemberError(SolverError):
 
     @classmethod
     def of(cls, members: Iterable[int], problem: str, remedy: str) -> "MemberError":
-        """Return the error for several members of which the same is wrong."""
+        """Return the error for several `members` that have the same `problem`."""
         return cls(dict.fromkeys(members, (problem, remedy)))
 
 
@@ -72,7 +71,7 @@ def without_failed(make: Callable[..., Tensor], counts: tuple[int, int], *sides:
 
 
 def in_parts(function: Callable[..., tuple[Tensor, ...]], most: int, *tensors: Tensor) -> tuple[Tensor, ...]:
-    """Return the values of `function` for a batch, of which it is given at most `most` members at once.
+    """Return the values of `function` for a batch; it is called for at most `most` members at a time.
 
     Raises MemberError, with the failed members of all parts.
     """
@@ -90,7 +89,7 @@ def in_parts(function: Callable[..., tuple[Tensor, ...]], most: int, *tensors: T
 
 
 def as_one_batch(function: Callable[..., Any], count: int, in_dims: Any, *inputs: Any) -> tuple[Any, Any]:
-    """Return the values of `function` for `count` batches, computed as one batch, and their batch dimension.
+    """Return the values of `function` for `count` batches, computed as one batch, and the batch dimension.
 
     `inputs` that are no tensors are the same for all batches.
     """

@@ -36,8 +36,8 @@ def picard(c: Tensor) -> Tensor:
 class Settled(torch.autograd.Function):
     """The modes (batch, modes, LEVELS) that solve Winslow's equations, as a function of initial modes.
 
-    The highest modes are filtered, and remain near the start. A solution c satisfies
-    c = start + smoothing (Picard(c) - start), with a Picard step that is not filtered.
+    The highest modes are damped, so that they remain near the start. A solution c satisfies c = start +
+    smoothing (Picard(c) - start), where Picard is a step without damping.
     """
 
     @staticmethod

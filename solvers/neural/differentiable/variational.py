@@ -47,7 +47,7 @@ class Optimum:
     """The equations of the variational optimum: the gradient of the functional is zero at inner nodes."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return the number of members to solve at once, so that their factors fit in the memory.
+        """Return how many members can be solved at once so that their factors fit into the memory.
 
         Raises InputError: the factors of a single one are too large.
         """
@@ -191,13 +191,13 @@ def _compiled(batch: Floats) -> list[tuple[Floats, float]]:
 class BlockCholesky:
     """The factor of a stencil's matrix at the inner nodes.
 
-    Two grid lines of inner nodes are one block, since the stencil reaches two lines. Lines run the shorter
-    way. The work for m x n nodes, n the smaller count, is about 300 m n³ operations, in products of matrices
-    of order 4n, for all members of a batch at once: Golub and Van Loan, Matrix Computations (2013), section
-    4.5.
+    Two grid lines of inner nodes are one block, since the stencil reaches two lines. Lines run along the
+    direction with fewer nodes. The work for m x n nodes, n the smaller count, is about 300 m n³ operations,
+    in products of matrices of order 4n, for all members of a batch at once: Golub and Van Loan, Matrix
+    Computations (2013), section 4.5.
 
-    `positive` (batch,) says whether the matrix of each member is positive definite; other factors are
-    unusable.
+    `positive` (batch,) says whether the matrix of each member is positive definite; if not, its factor cannot
+    be used.
     """
 
     def __init__(self, stencil: Stencil) -> None:
@@ -217,7 +217,7 @@ class BlockCholesky:
             self.positive &= failed == 0
 
     def solve(self, right: Tensor) -> Tensor:
-        """Return the solutions (batch, 2, mi, mj) for `right` of the same shape, values at inner nodes."""
+        """Return the solutions (batch, 2, mi, mj), values at inner nodes, for `right` of the same shape."""
         right = right.mT if self._turned else right
         rows = list(_by_blocks(right).unbind(1))
         for k, factor in enumerate(self._factors):

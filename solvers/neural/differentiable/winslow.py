@@ -31,7 +31,7 @@ class Winslow:
     """Winslow's equations as `implicit.Equations`; they are the same for all members of a batch."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return the number of members to solve at once; on a CPU, their Krylov space fits the cache."""
+        """Return how many members to solve at once; on a CPU, as many Krylov spaces as fit into the cache."""
         return len(nodes) if nodes.is_cuda else MOST // nodes[0].numel()
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
@@ -51,7 +51,7 @@ class Winslow:
 
 
 def residual(nodes: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-    """Return the left side of Winslow's equations, α and γ at the inner nodes of (batch, 2, ni, nj)."""
+    """Return, at inner nodes of `nodes` (batch, 2, ni, nj), Winslow's left sides, α and γ."""
     return left_side(_derivatives(nodes), _dot)
 
 
@@ -94,7 +94,7 @@ def nested(nodes: Tensor) -> Tensor:
 def newton(nodes: Tensor, tol: float, *, strict: bool = True) -> Tensor:
     """Return the solution of Winslow's equations near `nodes` (batch, 2, ni, nj).
 
-    `tol` is the preconditioned residual at which a member has converged, relative to its extent. Raises
+    A member has converged if its preconditioned residual is at most `tol` times its extent. Raises
     MemberError, if `strict`, with the members that have not converged.
     """
     nodes = nodes.clone()
@@ -125,7 +125,7 @@ class _Linearised:
         self.first = self._inverse.solve(left)
 
     def stepped(self) -> Tensor:
-        """Return the nodes after a step of Newton's method, shorter where it does not lower the residual."""
+        """Return the nodes after a step of Newton's method, shortened if it does not lower the residual."""
         nodes, first = self._nodes, self.first
         step = gmres(self._times, first.flatten(1), FORCING, PRODUCTS[0]).view_as(first)
         size, now = torch.ones_like(first[:, :1, :1, :1]), first.flatten(1).norm(dim=1)

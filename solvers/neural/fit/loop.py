@@ -26,7 +26,7 @@ FREE = ("rate",)  # settings that may change when a run is resumed: a smaller ra
 class Task(nn.Module):
     """A model with its training set; parameters and data are on one device.
 
-    `count` is the number of training shapes, `parts` the names of the parts of the loss.
+    `count` is the number of training shapes, `parts` are the names of the parts of the loss.
     """
 
     count: int
@@ -36,7 +36,7 @@ class Task(nn.Module):
     def forward(self, rows: Tensor, step: int) -> Tensor:
         """Return the weighted parts of the loss, each a mean over the training shapes with indices `rows`.
 
-        `step` seeds random draws, so that a resumed run and every process draw the same.
+        `step` seeds random draws, so that a resumed run and every process draw the same numbers.
         """
 
     def differentiate(self, parts: Tensor, team: Team) -> None:  # noqa: ARG002 - for those who average themselves
@@ -58,7 +58,7 @@ class Task(nn.Module):
 
 @dataclass(frozen=True)
 class Run:
-    """A task, the settings stored as its recipe, and further settings that a resumed run must share."""
+    """A task, its settings (stored as the recipe), and further settings that a resumed run must share."""
 
     task: Task
     recipe: Mapping[str, Any]
@@ -111,11 +111,11 @@ def fit(
     """Train `task` in place and return the epoch whose weights it has.
 
     A checkpoint is written to `checkpoint` every `plan.checkpoint_every` epochs; `resume` starts from it.
-    With `plan.patience` the weights are those of the least held-out loss. `facts`: settings, ``model`` among
-    them, that a checkpoint must have in common with this run; `report`: called every `plan.log_every` epochs
-    and at the end. Raises InputError: a checkpoint of another model or of other settings; patience without
-    held-out shapes. Raises SolverError: a loss or a weight that is not finite, not enough memory; the last
-    checkpoint is kept.
+    With `plan.patience` the final weights are those with the least held-out loss. `facts`: settings
+    (including ``model``) that a checkpoint must have in common with this run; `report`: called every
+    `plan.log_every` epochs and at the end. Raises InputError: a checkpoint of another model or of other
+    settings; patience without held-out shapes. Raises SolverError: a loss or a weight that is not finite, not
+    enough memory; the last checkpoint is kept.
     """
     trained = list(task.parameters())
     optimiser: torch.optim.Optimizer = torch.optim.Adam(trained, plan.rate, fused=True)
@@ -253,7 +253,7 @@ def save_checkpoint(path: Path, state: Mapping[str, Any]) -> None:
 def load_checkpoint(path: Path, facts: Mapping[str, Any]) -> dict[str, Any] | None:
     """Return the state that was saved, None when there is no file.
 
-    Raises InputError: a file that is no checkpoint, or one of another model or of a run with other settings.
+    Raises InputError: the file is no checkpoint, or a checkpoint of another model or with other settings.
     """
     if not path.exists():
         return None

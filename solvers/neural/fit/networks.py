@@ -104,7 +104,7 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
         add: Tensor | None = None,
         room: str = "",  # noqa: ARG002
     ) -> Tensor:
-        """Return the convolution `name` of channels x (batch, 8 in, m, n), which are padded already."""
+        """Return the convolution with layer `name` of channels x (batch, 8 in, m, n), already padded."""
         if name == "lift":
             kernel = symmetry.lift(self.get_parameter("lift"), self.get_buffer("seen"))[..., None, None]
             bias = self.get_parameter("lift_bias").repeat_interleave(ORDER)

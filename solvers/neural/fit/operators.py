@@ -37,10 +37,11 @@ class OperatorTask(ModelTask):
 
         loss = interior * mean |error|^2 inside + boundary * mean |error|^2 on the boundary
 
-    over the points of a step, in squares of the unit of length; error = output - (grid - base). Where there
-    is a base, both are divided by the mean square of grid - base, so that the loss is of the order of 1.
-    `model`: the architecture; `training`, `held_out`: its shapes; `points`: numbers of points drawn for a
-    step, inside and on the boundary; None takes all; `seed`: of the initial weights and of the points.
+    over the points of a step, in squares of the unit of length; error = output - (grid - base). If the model
+    has a base, both terms are divided by the mean square of grid - base, so that the loss is of order 1.
+    `model`: the architecture; `training`, `held_out`: shapes to train on, and to monitor the loss; `points`:
+    numbers of points drawn for each step, inside and on the boundary (None takes all); `seed`: of the initial
+    weights and of the points.
     """
 
     def __init__(
@@ -65,7 +66,7 @@ class OperatorTask(ModelTask):
         self.parts = ("interior", "boundary", *(("penalty",) if more else ()))
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the interior and the boundary part of the loss over the shapes `rows`, then any penalty."""
+        """Return the parts of the loss over the shapes `rows`: interior, boundary, and any penalty."""
         index, inner = self._drawn(step)
         place = torch.from_numpy(index).to(self.places.device)
         goal = self.targets.index_select(0, place).view(len(place), self.count, 2)

@@ -38,7 +38,7 @@ class Plan:
             raise InputError(f"{self.rate:g} is no learning rate", "use 0 to 1, e.g. 0.001", parameter="rate")
 
     def kept(self, count: int, held_out: int, what: str) -> int:
-        """Return the number of the `count` shapes, called `what` in messages, that remain for training.
+        """Return how many of the `count` shapes, called `what` in messages, remain for training.
 
         Raises InputError: no shape is held out, or less than one batch remains for training.
         """
@@ -48,7 +48,7 @@ class Plan:
         return count - held_out
 
     def rate_at(self, done: int, steps: int) -> float:
-        """Return the learning rate of step `done` (counted from 1) with `steps` an epoch."""
+        """Return the learning rate of step number `done` (from 1), if an epoch has `steps` steps."""
         warm = min(1.0, done / self.warm_up) if self.warm_up else 1.0
         if self.schedule == "cosine":
             fade = 0.5 * (1.0 + math.cos(math.pi * done / (self.epochs * steps)))

@@ -53,7 +53,7 @@ class QuadUNetSizes:
 
 
 class QuadTask(Task):
-    """Training of the quad network on the edges of both target grids.
+    """Training of the quad network on the edges (node to node) of both target grids.
 
     In later steps the loss also contains the angles of the network's grids.
 

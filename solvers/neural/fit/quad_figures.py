@@ -21,9 +21,10 @@ Grids = NDArray[np.complexfloating[Any, Any]]
 def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: Grids) -> dict[str, Any]:
     """Return figures that compare the network's grids `answers` (m, heads, n, n) with targets (m, n, n).
 
-    Angles are those at cell corners: the largest of a grid, and the mean over cells of each cell's largest. A
-    gain is a grid's improvement of such a figure over Winslow's grid, relative to that of the variational
-    grid. Domains whose Winslow grid has folded cells are left out of gains.
+    Two figures of angles at cell corners are used: the largest angle of a grid, and the mean over all cells
+    of the largest angle of the cell. A gain is the improvement of such a figure over Winslow's grid, divided
+    by the improvement that the variational grid has. Gains leave out domains whose Winslow grid has folded
+    cells.
     """
     solved, best = angles(winslow), angles(variational)
     valid = solved[0] < 360.0
@@ -48,7 +49,7 @@ def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: G
 def angles(z: Grids) -> tuple[Floats, Floats]:
     """Return the maximum and the mean (m,) of the largest angles of cells, for grids `z` (m, n, n).
 
-    In degrees. Both are 360 for a grid with folded cells.
+    Both are in degrees, and 360 for a grid with folded cells.
     """
     least, most = (np.degrees(value.numpy()) for value in extremes(torch.from_numpy(z)))
     folded = (least <= 0.0).any((1, 2)) | (most >= 180.0).any((1, 2))
@@ -68,12 +69,12 @@ def _share(values: Bools) -> float:
 
 
 def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-    """Return three measures (batch,) of how much worse grids `z` are than `goal`, (batch, m, n) complex.
+    """Return three measures (batch,) of how much worse grids `z` (batch, m, n), complex, are than `goal`.
 
-    The first two are the differences to the goal, in radians, of the mean and of the maximum of the largest
-    angle of each cell; 0 if `z` is better. The third is log(1 + s / `SLIGHT`), where s is the sum over all
-    cells of the angles beyond the range from `NARROW` to `WIDE`, which is extended to the angles of the cell
-    in `goal`.
+    The first two compare the mean and the maximum, over all cells, of the cell's largest angle: by how many
+    radians it is greater in `z` than in `goal`, or 0. The third is log(1 + s / `SLIGHT`), where s is the sum
+    over all cells of the amounts by which angles are outside the range from `NARROW` to `WIDE`; for each cell
+    this range is extended to include its angles in `goal`.
     """
     least, most = extremes(z)
     with torch.no_grad():
@@ -85,7 +86,7 @@ def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
 
 
 def extremes(z: Tensor) -> tuple[Tensor, Tensor]:
-    """Return the smallest and the largest included angle of each cell (batch, m - 1, n - 1), in radians.
+    """Return the smallest and the largest corner angle of each cell (batch, m - 1, n - 1), in radians.
 
     Angles of folded corners are below 0, down to -90 degrees, or above 180, so that the loss has a gradient
     there.

@@ -66,7 +66,7 @@ class StripTask(Task):
         return (self.importance[rows] * (error**2).sum(1).mean(1)).mean()[None]
 
     def validate(self) -> dict[str, float]:
-        """Return quantiles, over the held-out strips, of the `distance` between predicted and exact R.
+        """Return quantiles over the held-out strips of the `distance` between the predicted and the exact R.
 
         R is the difference of Winslow's solution and the harmonic base.
 
@@ -85,7 +85,7 @@ class StripTask(Task):
         return list(decode(out.numpy().astype(np.float64), self.basis, self.scale, size))
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
-        """Return quantiles, over the held-out strips, of the distance to R, with the network and without.
+        """Return quantiles over the held-out strips of the distance to R, for the network and for zero.
 
         R is the difference of Winslow's solution and the harmonic base.
         """

@@ -27,7 +27,8 @@ class Team:
     def share(self, rows: Tensor) -> tuple[Tensor, float]:
         """Return this process's part of a batch `rows`, and the weight of this part in the mean of the batch.
 
-        A process without a part gets the first row at weight 0, since every process must take part in a step.
+        A process that would get no part gets the first row with weight 0, since every process must compute a
+        step.
         """
         own = rows[self.rank :: self.size]
         if len(own) == 0:

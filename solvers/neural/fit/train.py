@@ -35,7 +35,7 @@ def train(
     report: Callable[[Progress], None] | None = None,
     **choices: Any,
 ) -> dict[str, Any]:
-    """Fit a model, write it to `output` with its recipe and held-out figures, and return the figures.
+    """Fit a model, write it to `output` with its recipe and its figures on held-out shapes; return these.
 
     Raises InputError: no such model; too few shapes; a checkpoint of another model, data or settings; choices
     that do not suit the model. Raises SolverError: as `meshonet.solvers.neural.fit.loop.fit`.

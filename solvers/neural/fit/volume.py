@@ -41,7 +41,7 @@ HELD_OUT = 0
 
 
 class VolumeTask(Task):
-    """Training of `model` on `volumes`; `points` are drawn for each step, inside and on the faces."""
+    """Training of `model` on `volumes`; `points` are how many are drawn per step, inside and on faces."""
 
     parts = ("winslow", "faces", "weights")
 
@@ -66,9 +66,9 @@ class VolumeTask(Task):
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the weighted parts of the loss over the geometries `rows`, then a term for the weights.
+        """Return the weighted parts of the loss over the geometries `rows`, then a term of the weights.
 
-        That term is half the sum of the logarithms of the inverse weights.
+        This term is half the sum of the logarithms of the inverse weights.
         """
         rng = np.random.default_rng([self.seed, 1, step])
         inner = tensor(rng.uniform(-1.0, 1.0, (self.points[0], 3))).to(rows.device)
@@ -133,7 +133,7 @@ class VolumeTask(Task):
 
 
 def residual(net: Mapping[str, Tensor], points: Tensor, h: float) -> Tensor:
-    """Return the residual (p, 3) of Winslow's equations at points (p, 3), by differences of step h."""
+    """Return the residual (p, 3) of Winslow's equations at points (p, 3), by finite differences of step h."""
     unit = h * torch.eye(3, dtype=points.dtype, device=points.device)
     pairs = list(combinations(range(3), 2))
     steps = [torch.zeros_like(unit[0]), *unit, *-unit]
@@ -154,7 +154,7 @@ def residual(net: Mapping[str, Tensor], points: Tensor, h: float) -> Tensor:
 
 
 def project(first: Tensor, second: Tensor) -> Tensor:
-    """Return the sum of two gradients (n,), each without its component against the other."""
+    """Return the sum of two gradients (n,), each without the part that points against the other one."""
     dot = first @ second
     if dot >= 0.0:
         return first + second

@@ -54,14 +54,14 @@ class Architecture:
         return {}
 
     def encode(self, boundaries: Sequence[Boundary]) -> Arrays:
-        """Return the network's inputs for a batch of boundaries, by name, the batch on the first axis."""
+        """Return the network's inputs for a batch of boundaries, by name; the first axis is the batch."""
         return {"sensors": np.array([sensors(boundary, self.sensors) for boundary in boundaries])}
 
     def check(self, w: Weights, inputs: Weights) -> None:
         """Raise InputError for `inputs` outside of the model's scope; the default accepts all inputs."""
 
     def penalty(self, xp: Any, w: Weights, inputs: Weights) -> Any:
-        """Return a further part of the loss, a scalar; None, the default, for no such part."""
+        """Return a further part of the loss, a scalar; None, the default, if there is none."""
         return None
 
     def seen(self, xp: Any, points: Any) -> Any:

@@ -33,9 +33,9 @@ for four-sided domains or bodies, on Winslow's and variational grids; those of t
 
 
 def architecture(name: str, topology: Topology, settings: Mapping[str, Any] | None = None) -> Architecture:
-    """Return the model `name` of `ARCHITECTURES`, with `settings` in place of its defaults.
+    """Return the model `name` of `ARCHITECTURES`, with `settings` instead of its defaults.
 
-    Raises InputError: no such model or setting, or a value of another type than the setting's.
+    Raises InputError: there is no such model or setting, or a value has another type than the setting.
 
     >>> architecture("meshonet", "quad", {"sensors": 80}).sensors
     80

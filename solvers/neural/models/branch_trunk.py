@@ -112,7 +112,7 @@ class PODDeepONet(Architecture):
         return dense_shapes("branch", (2 * self.sensors, *self.hidden, self.features))
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return the mean grid (nodes, 2) and the modes (nodes, features, 2).
+        """Return the mean grid (nodes, 2) and the principal modes (nodes, features, 2).
 
         If there are fewer grids than features, the remaining modes are 0.
         """

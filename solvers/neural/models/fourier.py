@@ -46,9 +46,9 @@ class FNO1D(AlongXi):
 
 
 def mix_modes(xp: Any, weight: Any, h: Any, modes: int, padding: int) -> Any:
-    """Return h (batch, n, width) with the channels of each of its lowest modes times a complex matrix.
+    """Return h (batch, n, width) after the channels of each of its lowest modes are mixed by a matrix.
 
-    `weight`: (modes, width, width, 2), or (width, width, 2) for the same matrix in all modes.
+    `weight`: the complex matrices (modes, width, width, 2), or (width, width, 2), the same for all modes.
     """
     n = h.shape[1]
     spectrum = xp.fft.rfft(h, n + padding, 1)
@@ -73,8 +73,8 @@ def _layer_shapes(layers: int, mixing: tuple[int, ...], width: int) -> Shapes:
 class FNO2D(Architecture):
     """Two-dimensional Fourier neural operator.
 
-    Its inputs at (xi, eta) are the boundary nodes with this xi on south and north, and with this eta on west
-    and east.
+    Its inputs at (xi, eta) are four boundary nodes: those with this xi on south and north, and those with
+    this eta on west and east.
     """
 
     width: int = 12  # channels of the hidden state

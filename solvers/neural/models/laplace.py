@@ -48,9 +48,9 @@ class LNO(AlongXi):
 
 
 def respond(xp: Any, poles: Any, residues: Any, h: Any) -> Any:
-    """Return the responses (batch, n, out) of linear systems to h (batch, n, in), n steps from 0 to 1.
+    """Return the responses (batch, n, out) of linear systems to h (batch, n, in), at n times from 0 to 1.
 
-    `poles`: (in, out * poles, 2), the logarithm of the decay rate and the frequency, in half turns;
+    `poles`: (in, out * poles, 2), the logarithm of the decay rate, and the frequency in half turns;
     `residues`: (in, out, poles, 2).
     """
     inputs, outputs, count, _ = residues.shape

@@ -17,7 +17,7 @@ Shapes: TypeAlias = dict[str, tuple[int, ...]]
 
 
 def dense_shapes(name: str, sizes: Sequence[int], stacked: int | None = None) -> Shapes:
-    """Return the array shapes of dense layers, or of `stacked` independent copies of them when given."""
+    """Return the array shapes of dense layers, or of `stacked` independent copies of the layers."""
     shapes: Shapes = {}
     lead = () if stacked is None else (stacked,)
     for k, (a, b) in enumerate(pairwise(sizes)):
@@ -27,7 +27,7 @@ def dense_shapes(name: str, sizes: Sequence[int], stacked: int | None = None) ->
 
 
 def dense(xp: Any, w: Weights, name: str, h: Any, *, last: bool = False) -> Any:
-    """Return h (.., in) through the layers called `name`, tanh between them and, if `last`, after them."""
+    """Return h (.., in) after the layers called `name`; tanh follows each, the last only if `last`."""
     k = 0
     while f"{name}/{k}/weight" in w:
         h = _affine(xp, h, w[f"{name}/{k}/weight"], w[f"{name}/{k}/bias"])
@@ -45,7 +45,7 @@ def _affine(xp: Any, h: Any, weight: Any, bias: Any) -> Any:
 
 
 def products(trunk: Any, branches: Any) -> Any:
-    """Return inner products (batch, p, 2) of features of a trunk (p, k) and of branches (batch, 2, k)."""
+    """Return the inner products (batch, p, 2) of trunk features (p, k) and branch features (batch, 2, k)."""
     batch, two, k = branches.shape
     return (trunk @ branches.reshape(batch * two, k).T).reshape(-1, batch, two).swapaxes(0, 1)
 

@@ -29,7 +29,7 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONetHard(Architecture):
-    """One branch of all sensor coordinates, and a trunk that vanishes on the boundary."""
+    """One branch, whose inputs are all sensor coordinates, and a trunk that vanishes on the boundary."""
 
     base: ClassVar[Literal["none", "harmonic"]] = "harmonic"
     boundary: ClassVar[float] = 0.0
@@ -55,7 +55,7 @@ class MeshONetHard(Architecture):
         return {**branch, **dense_shapes("trunk", (seen, *[self.width] * self.depth, self.features))}
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return the mean and the spread of the sensors, and the size and the modes of the `targets`.
+        """Return mean and standard deviation of the sensors, and the size and the modes of the `targets`.
 
         Modes have the shape (nodes, modes).
         """
@@ -72,7 +72,7 @@ class MeshONetHard(Architecture):
         return {**fixed, "fixed/modes": _modes(targets, self.modes)} if self.modes else fixed
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return sines and cosines of `points`, and a function that is 0 on the boundary in the last column.
+        """Return sines and cosines of `points`; the last column is a function that is 0 on the boundary.
 
         With `modes`, the result is the points alone.
         """

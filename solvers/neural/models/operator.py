@@ -75,10 +75,10 @@ class PaperOperator(Operator):
         return Solution(grid, "operator", model=self.name, seconds={"grid": spent}, notes=notes)
 
     def nodes(self, boundary: Boundary, *, paste: bool = True) -> tuple[Floats, float]:
-        """Return the nodes (ni, nj, 2), and the largest distance of edges from `boundary` before pasting.
+        """Return the nodes (ni, nj, 2), and the largest distance of the network's edges from `boundary`.
 
-        Without `paste` the boundary nodes are those of the network, but both sides of the cut of an O grid
-        are equal.
+        With `paste`, the edges are then replaced by those of `boundary`. Without it, they remain those of the
+        network, except that both sides of the cut of an O grid are made equal.
         """
         answer = self.difference(boundary)
         if self.model.base == "harmonic":

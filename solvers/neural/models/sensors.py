@@ -29,7 +29,7 @@ def sensors(boundary: Boundary, count: int) -> Floats:
 
 
 def square(ni: int, nj: int) -> Floats:
-    """Return the parameters (ni * nj, 2), (xi, eta), of a grid's nodes, eta running fastest."""
+    """Return the parameters xi, eta (ni * nj, 2) of a grid's nodes; eta varies fastest."""
     xi, eta = np.linspace(0.0, 1.0, ni), np.linspace(0.0, 1.0, nj)
     return np.stack(np.meshgrid(xi, eta, indexing="ij"), axis=-1).reshape(-1, 2)
 
@@ -44,7 +44,7 @@ def rim(ni: int, nj: int, topology: Topology) -> np.ndarray[Any, np.dtype[np.boo
 
 
 def lift(xp: Any, points: Any, powers: int) -> Any:
-    """Return [sin, cos, power 1 .. `powers`] of xi and eta (p, 4 + 2 powers): the paper's Lift-Layer.
+    """Return sin, cos and powers 1 to `powers` of xi and eta (p, 4 + 2 powers): the paper's Lift-Layer.
 
     `xp` is numpy or torch. Xiao et al., arXiv 2501.11937, section III.
     """

@@ -34,7 +34,7 @@ class Canonical:
     symmetric: bool = False  # an O boundary that is its own mirror image
 
     def back(self, planes: Floats) -> Floats:
-        """Transform a grid `planes` (2, ni, nj) from the frame back into the original boundary."""
+        """Return a grid `planes` (2, ni, nj) transformed from the frame back to the original boundary."""
         z = planes[0] + 1j * planes[1]
         along, across, transposed = self.element
         if self.symmetric:
@@ -53,12 +53,12 @@ class Canonical:
 def canonical(boundary: Boundary) -> Canonical:
     """Return a quad or O boundary in its canonical frame, or unchanged if rounding would merge its nodes.
 
-    Descent amplifies rounding errors: thirty steps around a corner turn 1e-16 into 1e-3. The steps must be
-    bitwise the same for a domain that is translated, rotated, scaled, mirrored, or has its sides relabelled.
-    The edges are therefore transformed to a frame that they define, and rounded in this frame to 1e-9 of
-    their size. In the frame of an O boundary the cut runs from 0 to 1. Of this boundary and its mirror image,
-    the one whose bytes come first is taken. In the frame of a quad the corners give origin and unit. Of its
-    relabellings, the one whose bytes come first is taken.
+    Descent amplifies rounding errors: thirty steps around a corner turn 1e-16 into 1e-3. The steps must
+    therefore be bitwise the same if a domain is translated, rotated, scaled, mirrored, or has its sides
+    relabelled. To this end the edges are transformed to a frame that they define, and rounded there to 1e-9
+    of their size. In the frame of an O boundary the cut runs from 0 to 1; of the boundary and its mirror
+    image, the one whose bytes come first is taken. In the frame of a quad the corners define origin and unit;
+    of the eight relabellings, the one whose bytes come first is taken.
     """
     return _of_body(boundary) if boundary.periodic else _of_quad(boundary)
 

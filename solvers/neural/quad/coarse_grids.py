@@ -50,7 +50,7 @@ def rims(planes: Floats) -> Sides:
 
 
 def thinned(sides: Sides, ni: int, nj: int) -> Sides:
-    """Return the sides with ni and nj nodes, interpolated linearly at equal steps of the index."""
+    """Return the sides reduced to ni and nj nodes, by linear interpolation at equal steps of the index."""
     return between(sides[0], ni), between(sides[1], ni), between(sides[2], nj), between(sides[3], nj)
 
 
@@ -67,8 +67,8 @@ def transfinite(sides: Sides) -> Floats:
 def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
     """Return the nodes (batch, 2, m, n) of the network's grids inside `sides`.
 
-    Grids have 33 x 33 nodes; Winslow's grids have as many as the sides, but at least 33 and at most 65 per
-    direction. `head` is an index into `encoding.HEADS`.
+    Grids have 33 x 33 nodes. Only grids of Winslow's head have as many nodes as the sides, but at least 33
+    and at most 65 per direction. `head` is an index into `encoding.HEADS`.
     """
     base = transfinite(thinned(sides, LATENT, LATENT))
     shares = None if head == WINSLOW else _shares
@@ -88,10 +88,10 @@ def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
 def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, around: bool = False) -> Any:
     """Return grids `z` (batch, n, n), or strips (batch, m + 1, n) of bodies (`around`), moved by a network.
 
-    `unit`: the same grids at unit size, and the factors (batch, 1, 1) back; `network`: function from grids
-    near Winslow's and their last Picard step to displacements; `shares`: function from grids and
-    displacements to the fractions (batch, 1, 1) of the displacements that are applied; None: all of them;
-    `xp`: numpy or torch, the module of the arrays.
+    `unit`: the same grids at unit size, and the factors (batch, 1, 1) that undo the scaling; `network`:
+    function from grids near Winslow's and their last Picard step to displacements; `shares`: function from
+    grids and displacements to the fraction (batch, 1, 1) of the displacements that is applied; None applies
+    all; `xp`: numpy or torch, the module of the arrays.
     """
     sized, back = unit
     near, step = approach(sized, xp, around)
@@ -113,7 +113,7 @@ def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
 
 
 def in_frame(z: Any, xp: Any) -> tuple[Any, Any]:
-    """Return grids at unit size (`encoding.frame`), and the factors (batch, 1, 1) back."""
+    """Return grids at unit size (`encoding.frame`), and the factors (batch, 1, 1) that undo the scaling."""
     middle, factor = (value[:, None, None] for value in frame(z, xp))
     return times(z - middle, factor), factor.conj() / (factor.real**2 + factor.imag**2)
 
@@ -124,6 +124,6 @@ def _shares(near: Complexes, move: Complexes) -> Floats:
 
 
 def share(start: Complexes, answer: Complexes) -> float:
-    """Return the fraction of the way from `start` to `answer` (m, n) to take: 1 unless cells fold."""
+    """Return how far to go from `start` to `answer` (m, n), as a fraction: 1 unless cells would fold."""
     tried = (part for part in (1.0, *SHARES) if not count_folded(pairs_of(start + part * (answer - start))))
     return next(tried, 1.0)

@@ -31,12 +31,12 @@ STRETCH = 30.0  # factor of small Picard steps in the inverse hyperbolic sine
 
 
 def frame(z: Any, xp: Any) -> tuple[Any, Any]:
-    """Return the centre (batch,) of grids `z` (batch, n, n), complex, and the factor (batch,) to unit size.
+    """Return the centres (batch,) and the factors (batch,) to unit size of complex grids `z` (batch, n, n).
 
     ``(z - middle) * factor`` has area 1. Its x direction is that of the sum of two vectors: the mean vector
     from west to east, and the mean vector from south to north rotated by a quarter turn. If the sides of a
-    domain are relabelled, in one of eight ways, the frame is relabelled in the same way. The frame depends on
-    boundary nodes only.
+    domain are relabelled in one of the eight possible ways, the frame is rotated or mirrored in the same way.
+    The frame depends only on boundary nodes.
     """
     south, north, west, east = z[:, :, 0], z[:, :, -1], z[:, 0], z[:, -1]
     outline = xp.concatenate(
@@ -59,9 +59,9 @@ def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
     """Return the network's inputs (batch, n, n, FEATURES) for normalised complex grids `z` (batch, n, n).
 
     `step`, of the shape of `z`, is the last Picard step (`picard.approach`). `around`: `z` are unrolled O
-    grids (batch, m + 1, n), whose last column is the first plus one period: differences along xi are
-    periodic, equal steps are subtracted from places, and the result is (batch, m, n, ...). The features are
-    in the order of `symmetry.SEEN`.
+    grids (batch, m + 1, n), whose last column is the first plus one period. Then differences along xi are
+    periodic, positions are relative to those with equal steps, and the result is (batch, m, n, FEATURES). The
+    features are in the order of `symmetry.SEEN`.
     """
     n = z.shape[-1]
     if around:

@@ -17,12 +17,12 @@ STEPS, STILL = 50, 1e-14  # most Newton steps, and the step over the body's size
 
 
 def inside(wall: Complexes) -> complex:
-    """Return the point of least potential inside a simple closed curve `wall` (n,).
+    """Return the point inside a simple closed curve `wall` (n,) at which a repulsive potential is least.
 
     The first node of the curve is not repeated. The potential is V(p) = ∮ |p - x|⁻⁴ ds, which tends to
-    infinity at the wall. Its minimum is where the body is thickest; it is needed for bodies whose centroid
-    lies outside of them. The point is translated, rotated and scaled with the body. If minima are equal, the
-    one nearest to the first node of the wall is taken.
+    infinity at the wall. Its minimum is where the body is thickest. It is used for bodies whose centroid lies
+    outside the body. If the body is translated, rotated or scaled, so is the point. Of equal minima, the one
+    nearest to the first node of the wall is taken.
     """
     size = float(np.abs(wall - wall[0]).max())
     curve = (wall - wall[0]) / size

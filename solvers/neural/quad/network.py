@@ -39,8 +39,8 @@ LINE = 64  # bytes that a row of weights is rounded up to
 def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
     """Return the names and shapes of the weights of a network.
 
-    `widths`: counts of sets of eight channels on each level, the finest first; `blocks`: counts of residual
-    blocks on each; `heads`: count of displacement fields in its output.
+    `widths`: number of sets of eight channels on each level, the finest level first; `blocks`: number of
+    residual blocks on each level; `heads`: number of displacement fields in the output.
     """
     arrays: Shapes = {"lift": (widths[0], FEATURES), "lift_bias": (widths[0],)}
 
@@ -80,9 +80,10 @@ def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...
 
 @lru_cache(maxsize=4)
 def rim_factor(m: int, n: int, around: bool) -> Floats:
-    """Return the factor (m, n) of displacements: 0 on the boundary, d/(d+2) per axis at d nodes from it.
+    """Return the factor (m, n) of displacements: 0 on the boundary, inside the product of two d / (d + 2).
 
-    With `around`, for O grids, only the distance along eta counts.
+    d is the distance from the boundary in nodes, along xi and along eta; with `around` (O grids) only along
+    eta.
     """
     along, across = (np.minimum(np.arange(k), np.arange(k)[::-1]).astype(np.float64) for k in (m, n))
     rise = np.multiply.outer(np.ones(m) if around else along / (along + 2.0), across / (across + 2.0))
@@ -90,7 +91,7 @@ def rim_factor(m: int, n: int, around: bool) -> Floats:
 
 
 class UNet(Generic[Field]):
-    """The sequence of the network's layers; subclasses compute or record `layer`, `silu` and `finer`."""
+    """The sequence of the network's layers; subclasses define `layer`, `silu` and `finer`."""
 
     def layer(self, name: str, x: Field, stride: int = 1, add: Field | None = None, room: str = "") -> Field:
         """Return the convolution of `x` with the weights of layer `name`, plus `add`.
@@ -108,7 +109,7 @@ class UNet(Generic[Field]):
         raise NotImplementedError
 
     def through(self, h: Field, blocks: Sequence[int]) -> Field:
-        """Return the output for features `h`, with the counts `blocks` of residual blocks on each level."""
+        """Return the output for features `h`; `blocks` has the number of residual blocks on each level."""
         h = self.layer("lift", h)
         skips: list[Field] = []
         coarsest = len(blocks) - 1

@@ -36,8 +36,8 @@ COMPACT = 0.15  # least over largest distance of the wall from the middle, of bo
 def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) -> Floats:
     """Return the nodes (batch, 2, 65, 33) of the network's grids of O `boundaries` with equal node counts.
 
-    `head` is an index into `encoding.HEADS`. Raises InputError: with 65 nodes, a wall winds once neither
-    around the centroid of the body nor around a point inside the body.
+    `head` is an index into `encoding.HEADS`. Raises InputError: a wall, reduced to 65 nodes, does not wind
+    once around the centroid of the body, nor around the point `inside` the body.
     """
     walls, strips, centres, once = _strips(boundaries)
     if not once.all():
@@ -53,9 +53,10 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
 
 
 def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
-    """Return strips `base` (batch, m + 1, n) with equal steps, moved by the network and closed.
+    """Return the strips `base` (batch, m + 1, n), which have equal steps, moved by the network and closed.
 
-    `factor`: (batch, 1, 1) to unit size; `network` as in `coarse_grids.answered`; `xp`: numpy or torch.
+    `factor`: (batch, 1, 1) scales them to unit size; `network`: as in `coarse_grids.answered`; `xp`: numpy or
+    torch.
     """
     strip = answered(base, (base * factor, 1.0 / factor), network, None, xp, around=True)
     if head == WINSLOW:

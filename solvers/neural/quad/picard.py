@@ -40,11 +40,11 @@ THIRD, FOURTH = np.array(
 def approach(
     z: Any, xp: Any, around: bool = False, steps: int = STEPS, *, harmonic: bool = True
 ) -> tuple[Any, Any]:
-    """Return grids nearer to Winslow's inside the boundaries of `z`, and the last step, of the shape of `z`.
+    """Return grids nearer to Winslow's than `z`, with the same boundaries; and the last step, both like `z`.
 
-    `z`: (batch, n, n) grids of unit size, complex, arrays of `xp`, numpy or torch; `around`: `z` are strips
-    (batch, m + 1, n), whose last column is the first plus one period; `steps`: number of Picard steps;
-    `harmonic`: start from the harmonic grid, else from `z` with acceleration.
+    `z`: (batch, n, n) complex grids of unit size, arrays of `xp` (numpy or torch); `around`: whether `z` are
+    strips (batch, m + 1, n), whose last column is the first plus one period; `steps`: number of Picard steps;
+    `harmonic`: whether to start from the harmonic grid; otherwise from `z`, with acceleration.
     """
     if xp is np:
         return _compiled(z, around, steps, harmonic)
@@ -86,9 +86,9 @@ def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
 
 
 def nodes_after(n: int) -> int:
-    """Return the number of nodes per direction with which the steps after the network are made.
+    """Return the number of nodes per direction of the grid on which the steps after the network are made.
 
-    `n` is the number of nodes of the grid along a direction.
+    `n` is the number of nodes per direction of the final grid.
     """
     return min(max(n, LATENT), FINER)
 

@@ -81,7 +81,7 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 
 
 def table(size: int) -> Integers:
-    """Return for each entry of the kernels K[h, g] its index in one set of weights (8 size²,).
+    """Return, for each entry of the 8 x 8 kernels K[h, g], its index in one set of 8 size² weights.
 
     The result has the shape (8, 8, size²).
     """

@@ -35,7 +35,7 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
     """Return the strips Z of O grids `z` (batch, m + 1, n) around `centres` (batch,), and a mask (batch,).
 
     The first index of `z` runs around the body and repeats the first node. The mask tells which grids wind
-    once around their centre; the strips of others are of no use.
+    once around their centre; the strips of the others cannot be used.
     """
     off = z - centres[:, None, None]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -66,13 +66,13 @@ def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any 
 
 
 def even(strips: Any, n: int, xp: Any = np) -> Any:
-    """Return strips (batch, m + 1, n) with equal steps between the first and the last row of `strips`."""
+    """Return strips (batch, m + 1, n) with equal steps from the first row of `strips` to their last."""
     eta = xp.linspace(0.0, 1.0, n, dtype=strips.real.dtype, device=strips.device)
     return strips[:, :, :1] * (1.0 - eta) + strips[:, :, -1:] * eta
 
 
 def factors(strips: Any, xp: Any = np) -> Any:
-    """Return the factor (batch,) for each strip (batch, m + 1, n) that makes the area of half a period 1."""
+    """Return the factor (batch,) by which half a period of each strip (batch, m + 1, n) gets the area 1."""
     heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
     return 1.0 / xp.sqrt(0.5 * TURN * heights)
 

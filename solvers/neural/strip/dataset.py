@@ -31,8 +31,8 @@ class Strips:
     """n strips, the conformal images of domains around bodies, as Fourier modes.
 
     `wall` and `far` (n, 2 MODES + 1) are the modes of the position F on the two walls of each strip.
-    `residual` (n, 2 MODES + 1, LEVELS) are the modes of R, the difference of Winslow's solution and the
-    harmonic one.
+    `residual` (n, 2 MODES + 1, LEVELS) are the modes of R, which is Winslow's solution minus the harmonic
+    base.
     """
 
     wall: Complexes
@@ -87,11 +87,10 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
 
 @dataclass(frozen=True)
 class StripTargets:
-    """Inputs (n, CHANNELS, COLUMNS) and (n, SCALARS); wanted outputs (n, 2 Q, COLUMNS) of unit mean square.
+    """Inputs (n, CHANNELS, COLUMNS), (n, SCALARS); wanted outputs (n, 2 Q, COLUMNS), whose mean square is 1.
 
-    An output times `scale` gives the coefficients of R / size^2 in `basis` (Q, LEVELS - 2). R is the
-    difference of Winslow's solution and the harmonic one; size is a measure of the walls' deviation from
-    straight lines.
+    An output times `scale` gives the coefficients of R / size^2 in `basis` (Q, LEVELS - 2). R is Winslow's
+    solution minus the harmonic base; size measures how far the walls deviate from straight lines.
     """
 
     channels: Floats

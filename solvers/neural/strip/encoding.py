@@ -31,8 +31,8 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 
     - channels (batch, CHANNELS, COLUMNS): the harmonic base and its slope along theta at the depths `DEPTHS`,
       both divided by the size;
-    - scalars (batch, SCALARS): the logarithm of the size, the height and the shear of the strip, shifted so
-      that their magnitudes are about one;
+    - scalars (batch, SCALARS): the logarithm of the size, the height of the strip and its shear, each shifted
+      so that its magnitude is about one;
     - size (batch,): the root mean square deviation of the walls from straight lines.
     """
     mean = (far - wall)[:, 0]

@@ -23,7 +23,7 @@ from meshonet.solvers.solution import Solution
 
 @dataclass(frozen=True)
 class StripOperator(Operator):
-    """A strip network with its encoding; without weights it is the harmonic base alone.
+    """A strip network with its encoding; without weights, its answer is the harmonic base.
 
     `basis` (Q, LEVELS - 2) are the basis functions of the network's targets, and `scale` is the size of the
     targets.
@@ -47,12 +47,13 @@ class StripOperator(Operator):
         return cls(name, "o", header, weights, basis, scale, StripNetwork(weights))
 
     def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
-        """Return modes (batch, 2 MODES + 1, LEVELS) of Winslow - harmonic for modes (batch, 2 MODES + 1).
+        """Return the modes (batch, 2 MODES + 1, LEVELS) of R, Winslow's solution minus the harmonic base.
 
-        `hand` (batch,) is the result of `meshonet.geometry.polygon.mirror.handedness`. It makes the result
-        equivariant under reflection: for a strip and its mirror image, whose modes are conjugate, the network
-        is applied to the same one of both, and the result for a symmetric strip is made symmetric. Modes that
-        Picard steps would not correct are zero.
+        `wall` and `far` (batch, 2 MODES + 1) are the modes of the strip's walls. `hand` (batch,) is the
+        result of `meshonet.geometry.polygon.mirror.handedness`. It makes the result equivariant under
+        reflection: of a strip and its mirror image, whose modes are conjugate, the network is always applied
+        to the same one; for a symmetric strip the result is made symmetric. Modes that Picard steps would not
+        correct are zero.
         """
         if self.network is None:
             return np.zeros((*wall.shape, LEVELS), complex)
@@ -78,7 +79,7 @@ class StripOperator(Operator):
         return "conformal"
 
     def expected_error(self, boundary: Boundary, solution: Solution) -> float:
-        """Return the relative L2 distance by which a further Picard step moves the nodes of a solution."""
+        """Return the relative L2 distance by which one more Picard step moves the nodes of a solution."""
         better = self.solve([boundary], (solution.cycles or 0) + 1)[0]
         if better.model is None:  # the step diverges
             return math.inf

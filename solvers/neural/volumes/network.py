@@ -47,7 +47,7 @@ class VolumeMeshNet:
 
 @dataclass(frozen=True)
 class VolumeNetwork:
-    """Trained networks; sensors (count, s, 3), centre (count, 3) and size of each geometry."""
+    """Trained networks, one per geometry; `weights` include sensors (count, s, 3), centres and sizes."""
 
     name: str
     weights: Weights
