@@ -61,8 +61,8 @@ from meshonet.geometry.sections.stack import Stack
 def read_aircraft(data: Table, source: Source) -> Aircraft:
     """Return the aircraft that a table of TOML describes; paths are relative to the folder of `source`.
 
-    Raises InputError, with the place: an unknown key; an invalid value; a file that cannot be read; no body,
-    or more than one.
+    Raises InputError, with the place: a key is unknown; a value is invalid; a file cannot be read; there is
+    no body, or more than one.
     """
     data.only("kind", "name", "bodies", "wings", "half")
     folder = source.path.parent if source.path else Path()

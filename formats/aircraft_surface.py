@@ -32,7 +32,7 @@ class _Patches:
     names: tuple[str, ...]
 
     def numbers(self, row: Table) -> list[int]:
-        """Return the numbers of the patches that the table `row` chooses by number or name; default: all."""
+        """Return the indices of the patches that the table `row` selects by number or name; default: all."""
         chosen = row.data.get("patches")
         if chosen is None:
             return list(range(len(self.nodes)))
@@ -56,7 +56,7 @@ def surface_body(row: Table, folder: Path) -> tuple[Body, AircraftAxes, tuple[st
     The body consists of the patches that the key ``patches`` names. Without this key, it consists of all
     patches of the file that have a side in the plane of symmetry. Paths are relative to `folder`.
 
-    Raises InputError: a file without a surface; a body that is not that of half an aircraft, or has holes.
+    Raises InputError: the file has no surface; the body is not that of half an aircraft, or has holes.
     """
     row.only("name", *KEYS)
     file = _read(row, folder)

@@ -26,8 +26,8 @@ class Conversion:
     Parameters
     ----------
     extrude : height in z to which planar grids are extruded; None leaves them planar.
-    planes : number of planes of nodes in z, or about the axis; None stands for two in z, and for the default
-        of `Revolution` about the axis.
+    planes : number of planes of nodes along z, or around the axis. None: two planes along z, or the default
+        of `Revolution` around the axis.
     swap : exchange xi and eta.
     normalise : scale to unit chord or unit length.
     coarsen : keep every `coarsen`-th node.
@@ -81,16 +81,16 @@ class Conversion:
         return copied(scaled(grid, self.scale) if self.scale != 1.0 else grid, self.copies)
 
     def read(self, source: str, fmt: str | None, *, boundaries: bool) -> Iterator[Grid | Boundary]:
-        """Yield the boundaries of `source`, with the changes, if `boundaries` is set; otherwise its grids."""
+        """Yield the changed grids of `source`, or its changed boundaries if `boundaries` is set."""
         if not boundaries:
             return read_grids(source, fmt)
         sampling = Sampling(normalise=self.normalise)
         return (shape.boundary(sampling) for shape in read_shapes(source, fmt))
 
     def of_boundaries(self, source: str, output: str, from_format: str | None, to_format: str | None) -> bool:
-        """Return whether boundaries are written in place of grids.
+        """Return whether boundaries are written instead of grids.
 
-        They are if no change needs grids, and the input or the output has a format without grids.
+        This is so if no change needs grids, and the format of the input or of the output has no grids.
         """
         changed = self.swap or self.coarsen > 1 or self.copies != 1 or self.scale != 1.0
         if changed or self.heights() or self.turn():
@@ -106,8 +106,8 @@ class Conversion:
     def extruder(self, output: str, to_format: str | None) -> Callable[[Path, Iterable[Grid]], None] | None:
         """Return a function that extrudes or revolves planar grids and writes them to a file.
 
-        None if grids are neither extruded nor revolved. Raises InputError: the format stores only planar
-        grids.
+        The result is None if grids are neither extruded nor revolved. Raises InputError: the format stores
+        only planar grids.
         """
         heights, turn = self.heights(), self.turn()
         if not heights and turn is None:
@@ -138,7 +138,7 @@ def plot3d_variant(
 
 
 def unused_iblank(grid: Grid | Boundary) -> str | None:
-    """Return a note on nodes marked by an iblank array, whose marks are lost; None if no nodes are marked."""
+    """Return a note on nodes marked by an iblank array (marks are lost); None if no nodes are marked."""
     counts = grid.provenance.get("iblank") if isinstance(grid, Grid) else None
     marked = [f"{count} with {value}" for value, count in (counts or {}).items() if value != "1"]
     if not marked:

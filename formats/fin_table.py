@@ -24,7 +24,7 @@ def fin_table(data: Table, folder: Path, more: tuple[str, ...]) -> Fin:
 
 
 def fin_of(wing: Stack, name: str) -> Fin:
-    """Return a wing as a fin, whose span is along y; `name` is that of the fin."""
+    """Return a wing as a fin, whose span is along y; `name` is the name of the fin."""
     values = {field.name: getattr(wing, field.name) for field in fields(wing)}
     return Fin(**(values | {"name": name}))
 

@@ -33,22 +33,23 @@ class Format:
     name : name of the format for users.
     suffixes : extensions in lower case, with the dot.
     description : short description for users.
-    read_shapes : function that yields shapes, which can be sampled into boundaries; None if the format
-        contains grids, whose outer edges are then used, or cannot be read.
-    read_grids, write_grids, write_boundaries, write_layouts : functions; None if the format cannot do this.
+    read_shapes : function that yields shapes, which can be sampled into boundaries. None if the format cannot
+        be read, or contains grids, whose outer edges then serve as shapes.
+    read_grids, write_grids, write_boundaries, write_layouts : functions that do what their names say; None if
+        the format does not support it.
     sniff : function that recognises a file by its first `HEAD_BYTES` bytes.
     names_patches : whether the format stores names of patches and the topology.
     blocks : how a planar multi-block grid is written: blocks ``kept``, or ``merged`` into one unstructured
         mesh; empty if it cannot be written.
-    space : kinds of three-dimensional grids that `write_grids` takes and `read_grids` returns.
+    space : kinds of three-dimensional grids that `write_grids` accepts and `read_grids` returns.
     many : whether one file can contain several grids or boundaries.
     one_size : whether all samples of a file must have the same node counts and topology.
     beside : whether other files are written next to the file, so that it cannot be written to a stream.
-    fills_folder : whether the file stands for a folder that is written with it. A folder then contains one
+    fills_folder : whether the file stands for the folder in which it is written. Such a folder contains one
         grid, and the file cannot be written to a stream.
-    choices : groups of options; one word of each group may follow the name.
+    choices : groups of options; the name may be followed by one word of each group.
     reads_options : whether `read_grids` takes ``options`` as `write_grids` does.
-    suffix_options : option that an extension implies when a file is written.
+    suffix_options : by extension, the option that it implies when a file is written.
     """
 
     name: str
@@ -72,7 +73,7 @@ class Format:
     suffix_options: Mapping[str, str] = field(default_factory=dict)
 
     def file_at(self, path: str) -> str:
-        """Return the file to write for a user's `path`; if the format fills a folder, it is inside a folder.
+        """Return the file to write for a user's `path`; if the format fills a folder, the file is inside one.
 
         >>> case = Format("openfoam", (".foam",), "", fills_folder=True)
         >>> case.file_at("runs/first"), case.file_at("runs/first/case.foam")
@@ -84,7 +85,7 @@ class Format:
         return str(place / f"{place.resolve().name}{self.suffixes[0]}")
 
     def with_options(self, text: str) -> Format:
-        """Return the format with the options in `text`, words separated by commas, in place of earlier ones.
+        """Return the format with the options in `text`, words separated by commas; earlier ones are dropped.
 
         Raises InputError: an unknown word, or two that exclude each other.
         """
@@ -129,7 +130,7 @@ def later(function: str, /, *args: Any, **settings: Any) -> Any:
 
 
 def only_one(grids: Iterable[Grid], what: str) -> Grid:
-    """Return the only grid of `grids`. Raises InputError: none or several, named `what` in the message."""
+    """Return the only grid of `grids`. Raises InputError: there are none, or several; `what` names them."""
     several = iter(grids)
     first = at_least_one(several)
     if next(several, None) is not None:

@@ -22,11 +22,11 @@ _IS_DATASET = re.compile(r"\.(?:h5|hdf5)(?:#[a-z0-9,:]+)?$", re.IGNORECASE)
 
 
 class Numbered(NamedTuple):
-    """An input with the numbers of its members among the members of all inputs.
+    """An input, and which numbers its members have among the members of all inputs.
 
-    Members are the shapes or grids that an input contains. `first` is the number of the first one; None:
-    members are counted. `step` is the difference of the numbers of successive members; 0: there is a single
-    member.
+    Members are the shapes or grids that an input contains. `first` is the number of its first member; if
+    None, members are numbered as they are read. `step` is the difference between the numbers of successive
+    members; 0 means that there is a single member.
     """
 
     text: str | InputError
@@ -45,11 +45,11 @@ class Inputs:
     pick : patterns (``naca*``). Files in folders, archives and lists are used only if their name, with or
         without extension, matches one of them; a pattern with a ``/`` is compared with the path. Case is
         ignored.
-    shard : (k, n): `own` and `parts` yield only every n-th input, starting with the k-th, counted from 1.
+    shard : (k, n): `own` and `parts` yield only every n-th input, starting with input number k (from 1).
     grids_only : whether only files with grids are taken from folders and archives.
 
-    Raises InputError: standard input is named twice, or is a terminal; an invalid shard; patterns without a
-    folder, archive or list to pick from.
+    Raises InputError: standard input is named twice, or is a terminal; the shard is invalid; there are
+    patterns, but no folder, archive or list.
     """
 
     words: tuple[str, ...]
@@ -82,7 +82,7 @@ class Inputs:
         yield from Walk(self).files()
 
     def own(self) -> Iterator[Numbered]:
-        """Yield the inputs of the shard; of a dataset every n-th sample is taken."""
+        """Yield the inputs of the shard; for a dataset, only every n-th of its samples is taken."""
         k, n = self.shard
         if n == 1:
             yield from map(Numbered, self)
@@ -97,9 +97,9 @@ class Inputs:
             number += count
 
     def parts(self, size: int) -> Iterator[tuple[int, tuple[str | InputError, ...]]]:
-        """Yield number and inputs of the parts of the shard, `size` inputs or samples of datasets each.
+        """Yield number and inputs of each part of the shard; a part has `size` inputs or samples of datasets.
 
-        Parts are the same whatever the shard: the k-th of n has every n-th part.
+        The division into parts does not depend on the shard: shard k of n has every n-th part.
         """
         number, left = 0, size
         entries: list[str | InputError] = []
@@ -128,7 +128,7 @@ class Inputs:
         return len(list(islice(self, _BEGINNING)))
 
     def count(self) -> int | None:
-        """Return the number of members of the shard, None if an input is a pipe.
+        """Return the number of members of the shard; None if an input is a pipe.
 
         A dataset counts as its number of samples, any other file as one.
         """
@@ -165,7 +165,7 @@ def is_dataset(entry: str) -> bool:
 
 
 def samples_in(entry: str | InputError) -> DatasetSamples | None:
-    """Return the samples of an input that is a dataset, None for any other and one that cannot be read."""
+    """Return the samples of an input that is a dataset; None for other inputs and unreadable ones."""
     if isinstance(entry, InputError) or not is_dataset(entry):
         return None
     from meshonet.formats.hdf5.read import samples_of

@@ -37,8 +37,8 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
 def write_vtu(path: Path, grids: Iterable[Grid]) -> None:
     """Write the only grid of `grids`: quadrilaterals and lines, or for a volume hexahedra and quadrilaterals.
 
-    The cell array ``part`` is 0 inside. On the boundary it is the number of the patch, from 1, in the order
-    of the sides south, east, north, west.
+    The cell array ``part`` is 0 for inner cells. For boundary cells it is the number of the patch, from 1, in
+    the order of the sides south, east, north, west.
     """
     import meshio
 

@@ -32,8 +32,8 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
     The path is in the folder of the destination, so that the last step is one atomic rename. For ``-``
     (standard output), devices and pipes it is in the system's temporary folder, and its bytes are copied at
     the end. On any exception, including KeyboardInterrupt and SystemExit, it is removed and the destination
-    stays unchanged. `make_folder` creates a missing folder of the destination. `beside` announces further
-    files next to the path, which standard output cannot take.
+    stays unchanged. `make_folder` creates a missing folder of the destination. `beside` says that further
+    files are written next to the path, which is impossible on standard output.
 
     Raises InputError: the destination is a folder; its folder is missing or not writable; the disk is full.
 

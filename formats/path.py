@@ -34,8 +34,8 @@ MOST_POINTS = 100_000
 def path_of(text: str) -> Path:
     """Return the path of a file, or of standard input for ``-``; the extension determines whether it is TOML.
 
-    Raises InputError, with the place: a file that cannot be read; a line without three numbers; an unknown
-    key; an invalid value.
+    Raises InputError, with the place: the file cannot be read; a line does not have three numbers; a key is
+    unknown; a value is invalid.
     """
     source = open_source(text)
     with in_source(source.name):

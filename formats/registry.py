@@ -34,7 +34,7 @@ _LIKE_DESIGNATION = re.compile(r"([a-z]+)[\s:_-]*(\d[\w.-]*)", re.IGNORECASE)
 def format_named(name: str) -> Format:
     """Return the format with the given name, which may have options (``gmsh:4.1,ascii``) or be an extension.
 
-    Raises InputError: no such format or option; the message lists the known ones.
+    Raises InputError: there is no such format or option; the message lists those that exist.
     """
     word, _, options = name.lower().lstrip(".").partition(":")
     if word in _OLD_NAMES:
@@ -101,7 +101,7 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
 
 
 def picture_format(output: str, to_format: str | None = None) -> Format:
-    """Return the format of a picture by the extension of `output`; standard output (``-``) is ``png``.
+    """Return the format of a picture, by the extension of `output`; standard output (``-``) gets ``png``.
 
     Raises InputError: `output` is not a picture.
     """

@@ -30,7 +30,7 @@ def stack_table(data: Table, folder: Path, name: str, more: tuple[str, ...] = ()
 def stack_options(data: Table, name: str, more: tuple[str, ...]) -> dict[str, Any]:
     """Return the arguments of `Stack`, except its sections, of a table; the keys `more` are also allowed.
 
-    Raises InputError: any other key; an unknown word; a value that is not a number.
+    Raises InputError: there is another key; a word is unknown; a value is not a number.
     """
     data.only("kind", "tip", "between", *_SPACINGS, "name", "sections", *more)
     words = (("kind", KINDS, "wing"), ("tip", TIPS, "round"), ("between", BETWEEN, "linear"))
@@ -90,7 +90,8 @@ def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) 
     `z` is the section's z, and `before` are the sections that precede it. The value is given by the key
     `direct` (``x`` or ``y``; default: as in the previous section, 0 in the first) or by the key `angle`
     (``sweep`` or ``dihedral``), the angle in degrees between the z axis and the line from the previous
-    section. Raises InputError: both keys; an angle in the first section; an angle of more than 85 degrees.
+    section. Raises InputError: both keys are given; the first section has an angle; an angle exceeds 85
+    degrees.
     """
     if angle not in row.data:
         return row.number(direct, getattr(before[-1], direct) if before else 0.0)

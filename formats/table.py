@@ -50,7 +50,7 @@ def _write(write: Any, name: str, path: Path, grids: Iterable[Grid], *rest: Any,
 
 
 def check_space(record: Format, kind: Space, output: str = "") -> None:
-    """Raise InputError, about an `output` if given, if a format cannot store a kind of blocks in space."""
+    """Raise InputError if a format cannot store a `kind` of blocks in space; `output` is its file, if any."""
     if kind not in record.space:
         able = ", ".join(other.name for other in _FORMATS if kind in other.space and other.write_grids)
         held = ", ".join(("grids in the plane", *record.space))

@@ -30,9 +30,9 @@ class Table:
 
     @contextmanager
     def located(self) -> Iterator[None]:
-        """Within the ``with`` block, put the place of this table at the start of the places of errors.
+        """Within the ``with`` block, prepend the place of this table to the places of errors.
 
-        An error whose place already begins with it is not changed.
+        An error whose place already begins with this place is not changed.
         """
         try:
             yield
@@ -79,7 +79,7 @@ class Table:
         return self._number(key, self.data.get(key))
 
     def positive(self, key: str) -> float:
-        """Return a positive number, large enough for products with it not to underflow."""
+        """Return a positive number that is large enough for products with it not to underflow."""
         value = self.number(key)
         if not value > 0:
             raise self.error(key, f"{value:g} is not positive", "use more than 0")
@@ -128,7 +128,7 @@ class Table:
         return x, y
 
     def pairs(self, key: str, least: int, columns: str = "x, r") -> list[list[float]]:
-        """Return a list of at least `least` pairs of numbers, whose names are `columns`."""
+        """Return a list of at least `least` pairs of numbers; `columns` names the two numbers in messages."""
         rows = self.data.get(key)
         if not isinstance(rows, list) or len(rows) < least:
             raise self.error(

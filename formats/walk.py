@@ -51,7 +51,7 @@ def _readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:
 class Walk:
     """One walk through inputs.
 
-    It counts the files found in folders, archives and lists, and those of them that are picked.
+    It counts the files that are found in folders, archives and lists, and how many of them are picked.
     """
 
     def __init__(self, inputs: Inputs) -> None:

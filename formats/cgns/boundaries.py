@@ -33,9 +33,9 @@ _FACES = ("FaceCenter", "IFaceCenter", "JFaceCenter", "KFaceCenter", "EdgeCenter
 
 
 def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[Face]:
-    """Yield the faces of block number `block` that have a boundary condition, named by its family.
+    """Yield the faces of block number `block` that have a boundary condition; their names are its family's.
 
-    `counts` are the zone's nodes along its three indices, 1 along the third of a plane zone.
+    `counts` are the numbers of nodes of the zone along its three indices; the third is 1 in a planar zone.
     """
     for _, group in children(zone, "ZoneBC_t"):
         for title, condition in children(group, "BC_t"):
@@ -57,7 +57,7 @@ def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[F
 def interfaces(
     base: Node, zone: Node, counts: Triple, block: int
 ) -> Iterator[tuple[str, FaceWindow, str, Points, Triple]]:
-    """Yield name, own window, donor's path, donor's range (2, 3) and index mapping of each interface."""
+    """Yield, for each interface: name, own window, path of the donor, donor's range (2, 3), index mapping."""
     for _, group in children(zone, "ZoneGridConnectivity_t"):
         for name, joint in children(group, "GridConnectivity1to1_t"):
             ranges = dict(children(joint, "IndexRange_t"))
@@ -75,7 +75,7 @@ def interfaces(
 def window_of(block: int, points: Points, counts: Triple) -> FaceWindow | None:
     """Return the window between two `points` (2, 3) of a block of `counts` nodes.
 
-    None if a point is outside.
+    The result is None if a point is outside the block.
     """
     return _window(block, points) if _inside(points, counts) else None
 

@@ -27,11 +27,11 @@ def range_of(side: Side, span: Range, counts: tuple[int, ...]) -> Integers:
 
 
 def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid) -> None:
-    """Write each connection of `grid` as an interface in both of its `zones`, which have the given names.
+    """Write each connection of `grid` as an interface in both of the zones that it joins.
 
-    Ranges count nodes from 1. The transform gives, for each index direction of the zone, the corresponding
-    direction of the donor; across the interface, a step out of the zone is a step into the donor.
-    https://cgns.github.io/standard/SIDS/multizone_interface.html
+    `zones` have the given `names`. Ranges count nodes from 1. The transform gives, for each index direction
+    of the zone, the corresponding direction of the donor zone; across the interface, a step out of the zone
+    is a step into the donor. https://cgns.github.io/standard/SIDS/multizone_interface.html
     """
     groups: dict[int, Node] = {}
     taken: dict[int, set[str]] = {}

@@ -72,7 +72,7 @@ def children(node: Node, label: str) -> Iterator[tuple[str, Node]]:
 
 
 def array(node: Node, ndim: int) -> NDArray[Any]:
-    """Return a node's numbers, of rank `ndim`. Raises InputError: no numbers; a wrong type, rank or size."""
+    """Return a node's array of rank `ndim`. Raises InputError: there is none; wrong type, rank or size."""
     place = printable(str(node.name))
     data = own(node, _DATA)
     if not isinstance(data, h5py.Dataset) or data.is_virtual or data.external:

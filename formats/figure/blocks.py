@@ -26,7 +26,7 @@ Lines = tuple[tuple[int, int], tuple[bool, bool]]
 def lines_of_blocks(
     grid: Grid, singles: Sequence[Grid], parts: Sequence[CellsInView | None], pixels: float, every: int | None
 ) -> list[Lines]:
-    """Return the lines to draw in each block, such that lines continue from block to block.
+    """Return the grid lines to draw in each block, chosen so that lines continue from block to block.
 
     `singles` are the blocks as grids of one block, `parts` the cells of each block that are in view.
     """

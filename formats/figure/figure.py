@@ -171,7 +171,7 @@ def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | N
 
 
 def step_words(steps: list[int]) -> str:
-    """Return the ascending `steps` of the drawn lines of blocks as text; empty if all lines are drawn.
+    """Return a text on the ascending `steps` between drawn lines; it is empty if all lines are drawn.
 
     >>> step_words([1, 5]), step_words([2]), step_words([1])
     ('not all lines are drawn', 'every 2nd line', '')

@@ -41,7 +41,7 @@ class Colouring:
     label : quantity and unit, for the colour bar.
     limits : values at the two ends of the colour scale; None selects the 1st and 99th percentile of the cells
         in view.
-    worst_is_low : whether small values are bad and get the strong colours.
+    worst_is_low : whether small values are the bad ones, which get strong colours.
     """
 
     values: NDArray[Any] | tuple[NDArray[Any], ...]
@@ -61,7 +61,7 @@ class Colouring:
 
     @property
     def worst(self) -> np.ufunc:
-        """Function that reduces the values of several cells to the worst one."""
+        """Function that reduces the values of several cells to the worst of them."""
         return np.minimum if self.worst_is_low else np.maximum
 
 
@@ -142,9 +142,9 @@ def rule(
     faint: bool,
     flipped: tuple[bool, bool] = (False, False),
 ) -> None:
-    """Draw every k-th grid line and the last ones; `steps` are k for the lines i = const and j = const.
+    """Draw every k-th grid line and the last; `steps` are k for lines i = const, and for j = const.
 
-    Directions that are `flipped` are counted from the last line.
+    In directions that are `flipped`, lines are counted from the last one.
     """
     from matplotlib.collections import LineCollection
 
@@ -224,7 +224,7 @@ def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tup
 
 
 def line_step(length: Floats, area: Floats, pixels: float) -> int:
-    """Return the step k between drawn lines: in half of the area they are then at least 6 pixels apart.
+    """Return the step k between drawn lines, such that in half of the area they are 6 or more pixels apart.
 
     k is one of 1, 2, 5, 10, 20, 50 ...; `length` and `area` are those of `line_gaps`; `pixels` is the number
     of pixels in a unit of length.

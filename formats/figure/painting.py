@@ -27,7 +27,7 @@ them.
 
 
 def steps_of(sheet: CellSheet, axes: Floats, pixels: float, every: int | None) -> tuple[int, int]:
-    """Return the numbers of cells along both directions of a sheet that are drawn as one."""
+    """Return how many cells along each of the two directions of a sheet are drawn as one quadrilateral."""
     if every:
         return every, every
     flat = sheet.nodes @ axes[:2].T * pixels
@@ -41,7 +41,7 @@ def steps_of(sheet: CellSheet, axes: Floats, pixels: float, every: int | None) -
 
 @dataclass(frozen=True, eq=False)
 class Painted:
-    """Quadrilaterals (n, 4, 2), outlines (m, 2, 2), their depths, and colours (n, 4)."""
+    """Quadrilaterals (n, 4, 2) with colours (n, 4), outlines (m, 2, 2), and the depths of both."""
 
     quads: Floats
     depth: Floats

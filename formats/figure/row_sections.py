@@ -45,10 +45,10 @@ _AT_ONCE = 1 << 13
 class RowSections:
     """Sections of the grid of a blade row, a volume around an axis.
 
-    The axis is that of the rotation between periodic sides; of a grid without periodic sides, that of the
-    full ring; otherwise x.
+    The axis is that of the rotation between periodic sides. Without periodic sides, it is the axis of the
+    full ring, or x if the grid is no full ring.
 
-    Raises InputError: a grid that is not a volume with patches `hub` and `shroud`.
+    Raises InputError: the grid is not a volume with patches `hub` and `shroud`.
     """
 
     grid: Grid
@@ -96,7 +96,7 @@ class RowSections:
 
     @cached_property
     def places(self) -> list[Floats]:
-        """For each block (ni, nj, nk, 3): position along the axis, radius and angle of its nodes."""
+        """For each block, (ni, nj, nk, 3): axial position, radius and angle of its nodes."""
         return [self._cylindrical(block.nodes) for block in self.grid.blocks]
 
     def _cylindrical(self, nodes: Floats) -> Floats:
@@ -151,9 +151,9 @@ class RowSections:
         return found
 
     def at(self, span: float, values: list[Floats] | None) -> Cut:
-        """Return the section at the fraction `span` of the way from hub to shroud.
+        """Return the section at the fraction `span` of the distance from hub to shroud.
 
-        `values` are cell values of each block. Raises InputError: the section contains no cell.
+        `values` are the cell values of each block. Raises InputError: the section contains no cell.
         """
         hub, shroud = self._curves
         line = hub + span * (shroud - hub)
@@ -175,7 +175,7 @@ class RowSections:
         return made
 
     def meridional(self, values: list[Floats] | None) -> Cut:
-        """Return the cells that a half-plane through the axis and the blade cuts, in x and r."""
+        """Return the section, in x and r, by a half-plane that starts at the axis and cuts the blade."""
         blades = {patch.block for patch in self.grid.patches if patch.name == "blade"}
         theta = [nodes[..., 2] for nodes in self.places]
         middle = float(np.mean([theta[k].mean() for k in sorted(blades) or range(len(theta))]))

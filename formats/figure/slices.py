@@ -66,9 +66,9 @@ class CellSheet:
 
 
 def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet]:
-    """Return the grid surface of constant index in every block that has this index.
+    """Return the grid surface of constant index `at`, for every block that has this index.
 
-    Its values are those of the adjacent cells. Raises InputError: no block has the index.
+    The values of a surface are those of the adjacent cells. Raises InputError: no block has the index.
     """
     index = at.index or 0
     sheets = []
@@ -91,7 +91,7 @@ def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet
 class Cut:
     """Polygons (n, 12, 2), in which a plane intersects cells, and the values (n,) of the cells.
 
-    Polygons with fewer than twelve corners repeat the last one.
+    Polygons with fewer than twelve corners repeat their last corner.
     """
 
     polygons: Floats

@@ -35,8 +35,8 @@ _FLAT = 1e-9
 def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure:
     """Return a figure of a volume or surface; `colouring`, if given, has the values of its cells.
 
-    Raises InputError: a slice of a surface, or one that the grid does not have; a zoom without cells, or of
-    another dimension.
+    Raises InputError: the grid is a surface and a slice is requested, or the slice does not exist; the zoom
+    contains no cells, or has another dimension.
     """
     values = [np.asarray(part) for part in colouring.parts] if colouring else None
     where = view.part

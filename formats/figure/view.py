@@ -25,9 +25,9 @@ class View:
     slice : slice of a volume: ``i=10``, ``k=-1`` or ``x=.5``; None draws the walls, or the whole boundary of
         a volume without walls.
     seen_from : azimuth and elevation in degrees, for pictures in space; None is `SEEN_FROM`.
-    up : axis that points upwards in pictures in space, ``x``, ``y`` or ``z``; azimuth and elevation refer to
-        it.
-    span : parts of the span of a blade row, 0 to 1 from hub to shroud, at which its sections are drawn.
+    up : axis that points upwards in pictures in space, ``x``, ``y`` or ``z``; the elevation is measured from
+        the plane normal to it.
+    span : fractions of the span of a blade row (0 at the hub, 1 at the shroud) at which sections are drawn.
     meridional : draw the meridional section of a blade row.
 
     Raises InputError: an unknown form of slice, a box without extent, `every` below 1.
@@ -79,7 +79,7 @@ class View:
     def axes(self) -> Floats:
         """Unit vectors (3, 3) that point to the right, upwards and towards the viewer.
 
-        The azimuth is 0 on the axis that follows `up` in the cyclic order x, y, z.
+        The azimuth is measured from the axis that follows `up` in the cyclic order x, y, z.
         """
         azimuth, elevation = np.radians(self.seen_from or SEEN_FROM)
         level = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
@@ -104,7 +104,7 @@ def check_flat(view: View) -> None:
 def flat_box(zoom: tuple[float, ...] | None, across: int | None = None) -> Box | None:
     """Return the box of a planar picture.
 
-    A box in space is reduced to its extents in the directions other than `across`, the number of an axis.
+    A box in space is reduced to its extents along all axes except the one with the index `across`.
 
     Raises InputError: a box in space for a planar grid.
     """

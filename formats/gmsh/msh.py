@@ -27,7 +27,7 @@ _KINDS = {2: 1, 4: 3, 8: 5}
 
 
 class Link(NamedTuple):
-    """A periodic patch: its tag, its master's tag, the affine map from the master, and node pairs (n, 2)."""
+    """A periodic patch: its tag, the tag of its master, the affine map from the master, node pairs (n, 2)."""
 
     tag: int
     master: int
@@ -42,7 +42,7 @@ CellGroup: TypeAlias = "tuple[str, Indices]"
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
     """Write the only grid of `grids`: quads and boundary lines, or hexahedra and boundary quads of a volume.
 
-    Boundary elements are in physical groups named as the patches.
+    Boundary elements are in physical groups with the names of the patches.
     """
     grid = only_one(grids, "a .msh file")
     refuse_collapsed(grid, "a .msh file")

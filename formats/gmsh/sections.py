@@ -57,7 +57,7 @@ class _Stream:
         return int(self.take(kind, 1)[0])
 
     def line(self) -> int:
-        """Return the number on the first line, which is text in binary files of 2.2 as well."""
+        """Return the number on the first line, which is text even in binary files of version 2.2."""
         if not self._binary:
             return self.one("u8")
         end = self._data.find(b"\n")
@@ -73,7 +73,7 @@ class _Stream:
         return len(self._data) - self._at
 
     def bounded(self, count: int) -> int:
-        """Return `count`, a number of blocks. Raises InputError: more than the section can hold."""
+        """Return `count`, a number of blocks. Raises InputError: the section cannot hold so many."""
         if not 0 <= count <= self.left:
             raise InputError(f"should have {count} blocks and is too short", _CUT)
         return count
@@ -111,7 +111,7 @@ def elements(
 ) -> Elements:
     """Return the elements of a section ``$Elements``.
 
-    In files of version 4.1, `tags` has the group of each entity, given by dimension and number.
+    In files of version 4.1, `tags` has the physical group of each entity, by the entity's dimension and tag.
     """
     stream = _Stream(section, binary, order)
     if version == "4.1":

@@ -50,9 +50,9 @@ class _Disc(io.FileIO):
 
 @contextlib.contextmanager
 def created(path: Path, *, in_memory: bool = False, **options: Any) -> Iterator[h5py.File]:
-    """Return a context with a new HDF5 file, `options` being h5py's; raises OSError if it cannot be written.
+    """Return a context with a new HDF5 file; `options` are h5py's. Raises OSError: it cannot be written.
 
-    With `in_memory` the file is written at the end, which is faster for many objects.
+    With `in_memory` the whole file is written at the end, which is faster for many objects.
     """
     import h5py
 

@@ -37,8 +37,8 @@ class Failed(NamedTuple):
 class PartFacts:
     """Description of a part, read from its file.
 
-    `size` must be the same in all parts; `columns` are its datasets: length, shape of a row, and type.
-    `common` are digests of the facts that all its grids share, by name.
+    `size` must be the same in all parts. `columns` has, for each dataset of the part, its length, the shape
+    of a row, and the type. `common` has, by name, digests of the facts that all grids of the part share.
     """
 
     path: Path

@@ -2,7 +2,7 @@
 
 
 class UniqueNames:
-    """The names that the samples of a dataset, or of a part of one, have so far.
+    """The names that samples of a dataset, or of a part of a dataset, have been given so far.
 
     >>> names = UniqueNames()
     >>> [names.add(name) for name in ("tip", "root", "tip", "", "", "tip")]
@@ -13,7 +13,7 @@ class UniqueNames:
         self._last: dict[str, int] = {}  # number of the last sample of each name
 
     def add(self, name: str) -> str:
-        """Return `name`, with a number at its end if there is a sample of this name; no name remains none."""
+        """Return `name`, with a number appended if a sample has this name already; empty stays empty."""
         unique, number = name, self._last.get(name, 1)
         while name and unique in self._last:
             number += 1

@@ -43,14 +43,14 @@ State = Literal["missing", "complete", "extended"]
 
 
 class Input(NamedTuple):
-    """The name of an input as given, and a digest of its content."""
+    """The name of an input as the user gave it, and a digest of the input's content."""
 
     text: str
     digest: str
 
 
 class OtherPartsError(InputError):
-    """The existing parts are not parts of the dataset that is being made."""
+    """Error: the existing parts are not parts of the dataset that is being made."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class PartFiles:
     ----------
     index : path of the index.
     request : digest of the settings of all parts (`digest_of`).
-    part_size : number of inputs of each part but the last.
+    part_size : number of inputs of each part; the last part may have fewer.
     """
 
     index: Path
@@ -110,9 +110,10 @@ class PartFiles:
     def state(self, number: int, inputs: Sequence[Input]) -> State:
         """Return the state of a part: ``complete``, to be ``extended``, or ``missing``.
 
-        A part made from only the first of `inputs` is to be extended; so is one with a failed input that has
-        changed since, or that may succeed now (after lack of memory, say). Raises OtherPartsError: the part
-        was made from other inputs or with other settings; InputError: it cannot be read.
+        A part is to be extended if it was made from only the first of `inputs`. It is also to be extended if
+        one of its failed inputs has changed since, or may succeed now (for example after lack of memory).
+        Raises OtherPartsError: the part was made from other inputs or with other settings; InputError: it
+        cannot be read.
         """
         if not self.path(number).exists():
             return "missing"
@@ -155,8 +156,8 @@ class PartFiles:
     def build(self) -> int:
         """Write the index of the existing parts and return its number of samples, 0 if there is none.
 
-        Several processes may do so concurrently: the last one finds the parts of all. Raises InputError:
-        parts of different settings or sizes.
+        Several processes may call this concurrently: the last of them finds the parts of all. Raises
+        InputError: parts have different settings or sizes.
         """
         numbers, count = None, 0
         while numbers != (numbers := self.numbers()):

@@ -167,7 +167,7 @@ class DatasetSamples:
                 yield str(error)
 
     def named(self, start: int, stop: int, step: int = 1) -> str:
-        """Return the text of an input that stands for every `step`-th of these samples, `start` to `stop`."""
+        """Return the input text that stands for every `step`-th of these samples, from `start` to `stop`."""
         rows = self.rows[start:stop:step]
         split = f"{self.split}," if self.split else ""
         words = f"{rows[0]}" if len(rows) == 1 else f"{rows.start}:{rows.stop}"

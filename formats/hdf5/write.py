@@ -37,7 +37,7 @@ Kind = Literal["meshonet-boundary", "meshonet-grid"]
 class Writer:
     """A dataset that is written sample by sample (see `writing`).
 
-    Raises InputError: a sample differs from the first one in size or topology.
+    Raises InputError: a sample differs from the first in size or topology.
     """
 
     def __init__(self, file: h5py.File, kind: Kind) -> None:
@@ -115,7 +115,7 @@ class Writer:
     def note(self, facts: Mapping[str, str], digests: Sequence[str], failed: Sequence[str]) -> None:
         """Write how the samples were made: facts, digests of inputs, and texts about failed samples.
 
-        Attributes are texts of fixed length, which are read without a search for damage.
+        The texts are attributes of fixed length, so that reading them needs no search for damage.
         """
         size, connections = self._first or ("", "")
         joined = f", connected as {_digest(connections)}" if connections else ""
@@ -133,7 +133,7 @@ class Writer:
             self._file.create_dataset("failed", data=list(failed), dtype=h5py.string_dtype())
 
     def close(self) -> None:
-        """Write the collected samples, and as attributes the facts that are the same in all provenances."""
+        """Write the collected samples; facts that all provenances share are written as attributes."""
         self.flush()
         self._file.attrs.update({_attribute(name): fact for name, fact in self._common.items()})
 

@@ -32,7 +32,7 @@ MOST_BYTES = 256 << 20
 def read_layout(source: Source) -> Layout:
     """Return the layout of a file.
 
-    Raises InputError, with the place in the file: the file is not JSON or not a layout; parts do not match.
+    Raises InputError, with the place in the file: it is not JSON or not a layout; its parts do not match.
     """
     if source.size > MOST_BYTES:
         raise InputError(f"{source.size >> 20} MB are too much for a layout", "give a file below 256 MB")

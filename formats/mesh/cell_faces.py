@@ -22,7 +22,7 @@ Indices = NDArray[np.int64]
 
 
 def cells_of(number: Indices) -> Indices:
-    """Return the nodes (m, 4 or 8) of the cells of a block with node numbers (ni, nj) or (ni, nj, nk)."""
+    """Return the node numbers (m, 4 or 8) of the cells of a block of node `number` (ni, nj[, nk])."""
     if number.ndim == 2:
         return _flat(_around(number))
     below, above = _around(number[:, :, :-1]), _around(number[:, :, 1:])
@@ -30,7 +30,7 @@ def cells_of(number: Indices) -> Indices:
 
 
 def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
-    """Return consecutive cell numbers, from 0, for blocks with the given node counts, i fastest."""
+    """Return consecutive cell numbers, from 0, of blocks with the given node counts; i varies fastest."""
     shapes = [tuple(n - 1 for n in count) for count in counts]
     ends = np.cumsum([0, *(int(np.prod(shape)) for shape in shapes)])
     return [
@@ -40,7 +40,7 @@ def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
 
 
 def faces_of(side_numbers: Indices, side: Side) -> Indices:
-    """Return the edges (k, 2) or quadrilaterals (k, 4) of a part of a side with node numbers (n,) or (n, m).
+    """Return the edges (k, 2) or quadrilaterals (k, 4) of a side part with node numbers (n,) or (n, m).
 
     The domain is on the left of edges; normals of quadrilaterals point out of it.
     """

@@ -14,13 +14,14 @@ Facts: TypeAlias = Mapping[str, Sequence[str]]
 
 
 def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]]:
-    """Return topology, name, patches and provenance of `grid` as lists of texts by key.
+    """Return topology, name, patches and provenance of `grid` as a dict from keys to lists of texts.
 
     `grid_with` restores the grid from them. A patch is ``side start stop name``; its kind is added if the
     name does not imply it, and so is its range along the second direction of a side. Empty entries are
-    omitted. For a multi-block grid, the texts describe one `block`; the first block has the connections and
-    the provenance. The `number` of the grid in its file identifies blocks of the same grid for
-    `grid_of_blocks`. An extruded grid gets the texts of its planar grid, so that it is read as a planar grid.
+    omitted. For a multi-block grid, the texts describe one `block`; only those of the first block contain the
+    connections and the provenance. The `number` of the grid in its file identifies blocks of the same grid
+    for `grid_of_blocks`. An extruded grid gets the texts of its planar grid, so that it is read as a planar
+    grid.
     """
     space = grid.form != "plane"
     if space:

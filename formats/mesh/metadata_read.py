@@ -45,9 +45,9 @@ def nodes_by_facts(coordinates: Sequence[Floats], facts: Facts) -> Floats:
 
 
 def grid_of_blocks(blocks: Sequence[tuple[Floats, Facts]], name: str = "") -> Grid:
-    """Return the grid of blocks, each given by nodes and facts, in the order that the facts give.
+    """Return the grid of blocks, each given by nodes and facts; the facts determine the order of blocks.
 
-    Raises InputError: a missing or repeated block; connections that do not match the nodes.
+    Raises InputError: a block is missing or repeated; connections do not match the nodes.
     """
     rows = sorted(
         ((int(facts["block"][0].split()[1]), nodes, facts) for nodes, facts in blocks), key=itemgetter(0)

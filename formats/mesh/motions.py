@@ -25,9 +25,9 @@ _DIGITS = range(1, 18)
 
 
 def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
-    """Return a connection of `blocks` with the motion between its sides.
+    """Return a connection of `blocks`, to which the motion between its two sides is added.
 
-    Raises InputError: sides with different node counts; nodes that no translation or rotation makes coincide.
+    Raises InputError: the sides have different node counts; no translation or rotation makes nodes coincide.
     """
     own, donor = connection.nodes(lambda block, side: blocks[block].face(side))
     if own.shape != donor.shape:
@@ -49,8 +49,8 @@ def like_others(connection: Connection, motions: list[Motion]) -> Connection:
 
     If `motions` has none, the connection's motion is added to it.
 
-    All periodic sides with the same motion, or its inverse, thus have bitwise the same motion, so that they
-    agree where they meet.
+    In this way, all periodic sides whose motions are equal or inverse to each other get bitwise the same
+    motion, so that they agree where they meet.
     """
     for known in motions:
         for each in (connection, connection.reversed()):

@@ -41,7 +41,7 @@ def unused(stem: str, used: Container[str], limit: int = 64) -> str:
 
 
 def kind_said(name: str, word: str, known: Sequence[tuple[str, Kind]]) -> Kind:
-    """Return the kind of a patch: the one implied by its `name`, else the one for the file's `word`."""
+    """Return the kind of a patch that its `name` implies, or else the kind for the file's `word`."""
     by_word: Kind = next((kind for sign, kind in known if word.startswith(sign)), "other")
     by_name = kind_of(name)
     return by_word if by_name == "other" else by_name

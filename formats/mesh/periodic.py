@@ -30,7 +30,7 @@ _OPPOSITE = {2: [1, 0], 4: [0, 3, 2, 1]}
 
 
 class NamedFaces(NamedTuple):
-    """Faces (k, 2 or 4) of node numbers, and the number (k,) of the cell of each face."""
+    """Faces, each as node numbers (k, 2 or 4), and the number (k,) of the cell of each face."""
 
     faces: Indices
     cells: Indices
@@ -52,7 +52,7 @@ class PeriodicPair(NamedTuple):
 
     @property
     def nodes(self) -> Indices:
-        """(n, 2) pairs of a node of the first side and its partner, each once."""
+        """(n, 2) distinct pairs of a node of the first side and its partner on the other side."""
         opposite = self.opposite.faces[:, _OPPOSITE[self.faces.shape[1]]]
         rows = np.stack([self.faces.ravel(), opposite.ravel()], axis=1)
         return np.asarray(np.unique(rows, axis=0))
@@ -61,7 +61,7 @@ class PeriodicPair(NamedTuple):
 def outer_parts(
     grid: Grid, numbers: Sequence[Indices]
 ) -> tuple[dict[str, NamedFaces], tuple[PeriodicPair, ...]]:
-    """Return the outer faces by name, those of periodic pairs last, and the periodic pairs.
+    """Return the outer faces by name (those of periodic pairs come last), and the periodic pairs.
 
     `numbers` are the node numbers of each block. Connected faces belong to no part. Unnamed outer faces get
     the name of their side.
@@ -89,7 +89,7 @@ def periodic_pairs(
 ) -> list[PeriodicPair]:
     """Return the pairs of periodic sides of a grid.
 
-    `numbers` are the node numbers of each block, `cells` its cell numbers.
+    `numbers` are the node numbers of each block, `cells` the cell numbers of each block.
 
     Connections with the same motion and the same names form one pair. Unnamed pairs are called periodic1 and
     periodic2 and so on, but never by a name in `taken`.
@@ -137,7 +137,7 @@ def _parts(
 
 
 def cells_beside(connection: Connection, cells: Sequence[Indices]) -> tuple[Indices, Indices]:
-    """Return the numbers, from `cells` of all blocks, of the cells on both sides of a connection.
+    """Return the numbers of the cells on both sides of a connection; `cells` are those of all blocks.
 
     Cells that touch each other have the same position in both arrays.
     """
@@ -155,7 +155,7 @@ def donor_range(each: Connection) -> Range:
 
 
 def patch_on(grid: Grid, connection: Connection) -> str:
-    """Return the common name of all patches on the first side of a connection, if they cover it."""
+    """Return the name of the patches on a connection's first side, if they share it and cover the side."""
     own = [patch for patch in grid.patches if patch.block == connection.block]
     counts = grid.blocks[connection.block].counts
     owners = owners_of(own, counts, (), connection.side)

@@ -42,10 +42,10 @@ def boundary_of(grid: Grid) -> Shape:
 def recovered(nodes: Floats, name: str = "") -> Grid:
     """Return the grid of `nodes` (ni, nj, 2), which must be `usable`, without information from a file.
 
-    Index i of left-handed nodes is reversed. If columns 0 and ni-1 coincide within a millionth of the first
-    edge, the grid is an O grid. So it is if rows 0 and nj-1 coincide; i and j are then exchanged. The smaller
-    of the two closed sides is the body and becomes the south side. If the last nodes of a side coincide with
-    its first nodes in reverse order, it is a C grid, and this side becomes the south side.
+    In a left-handed grid, index i is reversed. If columns 0 and ni-1 coincide within a millionth of the first
+    edge, the grid is an O grid. It is also an O grid if rows 0 and nj-1 coincide; i and j are then exchanged.
+    The smaller of the two closed sides is the body and becomes the south side. If the last nodes of a side
+    coincide with its first nodes in reverse order, it is a C grid, and this side becomes the south side.
     """
     nodes = right_handed(usable(nodes))
     if not _closed(nodes) and _closed(_quarter_turn(nodes)):
@@ -67,7 +67,7 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
 def usable(nodes: Floats) -> Floats:
     """Return `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3) unchanged.
 
-    Raises InputError: only one node along a direction; a coordinate that is not finite, or so large that
+    Raises InputError: there is only one node along a direction; a coordinate is not finite, or so large that
     products overflow.
     """
     if min(nodes.shape[:-1]) < 2:
@@ -84,7 +84,7 @@ def usable(nodes: Floats) -> Floats:
 def right_handed(nodes: Floats) -> Floats:
     """Return `nodes` (ni, nj, 2), with i reversed if their signed area is negative.
 
-    The signed area is computed from the outline, which equals the sum over all cells.
+    The signed area is computed from the outline; it equals the sum of the areas of all cells.
     """
     return nodes[::-1] if is_left_handed(nodes) else nodes
 

@@ -45,9 +45,9 @@ def surfaces_wanted() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class IndexedNodes:
-    """Nodes (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3) of a block, and the file's index for each of i, j, k.
+    """Nodes (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3) of a block, and which index of the file i, j, k are.
 
-    `reversed` says that i runs against its index in the file.
+    `reversed` says whether i runs against its index in the file.
     """
 
     nodes: Floats
@@ -68,8 +68,8 @@ class _Slice(NamedTuple):
 def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> list[IndexedNodes]:
     """Return the nodes of all blocks of a file; `places` name the blocks in error messages.
 
-    All blocks together are taken for a planar grid if they are slices across one coordinate at the same
-    places. Otherwise a block with one plane of nodes is a surface patch, and any other block a volume.
+    The file is a planar grid if all blocks consist of slices normal to the same coordinate, at the same
+    positions. Otherwise a block with one plane of nodes is a surface patch, and any other block a volume.
 
     The coordinates x, y[, z] of a block are arrays (n1, n2, n3) of any number type and memory order. They are
     copied once. Raises InputError: a block without cells.
@@ -89,9 +89,9 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
 
 
 def planar(coordinates: Sequence[Floats]) -> Floats:
-    """Return nodes (ni, nj, 2) of a block that is planar by its file, with one or more copies of a plane.
+    """Return the nodes (ni, nj, 2) of a block that its file calls planar; it has one or more equal planes.
 
-    Raises InputError: the block is not a slice.
+    Raises InputError: the planes of the block are not equal.
     """
     with np.errstate(all="ignore"):
         cut = _slice_of(coordinates, most=max(coordinates[0].shape))

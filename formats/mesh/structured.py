@@ -35,7 +35,8 @@ from meshonet.geometry.errors import in_place
 class FileBlock:
     """A block of a file: coordinates x, y[, z], each (n1, n2, n3), its name, and its place for messages.
 
-    `iblank` counts the nodes of each iblank value, if the file has any; `facts` are those made by `facts_of`.
+    `iblank` has the number of nodes with each iblank value, if the file has such values; `facts` are made by
+    `facts_of`.
     """
 
     coordinates: Sequence[Floats]
@@ -48,7 +49,7 @@ class FileBlock:
 def described_grids(blocks: Iterable[FileBlock], name: str) -> Iterator[Grid]:
     """Yield the grids of blocks whose facts state their topology.
 
-    Blocks of a multi-block grid follow each other.
+    The blocks of a multi-block grid must be consecutive.
     """
     for number, group in groupby(blocks, key=lambda block: number_of_grid(block.facts)):
         read = ((block, in_place(block.place)(_described)(block)) for block in group)
@@ -67,7 +68,7 @@ def _described(block: FileBlock) -> Floats:
 def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Grid:
     """Return the grid of a file with one block, using its facts if there are any.
 
-    Raises InputError: facts that do not match the nodes; see also `grids_of_file`.
+    Raises InputError: the facts do not match the nodes; see also `grids_of_file`.
     """
     if facts.get("topology"):
         return grid_with(nodes_by_facts(coordinates, facts), facts, name)
@@ -83,9 +84,10 @@ def grids_of_file(
 ) -> Iterator[Grid]:
     """Yield the grids of the blocks of a file `name`, by the rule of `meshonet.formats.mesh.slices`.
 
-    Blocks that touch form one grid, and so do all surface patches; every other block is a grid of its own. If
-    there are several grids, each is named after its block, or by `name` and a number, in the order of their
-    first blocks. Unnamed outer edges of a planar multi-block grid get names (`meshonet.formats.mesh.loops`).
+    Blocks that touch form one grid, and so do all surface patches; every other block is a separate grid. If
+    there are several grids, each is named after its block, or by `name` and a number. The order is that of
+    the grids' first blocks. Unnamed outer edges of a planar multi-block grid get names
+    (`meshonet.formats.mesh.loops`).
 
     Raises InputError: a block without cells; nodes that are not usable; interfaces that do not coincide.
     """

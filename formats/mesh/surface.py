@@ -41,8 +41,8 @@ class MeshBoundary:
 
     Parameters
     ----------
-    edges : (k, 2) point numbers by name; the empty name stands for edges without one. If there are no edges,
-        the edges that belong to only one cell are used.
+    edges : (k, 2) point numbers of edges, by name; the empty name stands for unnamed edges. If there are no
+        edges, the edges that belong to only one cell are used.
     cells : (m, 3 or 4) point numbers, one array per kind of cell.
     """
 
@@ -54,12 +54,12 @@ class MeshBoundary:
 def shapes_of(surface: MeshBoundary, name: str) -> Iterator[Shape]:
     """Yield the shapes that the closed curves of `surface` form.
 
-    The nodes of a four-sided domain are kept if opposite sides have equal counts and, in a file without
-    cells, each side has three nodes or more. The nodes of a body and a far field with an O grid between them
-    are also kept. Corners come from the cells, or from names that change four times; the south side contains
-    the first edge of the file.
+    The nodes of a four-sided domain are kept if opposite sides have equal numbers of nodes; in a file without
+    cells, each side must also have three or more. The nodes of a body and of a far field are also kept if
+    there is an O grid between them. Corners come from the cells, or from names that change four times; the
+    south side contains the first edge of the file.
 
-    Raises InputError: too few or too many edges; edges that do not form closed curves; curves inside a hole.
+    Raises InputError: there are too few or too many edges; they form no closed curves; a curve is in a hole.
     """
     edges = surface.edges or {"": _free_edges(surface.cells)}
     count = sum(map(len, edges.values()))

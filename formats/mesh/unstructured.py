@@ -70,7 +70,7 @@ def with_z(points: Floats) -> Floats:
 
 
 def node_numbers(grid: Grid) -> list[Indices]:
-    """Return the number of every node (ni, nj) or (ni, nj, nk) of each block; connected nodes share a number.
+    """Return, for each block, the numbers (ni, nj[, nk]) of its nodes; connected nodes share a number.
 
     Numbers start at 0 and have no gaps, in the order of the blocks, i fastest.
     """

@@ -21,9 +21,9 @@ _SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.ite
 
 
 class FaceWindow(NamedTuple):
-    """A range of a face of a block: its first and last node, from 0, by the three indices of the file.
+    """A range of a block's face: the indices, from 0, of its first and last node in the file's order.
 
-    The last node may precede the first one, as in files that describe connected ranges.
+    The last node may precede the first, as in files that describe connected ranges.
     """
 
     block: int
@@ -42,8 +42,8 @@ class Face(NamedTuple):
 class Pair(NamedTuple):
     """Two connected ranges of faces, and the name of the connection in the file.
 
-    `own` and `donor` are ranges in two blocks. For each of the three indices of the first block, `partner` is
-    the index of the donor's block that runs along the same lines.
+    `own` and `donor` are ranges in two blocks. For each of the three indices of the block of `own`, `partner`
+    has the index of the donor's block that runs along the same lines.
     """
 
     own: FaceWindow
@@ -53,7 +53,7 @@ class Pair(NamedTuple):
 
 
 class SidePart(NamedTuple):
-    """A range of a side, and for each of its directions the index of the file and its sign, 1 or -1."""
+    """A range of a side; and for each of its directions the file's index along it, with the sign 1 or -1."""
 
     side: Side
     range: Range
@@ -62,9 +62,9 @@ class SidePart(NamedTuple):
 
 
 def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | None:
-    """Return the range of a side that a window describes; None for an edge, or for all of a planar block.
+    """Return the side part that a window describes; None if it is an edge, or all of a planar block.
 
-    Raises InputError: a block that does not exist, or an index out of its range.
+    Raises InputError: the block does not exist, or an index is out of range.
     """
     if not 0 <= window.block < len(lattices):
         problem = f"a face of block {window.block + 1} is named and there are {len(lattices)}"

@@ -32,8 +32,9 @@ class Faces(NamedTuple):
 
     Parameters
     ----------
-    nodes : (f, 4) point numbers; the normal points out of the owner. Consecutive nodes may be equal.
-    owner : (f,) cell on the inner side of each face; of two cells the one with the lower number.
+    nodes : (f, 4) point numbers of each face; the normal points out of the owner. Consecutive nodes may be
+        equal.
+    owner : (f,) cell that each face belongs to; of two cells, the one with the lower number.
     neighbour : (g,) the other cell of each of the g interior faces, which come first.
     """
 
@@ -74,7 +75,7 @@ def all_faces(grid: Grid, numbers: Sequence[Indices], parts: Mapping[str, NamedF
 def whole(nodes: NDArray[np.integer[Any]]) -> Bools:
     """Return a mask (f,) of the faces (f, 4) with an area.
 
-    These have three different nodes, and no equal opposite nodes.
+    Such faces have at least three different nodes, and opposite nodes differ.
     """
     several = (nodes != np.roll(nodes, -1, axis=1)).sum(axis=1) >= _LEAST
     return np.asarray(several & (nodes[:, 0] != nodes[:, 2]) & (nodes[:, 1] != nodes[:, 3]))

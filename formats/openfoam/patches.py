@@ -38,9 +38,9 @@ class CasePatch(NamedTuple):
 
 
 def with_empty_planes(grid: Grid, parts: Mapping[str, NamedFaces]) -> dict[str, NamedFaces]:
-    """Return `parts` with bottoms and tops merged into the last part, `PLANES`, if the grid is planar.
+    """Return `parts`; if the grid is planar, bottoms and tops are merged into a last part, `PLANES`.
 
-    This is the case if all blocks are one cell thick between symmetry planes. Solvers then ignore the
+    A grid counts as planar if all blocks are one cell thick between symmetry planes. Solvers then ignore
     direction k.
     """
     outer = grid.outer_patches()
@@ -66,8 +66,8 @@ def patches_of(
 
     `periodic` is the type of patches on periodic sides.
 
-    Nodes of periodic sides correspond, so that ``cyclic`` suffices, which copies values from face to face.
-    ``cyclicAMI`` interpolates between any two sides.
+    The nodes of two periodic sides correspond, so that ``cyclic``, which copies values from face to face, is
+    sufficient. ``cyclicAMI`` interpolates between any two sides.
     """
     kind = kinds(grid, grid.outer_patches())
     word = words((name for name in parts if name != PLANES), taken=[EMPTY], letter=True)

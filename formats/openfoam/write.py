@@ -40,9 +40,9 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     """Write the only grid of `grids` into the folder of `path`; `path` itself becomes an empty file.
 
     The planes of a planar grid, or of one layer of cells between symmetry planes, become a patch of type
-    ``empty``. Cells at sides that collapse to a line or point are prisms and pyramids. An existing mesh is
-    replaced when the new one is complete. If periodic sides are connected by a rotation, all cells form a
-    zone with the name of the grid, for use with a rotating frame.
+    ``empty``. Cells at sides that are collapsed to a line or to a point are prisms or pyramids. An existing
+    mesh is replaced when the new one is complete. If periodic sides are connected by a rotation, all cells
+    form a zone with the name of the grid, for use with a rotating frame.
     """
     grid = only_one(grids, "a case")
     low, high = grid.box

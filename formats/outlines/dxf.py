@@ -26,10 +26,10 @@ _KINDS = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Yield the shapes that the curves of a drawing enclose.
 
-    Raises InputError: ezdxf is not installed; a file of 64 MB or more, in binary DXF, or that is not a DXF
-    drawing; more than 400000 entities or points; no curves; a point where one curve ends, or more than two
-    meet; curves without extent or with coordinates that are not finite; curves that cross, or lie inside a
-    hole.
+    Raises InputError: ezdxf is not installed; the file has 64 MB or more, is binary DXF, or is no DXF
+    drawing; it has more than 400000 entities or points, or no curves; at a point, only one curve ends, or
+    more than two meet; a curve has no extent, or a coordinate that is not finite; curves cross, or lie inside
+    a hole.
     """
     try:
         from ezdxf import path

@@ -25,7 +25,7 @@ def extent_checked(points: Floats) -> float:
 
 
 def joined(lines: list[tuple[str, Floats]]) -> MeshBoundary:
-    """Return curves, each a name and points (n, 2), as edges between points.
+    """Return the curves `lines`, each a name and points (n, 2), as edges between numbered points.
 
     Coincident ends become one point.
 

@@ -38,7 +38,7 @@ MOST_INTEGERS = 1 + 3 * _MOST_BLOCKS
 
 @dataclass(frozen=True)
 class FileLayout:
-    """A layout of a file: with or without a block count, 2 or 3 axes, with or without iblank, node counts."""
+    """A layout of a file: whether it has a block count, 2 or 3 axes, whether it has iblank, node counts."""
 
     counted: bool
     axes: int
@@ -63,7 +63,7 @@ class FileLayout:
 
 
 def layouts(integer: Header) -> Iterator[FileLayout]:
-    """Yield the layouts with a plausible header: a reasonable count, and every dimension at least 1."""
+    """Yield the layouts with a plausible header: a reasonable block count, all node counts at least 1."""
     for counted, axes in itertools.product((True, False), (3, 2)):
         blocks = integer(0) if counted else 1
         if blocks is None or not 1 <= blocks <= _MOST_BLOCKS:
@@ -87,7 +87,7 @@ def _dims(integer: Header, blocks: int, axes: int, start: int) -> tuple[Dims, ..
 
 @dataclass(frozen=True)
 class Candidate:
-    """A layout with the length of the file, and the numbers of the file in this layout.
+    """A layout whose length is that of the file, and the numbers of the file in this layout.
 
     Parameters
     ----------
@@ -168,9 +168,9 @@ class Candidate:
     def regularity(self) -> float:
         """Return the fraction of cells with the prevailing orientation; negative for impossible values.
 
-        In the right layout nearly all cells have the same orientation, in a wrong one their orientations are
-        random. If two layouts are similarly regular, a planar one is more likely, because the iblank array of
-        a planar grid can look like a third coordinate. For large volumes only the first nodes along each
+        In the right layout nearly all cells have the same orientation; in a wrong layout orientations are
+        random. Of two similarly regular layouts, a planar one gets the larger value, because the iblank array
+        of a planar grid can look like a third coordinate. For large volumes only the first nodes along each
         index are used.
         """
         for block in self.blocks:
@@ -188,7 +188,7 @@ class Candidate:
 
 
 def best(candidates: list[Candidate]) -> Candidate:
-    """Return the most regular candidate, the first one if several are equal."""
+    """Return the most regular candidate; if several are equal, the first of them."""
     return candidates[0] if len(candidates) == 1 else max(candidates, key=Candidate.regularity)
 
 
@@ -215,12 +215,13 @@ def _tallied(flags: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def regular_cells(nodes: Floats) -> tuple[int, int]:
-    """Return the number of cells with the prevailing orientation and of all cells.
+    """Return the number of cells with the prevailing orientation, and the number of all cells.
 
     `nodes` are planar or in space.
 
-    In the plane and in volumes the orientation is the sign of area or volume. On a surface, pairs of
-    neighbours are counted whose normals differ by less than a right angle.
+    In the plane and in volumes the orientation is the sign of the area or of the volume. On a surface, pairs
+    of neighbouring cells are counted instead; the first number is that of pairs whose normals differ by less
+    than a right angle.
     """
     if nodes.shape[2:] == (3,):
         normal = _cross(*_diagonals(nodes))

@@ -45,7 +45,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 def write_map(path: Path, grids: Sequence[Grid], span: int = 2) -> None:
     """Write the map of all blocks of `grids`.
 
-    The third direction of the file, if any, is the index `span`.
+    The third index of the file, if it has one, is the grid's index `span`.
     """
     dims: list[list[int]] = []
     rows: list[str] = []

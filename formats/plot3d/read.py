@@ -18,13 +18,13 @@ _WRITTEN_ONLY = {"span-i", "span-j", "span-k"}
 def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Grid]:
     """Yield the grids of the blocks, right-handed.
 
-    Blocks that touch form one grid, others are grids of their own.
+    Blocks that touch form one grid; every other block is a separate grid.
 
     `meshonet.formats.mesh.slices` decides which files are planar grids. All surface patches of a file form
-    one grid. Connections and boundary conditions are read from a neutral map file next to the file, or else
-    found by position. The topology of a single planar block is recovered from its nodes. If the file has an
-    iblank array, the provenance has the number of nodes with each value. `options` are known properties of
-    the layout.
+    one grid. Connections and boundary conditions are read from a neutral map file next to the file; without
+    such a file, connections are found by position. The topology of a single planar block is recovered from
+    its nodes. If the file has an iblank array, the provenance has the number of nodes with each value.
+    `options` are known properties of the layout.
 
     Raises InputError: no layout has the length of the file; a block without cells.
     """

@@ -35,7 +35,7 @@ class Stream:
 
 
 def unframed(data: memoryview, order: str) -> Stream | None:
-    """Return the content of the records of a Fortran file; None if the record lengths do not lead to its end.
+    """Return the content of a Fortran file's records; None if the record lengths do not lead to its end.
 
     The length of each record is stored before and after it. gfortran divides records of more than 2 GiB: a
     negative first length means that the record continues.
@@ -53,7 +53,7 @@ def unframed(data: memoryview, order: str) -> Stream | None:
 def broken_record(data: memoryview, order: str) -> str:
     """Return a description of the first incomplete record.
 
-    Empty if the first record has no plausible length.
+    It is empty if the first record has no plausible length.
     """
     for count, (at, length, _, whole) in enumerate(_records(data, order), start=1):
         if count == 1 and (length % 4 or not 0 < length <= _LONGEST_HEADER or not whole):

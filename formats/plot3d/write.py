@@ -26,7 +26,7 @@ _LINE = 4
 
 
 class StoredBlock:
-    """A block as stored in Plot3D: node counts, and x, y[, z], the first index fastest.
+    """A block as stored in Plot3D: node counts, then x, y[, z] with the first index fastest.
 
     `in_space` adds z = 0 to planar nodes (ni, nj, 2).
     """
@@ -56,11 +56,11 @@ class StoredBlock:
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the blocks of `grids`; planar blocks without z, or with z = 0 if others are three-dimensional.
+    """Write the blocks of `grids`; planar blocks get z = 0 only if other blocks are three-dimensional.
 
     `options` select the file's index for the third direction of volumes. Connections and boundary conditions
-    are written to a neutral map file next to the file. With several grids this is done only if one of them
-    has several blocks.
+    are written to a neutral map file next to the file. If there are several grids, the map is written only if
+    one of them has several blocks.
 
     Raises InputError: no grid; several grids in a file without a count; a block that is too large for a
     Fortran record; 2D was requested for a three-dimensional grid.

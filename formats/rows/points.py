@@ -34,11 +34,11 @@ def point_blocks(source: Source, orders: Sequence[str]) -> list[Floats]:
     Parameters
     ----------
     source : the file.
-    orders : possible orders of the columns, ``x, y, z``, ``x, r, theta`` or ``x, r``; each with another
-        number of columns.
+    orders : permitted orders of the columns, ``x, y, z``, ``x, r, theta`` or ``x, r``. The number of columns
+        tells which of them is meant.
 
-    Raises InputError, with the place: a line with another number of columns; no block; a line that names the
-    columns in another order; the heading of a splitter.
+    Raises InputError, with the place: a line has another number of columns; there is no block; a line names
+    the columns in another order; there is the heading of a splitter.
     """
     return [points for points, _ in placed_blocks(source, orders)]
 

@@ -60,8 +60,8 @@ def parsed(text: bytes) -> Floats | None:
 def leading_numbers(text: bytes | mmap, most: int | None = None, start: int = 0) -> tuple[Floats, int]:
     """Return at most `most` numbers of `text` from byte `start` on, and the position after them.
 
-    The numbers are in Fortran's free format. They end at a word that is not a number, or that needs another
-    reader (not finite, subnormal, or with a repeat count).
+    The numbers are in Fortran's free format. Reading ends at a word that is not a number, or that needs
+    another reader (a number that is not finite, is subnormal, or has a repeat count).
 
     >>> values, stop = leading_numbers(b"1 2.5, -3d2 0.4-101 end")
     >>> values.tolist(), stop

@@ -50,7 +50,7 @@ _REMARK = re.compile(r"\s(?:#|!|//|<-).*$|^\s*(?:#|!|//).*$")
 
 
 class Line(NamedTuple):
-    """One line: its number from 1, its kind, its values if it is a row, and its text.
+    """One line of a text: its number (from 1), its kind, its values if it is a row, and its text.
 
     The kinds are:
 
@@ -59,8 +59,8 @@ class Line(NamedTuple):
     - ``gap``: a number, then dots in place of the next;
     - ``damaged``: two words that were meant as numbers, of which one is invalid (``1.0 nan``, ``1.0 ****``,
       ``1.0 O.O0``);
-    - ``broken``: a number followed by nothing or something else, or the reverse;
-    - ``text``: all others.
+    - ``broken``: a number alone, a number followed by something else, or something else followed by a number;
+    - ``text``: all other lines.
     """
 
     number: int
@@ -116,9 +116,9 @@ def _lines(text: str) -> tuple[Line, ...]:
 
 
 def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
-    """Return whether most rows of `head` have as many numbers as one of the `counts` says.
+    """Return whether most rows of `head` have one of the `counts` of numbers.
 
-    These must be four fifths of the rows, and at least `least` rows.
+    Most means at least four fifths of the rows, and at least `least` rows.
     """
     try:
         lines = read_lines(decode(head))
@@ -134,11 +134,11 @@ def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
 def table(lines: list[Line]) -> list[list[Line]]:
     """Return the rows of a text in blocks, which are separated by blank lines and prose.
 
-    Two numbers followed by words count as a row if a row precedes or follows. `left_out` lists the ignored
-    lines next to rows.
+    A line with two numbers followed by words counts as a row if a row precedes or follows it. `left_out`
+    reports ignored lines next to rows.
 
-    Raises InputError: a damaged line without prose between it and the next row; a broken line between two
-    rows.
+    Raises InputError: there is a damaged line with no prose between it and the next row; there is a broken
+    line between two rows.
     """
     kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
     blocks: list[list[Line]] = [[]]
@@ -165,7 +165,7 @@ def _next_kind(kinds: list[Kind], k: int, step: int) -> Kind:
 
 
 def left_out(lines: list[Line]) -> tuple[str, ...]:
-    """Return a note for each line that starts with one number without a second one and is next to a row.
+    """Return a note for each line next to a row that starts with a number but has no second number.
 
     HTML between rows also gets a note, because rows may be missing in a saved web page.
     """

@@ -34,7 +34,7 @@ _OURS = re.compile(r"block-\d+\.vts")
 def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = None) -> None:
     """Write all `grids`, with optional cell data.
 
-    Raises InputError: no grid; the folder of the blocks has other files, which would be lost.
+    Raises InputError: there is no grid; the folder of the blocks contains other files, which would be lost.
     """
     folder = path.with_name(f"{Path(final_name(path)).stem}_blocks")
     if folder.is_dir() and not all(_OURS.fullmatch(entry.name) for entry in folder.iterdir()):

@@ -49,10 +49,11 @@ _MOST_IN_PART, _MOST_FOR_MANY_WORKERS = 1000, 100
 class Destination:
     """Output of a batch: ``-``, one file, or one per result (``{stem}``, ``{index}``, ``{name}`` in `text`).
 
-    `put` is a function that writes to a path, instead of the format's own function for this `kind`. A dataset
-    is written in parts of `part_size` inputs; without it the size follows from the approximate number of
-    `nodes` per result. `space` is the kind of blocks in space of all results, None for planar ones. Raises
-    InputError: an unknown field or extension; a format that cannot be written, or has no parts.
+    `put`, if given, is a function that writes to a path and replaces the format's own function for this
+    `kind`. A dataset is written in parts of `part_size` inputs; if it is None, the size follows from the
+    approximate number of `nodes` per result. `space` is the kind of blocks in space of all results, None for
+    planar results. Raises InputError: an unknown field or extension; a format that cannot be written, or has
+    no parts.
     """
 
     def __init__(
@@ -102,7 +103,7 @@ class Destination:
         return path
 
     def check_room(self, remedy: str = "") -> None:
-        """Raise InputError, with `remedy`, if there are several inputs for a file that stores one."""
+        """Raise InputError, with `remedy`, if there are several inputs but the file can store only one."""
         if not (self.each or self.format.many):
             raise InputError(
                 f"several inputs and one {self.format.name} file, which holds one",
@@ -113,10 +114,11 @@ class Destination:
     def part_size_for(self, inputs: Inputs | DrawnInputs, files: Files, *, elsewhere: bool) -> int:
         """Return the number of inputs in a part of the dataset, 0 for an output without parts.
 
-        Parts are written if requested, for shards, to continue existing parts, and for more than `MANY`
-        inputs. They are smaller if workers may be `elsewhere`, and for shards.
+        Parts are written in four cases: if they are requested, for a shard, to continue existing parts, and
+        for more than `MANY` inputs. Parts are smaller for a shard and if workers may be on another machine
+        (`elsewhere`).
 
-        Raises InputError: an existing dataset that would be replaced, or cannot be continued.
+        Raises InputError: an existing dataset would be replaced, or cannot be continued.
         """
         if not inputs.more_than(0):
             return 0
@@ -144,7 +146,7 @@ class Destination:
         return PartFiles(Path(self.text), request, size)
 
     def check_several(self, item: Item[Any]) -> None:
-        """Raise InputError if the output stores one result, and `item` is one of several in its file."""
+        """Raise InputError if the output stores only one result, and `item` is one of several in its file."""
         if not (self.each or self.format.many):
             raise InputError(
                 f"holds several grids or boundaries, and a {self.format.name} file holds one",
@@ -168,7 +170,7 @@ def _size_there(index: Path) -> int:
 
 
 def usual_part_size(nodes: int | None, most: int = _MOST_IN_PART) -> int:
-    """Return the number of grids in a part of up to 256 MiB, at most `most`; `nodes` is None if unknown.
+    """Return how many grids of `nodes` nodes (None if unknown) a part of 256 MiB holds, at most `most`.
 
     The number is rounded down to 1, 2 or 5 times a power of ten.
 
@@ -214,7 +216,7 @@ def _fields(text: str) -> list[str]:
 def same_size(what: Grid | Boundary | Layout, size: str) -> str:
     """Return the size of a result for a dataset.
 
-    Raises InputError: the size differs from `size`, the size of the first result.
+    Raises InputError: it differs from `size`, the size of the first result.
     """
     if not isinstance(what, Grid | Boundary):  # files of layouts hold one
         return ""

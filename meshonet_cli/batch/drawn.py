@@ -8,7 +8,7 @@ from meshonet.geometry.families.draw import Draw
 
 @dataclass(frozen=True)
 class DrawnInputs:
-    """Members of a family as inputs: all, or those of shard k of n."""
+    """Members of a family as inputs: all members, or those of shard k of n."""
 
     draws: Sequence[Draw]
     shard: tuple[int, int] = (1, 1)
@@ -23,7 +23,7 @@ class DrawnInputs:
         return len(self.draws) // self.shard[1]
 
     def parts(self, size: int) -> Iterator[tuple[int, tuple[Draw, ...]]]:
-        """Yield number and members of each part of the shard, with `size` members."""
+        """Yield number and members of each part of the shard; a part has `size` members."""
         k, n = self.shard
         for number in range(k - 1, -(-len(self.draws) // size), n):
             yield number, tuple(self.draws[number * size : (number + 1) * size])

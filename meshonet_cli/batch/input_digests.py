@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 def digests_of(entry: str | InputError | Draw) -> list[Input]:
-    """Return the input with a digest of its name and content; for a dataset one digest per sample.
+    """Return the input with a digest of its name and content; a dataset has one digest per sample.
 
-    For an input that cannot be read, the digest is that of the reason.
+    If an input cannot be read, the digest is that of the reason.
     """
     if isinstance(entry, InputError):
         return [Input(entry.source, digest_of(entry.source, str(entry)))]

@@ -13,7 +13,7 @@ from meshonet_cli.batch.item import Item
 
 
 class Keys:
-    """The keys of the samples that a dataset, or a part of one, has so far."""
+    """The keys that samples of a dataset, or of a part of a dataset, have been given so far."""
 
     def __init__(self) -> None:
         self._names = UniqueNames()
@@ -21,7 +21,7 @@ class Keys:
     def named(self, item: Item[Any], what: Any) -> Any:
         """Return the grid or boundary `what` with its key as name.
 
-        A different earlier name becomes its title.
+        If it had another name before, that name becomes its title.
         """
         if not isinstance(what, Grid | Boundary):
             return what

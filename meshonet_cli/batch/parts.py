@@ -128,9 +128,9 @@ def deliver_parts(
 ) -> None:  # fmt: skip
     """Report every member when its part is complete, and write the index of all parts.
 
-    A part that fails is reported; the index lacks it until the command is repeated. `written` is called with
-    the report of each successful member and the path of the file. `whole` says that these are all parts, not
-    a shard.
+    A part that fails is reported, and missing from the index until the command is repeated. `written` is
+    called with the report of each successful member and the path of the file. `whole` says that these are all
+    parts, not a shard.
 
     Raises OtherPartsError: existing parts have other inputs or settings, or must not be skipped.
     """

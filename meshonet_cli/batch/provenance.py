@@ -12,7 +12,7 @@ _MOST_NAMED = 12  # words between options that are all kept
 
 
 def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
-    """Return the program's version and command line, without the output's name.
+    """Return the version and the command line of the program, without the name of the output.
 
     Without the name, equal inputs and settings give equal bytes in all output files. `arguments` are those of
     the program, without its name; None means those of this process.

@@ -43,9 +43,8 @@ class BatchTask:
     kind : kind of the results.
     put : function that writes to a path, instead of the format's own function.
     nodes : approximate number of nodes of a result; None if unknown.
-    space : kind of blocks in space of all results, so that formats that cannot store them are refused at
-        once.
-    together : number of members that a process gets at a time.
+    space : kind of blocks in space of all results; formats that cannot store it are refused at once.
+    together : number of members that a process is given at a time.
     assembled : sampling of the far field if all inputs form one domain.
     joined : remedy if the output stores one result and there are several inputs.
     """

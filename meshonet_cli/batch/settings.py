@@ -71,7 +71,7 @@ class Engine:
         return self.name == "mpi" or self.scheduler is not None
 
     def threads(self, wanted: int | None = None) -> int | None:
-        """Return the number of threads of each worker: `wanted`, else its share of the cores.
+        """Return the number of threads of each worker: `wanted`, or else its share of the cores.
 
         None: no limit.
         """

@@ -40,9 +40,9 @@ def records(
     inputs: Iterable[Numbered | str | InputError | Draw], read: Callable[[Any], Iterator[Any]], *,
     alone: bool = False,
 ) -> Iterator[Item[Any]]:  # fmt: skip
-    """Yield every member of every input, or an error in its place.
+    """Yield every member of every input; where one cannot be read, yield an error.
 
-    With `alone`, a member of a family counts as the only one of its input.
+    With `alone`, a member of a family counts as the only member of its input.
     """
     count = 0
     for each in inputs:

@@ -65,7 +65,7 @@ def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:
 def numbers(text: str | None, counts: tuple[int, ...], what: str, remedy: str, parameter: str) -> Any:
     """Return the numbers in the text of an option; None for None.
 
-    There must be as many numbers as one of the `counts` says.
+    The permitted numbers of numbers are `counts`.
 
     Raises InputError: other text.
 

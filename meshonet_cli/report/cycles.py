@@ -40,7 +40,7 @@ def followed(session: Session, history: str | None) -> Iterator[Callable[[Report
 
     The context gives a function that must be called with the report of each grid and its output file.
 
-    Raises InputError: a file that does not end in ``.csv``, or whose folder does not exist.
+    Raises InputError: the name of the file does not end in ``.csv``, or its folder does not exist.
     """
     if history is not None:
         if Path(history).suffix.lower() != ".csv":

@@ -19,7 +19,7 @@ STAGES = ("read", "boundary", "load", "layout", "grid", "guard", "quality", "com
 class Timed:
     """Report of a member of a batch: the member, its output file, and seconds by stage after reading.
 
-    `left_out`: its result is not written.
+    `left_out` says that the result of the member is not written.
     """
 
     item: Item[Any]

@@ -44,9 +44,9 @@ def _deformed(
 def walls_of(
     wall: Sequence[str], rotate: Sequence[str], shift: Sequence[str]
 ) -> Mapping[str, NewWall] | NewWall:
-    """Return the new walls described by options: by name, or the only one.
+    """Return the new walls that options describe: a dict by name, or a single wall.
 
-    Raises InputError: invalid words; a wall that is named twice; a file that cannot be read.
+    Raises InputError: a word is invalid; a wall is named twice; a file cannot be read.
     """
     if not (wall or rotate or shift):
         raise InputError("nothing is moved", "give {wall}, {rotate} or {shift}", source="deform")

@@ -141,7 +141,7 @@ class Session:
             self.judge(row)
 
     def show(self, report: Timed) -> None:
-        """Print a report that is itself the result, on standard output, unless `quiet`."""
+        """Print a report that is itself the result of the command, on standard output, unless `quiet`."""
         self.done += 1
         if self.as_json or not self.quiet:
             self.conclude(report)
@@ -188,7 +188,8 @@ class Session:
     def watch(self) -> None:
         """Show the stage of a single input on a terminal, after one second.
 
-        It is not shown with JSON, or if standard output is a pipe, whose reader may show a status too.
+        It is not shown with JSON, nor if standard output is a pipe, because the reader of the pipe may show a
+        status too.
         """
         leads = os.environ.get("RANK", "0") == "0"  # of several processes under torchrun
         if self.live and leads and not (self.as_json or self.batch or self._line or _is_pipe(1)):

@@ -45,8 +45,8 @@ class StageLine:
     def text(self) -> str:
         """Return the line: the elapsed time, the name of the stage, and its progress.
 
-        For a stage without steps, `detail` stands in place of the progress. In the first second the line
-        consists of `detail` alone.
+        For a stage without steps, `detail` replaces the progress. In the first second the line is only
+        `detail`.
         """
         stage, now = self._stage, time.perf_counter()
         spent = now - self._begun

@@ -19,8 +19,8 @@ _asked: list[BaseException] = []
 def install() -> None:
     """Install handlers: SIGINT raises KeyboardInterrupt, SIGTERM and SIGHUP raise SystemExit.
 
-    Unfinished files are thus removed. A signal that was ignored when the program started (nohup, a shell's
-    ``&``) stays ignored.
+    In this way, unfinished files are removed. A signal that was ignored when the program started (by nohup or
+    a shell's ``&``) stays ignored.
     """
     handlers = {"SIGINT": _interrupt, "SIGTERM": _terminate, "SIGHUP": _terminate}
     for name, handler in handlers.items():

@@ -39,7 +39,7 @@ class Scale:
     stop: float
 
     def parts(self, values: Floats) -> Floats:
-        """Return the positions of values on the scale, 0 at `low` and 1 at `high`."""
+        """Return the positions of `values` on the scale, which are 0 for `low` and 1 for `high`."""
         turn = np.log if self.log else np.positive
         low, high = turn(self.low), turn(self.high)
         return np.asarray((turn(values) - low) / max(high - low, 1e-300))
@@ -68,7 +68,7 @@ def histogram(values: Floats, scale: Scale) -> list[int]:
 def worst_places(
     values: Sequence[Floats], metric: Metric, most: int = 10
 ) -> Iterator[tuple[int, tuple[int, ...], float]]:
-    """Yield block, cell and value of the worst cells, beginning with the worst.
+    """Yield block, cell indices and value of the worst cells, beginning with the worst.
 
     Neighbours of a cell that has been yielded are left out. `values` are the cell values of each block.
     """

@@ -28,8 +28,8 @@ class Packed:
 def packed(numbers: NDArray[np.integer]) -> Packed:
     """Return integers (n,) in packed form; their magnitude must be below 2^50.
 
-    Neighbouring values of a grid differ little, so their differences are stored; ``unpack.js`` restores
-    them::
+    Because neighbouring values of a grid differ little, differences are stored; ``unpack.js`` restores the
+    integers::
 
         numbers -> differences -> unsigned (0, -1, 1, -2 ... as 0, 1, 2, 3 ...) -> bytes of equal significance
         together -> deflate -> base64

@@ -41,7 +41,7 @@ _BODY = """{body}
 def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: View | None = None) -> None:
     """Write the page of `grid`, which opens with the cells coloured by `metric` and with the given `view`.
 
-    Raises InputError: a metric that is not defined for these cells; a view without cells, or of another
+    Raises InputError: the metric is not defined for these cells; the view contains no cells, or has another
     dimension than the grid.
     """
     start = _start(grid, metric, view or View())

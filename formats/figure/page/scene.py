@@ -41,8 +41,8 @@ _LAYERS = 3  # fewest layers across each direction of such a volume
 class Lattice:
     """Nodes (ni, nj, d) or (ni, nj, nk, 3) of a block, or of a patch of a block.
 
-    `start` are the indices in the block of the first cell of the lattice; for a patch, `fixed` is the
-    direction normal to it.
+    `start` are the indices, in the block, of the first cell of the lattice. For a patch, `fixed` is the
+    direction normal to the patch.
     """
 
     block: int
@@ -66,8 +66,8 @@ class SceneSheet:
     """A layer of cells of a lattice.
 
     `axis` is the direction normal to the layer, None if the lattice itself is a layer. `node` is the index of
-    the layer along `axis`, `ranges` are the first and last node along the other directions. `across` and `at`
-    say which layer of constant i, j or k of a large volume it is.
+    the layer along `axis`, `ranges` are the first and last node along the other directions. For a large
+    volume, `across` (i, j or k) and `at` say which layer of constant index it is.
     """
 
     lattice: int
@@ -95,8 +95,8 @@ class Scene:
 def scene_of(grid: Grid, layer: tuple[str, int] | None = None, shown: str | None = None) -> Scene:
     """Return the scene of a grid with all its metrics; the metric `shown` comes first.
 
-    `layer` is a direction (``i``, ``j`` or ``k``) and an index: the scene of a large volume contains this
-    layer.
+    `layer` is a direction (``i``, ``j`` or ``k``) and an index; the scene of a large volume contains only
+    this layer of its interior.
     """
     lattices, sheets = _whole(grid) if _fits(grid) else _in_part(grid, layer)
     low = np.min([lattice.nodes.reshape(-1, lattice.nodes.shape[-1]).min(axis=0) for lattice in lattices], 0)

@@ -18,7 +18,8 @@ SHOWN = 20
 class QualityPage:
     """Collects quality reports of grids and keeps only the `SHOWN` worst grids in memory.
 
-    Grids with failed gates are worst, then grids with the largest angle. `software` is named as the author.
+    Grids with failed gates are the worst, followed by those with the largest angles. `software` is named as
+    the author.
     """
 
     def __init__(self, gates: Sequence[Gate] = (), software: str = "meshonet") -> None:
@@ -30,7 +31,7 @@ class QualityPage:
     def add(self, label: str, report: QualityReport) -> None:
         """Add the report of a grid with the name `label`.
 
-        Raises InputError: a gate for a figure that the report does not contain.
+        Raises InputError: the report does not contain the figure of a gate.
         """
         report = report.under(self._gates)
         good, angle = passed(report, self._gates), report.quality["max_angle"].max

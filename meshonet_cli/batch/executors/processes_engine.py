@@ -62,7 +62,7 @@ class _Processes(Workers):
         return self.executor.submit(_call, function, task)
 
     def renew(self) -> None:
-        """Replace the pool after the death of a process, which ends all others of the pool."""
+        """Replace the pool after the death of a process, which ends all other processes of the pool."""
         self._warn("a worker process died; what was under way is done again")
         self.executor.shutdown(cancel_futures=True)
         self.executor = _pool(self.count)

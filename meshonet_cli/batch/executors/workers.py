@@ -14,7 +14,7 @@ _PATIENCE = 0.5  # seconds between looks at the engine while a result is waited 
 
 
 class WorkerDiedError(MeshonetError):
-    """The worker of a task died, and so did the worker that repeated the task."""
+    """Error: the worker of a task died, and so did the worker that repeated the task."""
 
     exit_code = 3
 
@@ -26,7 +26,7 @@ class WorkerDiedError(MeshonetError):
 
 
 class EngineLostError(InputError):
-    """The executor cannot be recovered, and the tasks in progress are lost."""
+    """Error: the executor cannot be recovered, and the tasks in progress are lost."""
 
 
 class Workers:
@@ -74,7 +74,8 @@ class Workers:
     ) -> Iterator[tuple[T, R | Exception]]:
         """Yield each of the `tasks` with the result of `function`, or with its error.
 
-        Tasks are read when results are requested; `ahead` more than the number of workers are in progress.
+        Tasks are read when results are requested; the number of tasks in progress is that of workers plus
+        `ahead`.
         """
         under_way: deque[tuple[T, Future[R]]] = deque()
         for task in tasks:
