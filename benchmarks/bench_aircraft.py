@@ -90,7 +90,7 @@ def figures(drawn: DrawnAircraft) -> Figures:
         request = aircraft_request(
             around=AROUND, span=SPAN, first_cell=drawn.first, far_field=FAR, growth=1.2, threads=1
         )
-        seconds, (grid, _) = clocked(lambda: aircraft_grid(drawn.aircraft, request))
+        seconds, (grid, *_) = clocked(lambda: aircraft_grid(drawn.aircraft, request))
     blocks = [np.asarray(block.nodes) for block in grid.blocks]
     parts = [judged_cells(block) for block in blocks]
     growth = np.concatenate(list(growth_ratios(grid, blocks).values()))

@@ -19,6 +19,12 @@ class Advice(str):
     __slots__ = ()
 
 
+def departure_note(what: str, off: float, unit: str = "") -> str:
+    """Return the note that `what`, a smooth curve, leaves the polygon through its points by `off`."""
+    lines = f"up to {off:.2g}{unit} away from straight lines between them"
+    return f"{what} through the points, {lines}; give more points where it matters"
+
+
 def changes_in(notes: Iterable[str]) -> tuple[str, ...]:
     """Return the notes that say how a shape was changed.
 

@@ -70,5 +70,4 @@ def mark_vertices(ax: Axes, grid: Grid) -> None:
 
 def shown_counts(grid: Grid) -> str:
     """Return the numbers of blocks and cells of a grid as text."""
-    cells = sum(int(np.prod([count - 1 for count in block.counts])) for block in grid.blocks)
-    return f"{len(grid.blocks)} block{'s' * (len(grid.blocks) > 1)}, {cells} cells"
+    return f"{len(grid.blocks)} block{'s' * (len(grid.blocks) > 1)}, {grid.cells} cells"

@@ -184,6 +184,11 @@ class Grid(Connected):
         return int(self.nodes.shape[1])
 
     @property
+    def cells(self) -> int:
+        """Number of cells of all blocks."""
+        return sum(block.cells for block in self.blocks)
+
+    @property
     def x(self) -> Floats:
         """The x coordinates of the nodes of the only block: (ni, nj), in a volume (ni, nj, nk).
 

@@ -79,8 +79,7 @@ def worst_solids(nodes: Floats, limit: int = 10, test: int = CORNERS) -> list[Ba
 def measure_volumes(grid: Grid, *, percentiles: bool = False) -> Quality:
     """Return the quality of all cells of volumes; the places of worst cells are (block, i, j, k)."""
     volumes = padded_volumes(grid)
-    sizes = [int(np.prod([count - 1 for count in block.counts])) for block in grid.blocks]
-    cells = sum(sizes)
+    cells = grid.cells
     kept = slice(None) if percentiles and cells <= FEW else NONE
     pairs = list(zip(grid.blocks, volumes, strict=True))
     runs = over_blocks(lambda pair: _run_over(*pair, kept), pairs, _nodes_of(grid))

@@ -19,7 +19,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
-from meshonet.geometry.shapes.airfoil.section_curve import DEPARTURE, departure_note, edge_notes
+from meshonet.geometry.shapes.airfoil.section_curve import DEPARTURE, edge_notes, wall_departure
 from meshonet.geometry.shapes.annulus import Annulus
 from meshonet.geometry.shapes.domain_shape import DomainShape, itself, loops_extent
 from meshonet.geometry.shapes.named_edges import Labelled
@@ -122,7 +122,7 @@ def _as_asked(shape: Shape, sampling: Sampling) -> tuple[Shape, tuple[str, ...]]
     airfoil = shape.prepared(sampling)
     te, off = sampling.te, airfoil.curve.departure() / airfoil.chord
     body = airfoil.rounded() if te == "round" else airfoil.wedged() if te == "wedge" else airfoil
-    departure = (departure_note(off),) if off > DEPARTURE else ()
+    departure = (wall_departure(off),) if off > DEPARTURE else ()
     return body, (*airfoil.notes, *departure, *edge_notes(airfoil, body, te, te))
 
 

@@ -19,6 +19,7 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import turns_sharply
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import departure_note
 from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import find_corners, turning
 from meshonet.geometry.polygon.self_intersection import check_outline
@@ -137,7 +138,7 @@ class Outline:
             edges.append(edge)
         south, east, north, west = edges
         sides = south, north[::-1], west[::-1], east
-        return Boundary(*sides, topology="quad", name=self.name, sampled=True, notes=departure_note(curve))
+        return Boundary(*sides, topology="quad", name=self.name, sampled=True, notes=sides_departure(curve))
 
     def _ordered_corners(self, chosen: tuple[int, int, int, int]) -> tuple[int, ...]:
         """Return the given corners, counter-clockwise from the first."""
@@ -262,10 +263,8 @@ def _stretches(ends: Sequence[int], n: int) -> list[Indices]:
     return [np.arange(first, last + 1) % n for first, last in pairs]
 
 
-def departure_note(curve: Curve) -> tuple[str, ...]:
+def sides_departure(curve: Curve) -> tuple[str, ...]:
     """Return a note if the sides deviate visibly from the straight lines between their points."""
     off = curve.departure()
-    if not off > _DEPARTURE * extent_of(curve.points):
-        return ()
-    lines = f"up to {off:.2g} away from straight lines between them"
-    return (f"the sides are smooth curves through the points, {lines}; give more points where it matters",)
+    visible = off > _DEPARTURE * extent_of(curve.points)
+    return (departure_note("the sides are smooth curves", off),) if visible else ()

@@ -52,16 +52,7 @@ _FINE = 129
 """Number of levels of the table by which lines beyond the tip are measured."""
 
 
-def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, tuple[str, ...]]:
-    """Return the grid of an aircraft or of its half, and notes for the report.
-
-    Raises InputError: the errors of `planned_grid`.
-    """
-    grid, _, notes = planned_grid(aircraft, request)
-    return grid, notes
-
-
-def planned_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, float, tuple[str, ...]]:
+def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, float, tuple[str, ...]]:
     """Return the grid of an aircraft or of its half, the growth ratio with which it was planned, and notes.
 
     Raises InputError: a wing does not begin inside the body or does not leave it; wings are too close to each

@@ -33,9 +33,9 @@ def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) ->
     _refuse_far_tip(aircraft, sizes.far_field)
     with limited_to(request.threads):
         with stage("load", seconds):
-            from meshonet.solvers.aircraft.aircraft_grid import planned_grid
+            from meshonet.solvers.aircraft.aircraft_grid import aircraft_grid
         with stage("grid", seconds):
-            grid, growth, notes = planned_grid(aircraft, request)
+            grid, growth, notes = aircraft_grid(aircraft, request)
         note = request.height_note(f"on a chord of {sizes.chord:.6g}", sizes.chord)
         notes = (*notes, *[note] * bool(note))
         solution = Solution(grid, "aircraft", notes=notes, dimensions=sizes, growth=growth)

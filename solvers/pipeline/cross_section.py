@@ -17,7 +17,7 @@ from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.circle import Circle
 from meshonet.geometry.shapes.domain_shape import DomainShape, four_sided
-from meshonet.geometry.shapes.outline import Outline, departure_note
+from meshonet.geometry.shapes.outline import Outline, sides_departure
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.first_cell import FirstCell
 from meshonet.solvers.layers.first_cells import Heights, cells_needed
@@ -112,7 +112,7 @@ def _inside(shape: Shape) -> Shape:
         return DomainShape(domain)
     if shape.topology == "quad" and four_sided(domain):
         return shape
-    return DomainShape(domain).noted(*departure_note(loop.curve))
+    return DomainShape(domain).noted(*sides_departure(loop.curve))
 
 
 def _four_walls(inside: Shape, request: GridRequest) -> GridRequest:

@@ -77,23 +77,19 @@ def _wing_of(
     rows = _rows(tried[0])
     while True:
         again, notes = with_counts(stack, request, cells, rows)
-        made = min(tried, key=lambda each: abs(_cells(each) - cells))
-        far = abs(_cells(made) - cells) > _NEAR * cells
+        made = min(tried, key=lambda each: abs(each.grid.cells - cells))
+        far = abs(made.grid.cells - cells) > _NEAR * cells
         if again == counted or len(tried) == _TRIES or (len(tried) > 1 and not far):
             break
         tried.append(_wing(stack, again, seconds))
         counted, rows = again, (rows + _rows(tried[-1])) // 2
     if far and not notes:
-        notes = (f"{_cells(made)} cells, not {cells}: layers of cells change with the nodes on the wing",)
+        notes = (f"{made.grid.cells} cells, not {cells}: layers of cells change with the nodes on the wing",)
     return made, notes
 
 
 def _rows(solution: Solution) -> int:
     return solution.grid.blocks[0].counts[2] - 1
-
-
-def _cells(solution: Solution) -> int:
-    return sum(block.cells for block in solution.grid.blocks)
 
 
 def _with_panels(stack: Stack, request: StackRequest | None) -> StackRequest:

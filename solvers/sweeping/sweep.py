@@ -101,9 +101,13 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
 def check_planes(section: Grid, planes: int | None) -> None:
     """Raise InputError if the grid of a section with so many `planes` would have too many cells."""
     if planes is not None:
-        shapes = (block.nodes.shape for block in section.blocks)
-        cells = sum((shape[0] - 1) * (shape[1] - 1) for shape in shapes) * (planes - 1.0)
-        check_reach(cells, "cells", f"a section in {planes} planes", "give fewer", parameter="planes")
+        check_reach(
+            section.cells * (planes - 1.0),
+            "cells",
+            f"a section in {planes} planes",
+            "give fewer",
+            parameter="planes",
+        )
 
 
 def _carried(plane: Floats, points: Floats, x: Floats, y: Floats) -> Floats:

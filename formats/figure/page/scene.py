@@ -114,10 +114,9 @@ def scene_of(grid: Grid, layer: tuple[str, int] | None = None, shown: str | None
         metrics.append(_metric(grid, metric, values, scale))
         levels = [scale.parts(_of(lattice, values)) * LEVELS for lattice in lattices]
         numbers[metric.name] = packed(_whole_numbers(levels))
-    cells = sum(int(np.prod([count - 1 for count in block.counts])) for block in grid.blocks)
     facts = {
         "form": grid.form,
-        "cells": cells,
+        "cells": grid.cells,
         "blocks": [list(block.counts) for block in grid.blocks],
         "box": [low.tolist(), high.tolist()],
         "step": step,

@@ -13,7 +13,7 @@ from meshonet.geometry.arrays import Floats, along_and_across, norms
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.notes import Change
+from meshonet.geometry.notes import Change, departure_note
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.polygon.self_intersection import Crossing, find_crossing, find_crossings
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, CleanSection
@@ -127,15 +127,12 @@ def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str,
     if count >= RIPPLES:
         notes += (f"the outline ripples: its curvature changes sign {count} times; see {{smooth}}",)
     off = curve.departure() / chord
-    return (*notes, departure_note(off)) if off > DEPARTURE else notes
+    return (*notes, wall_departure(off)) if off > DEPARTURE else notes
 
 
-def departure_note(off: float) -> str:
+def wall_departure(off: float) -> str:
     """Return the note on a curve that deviates from its points' polygon by `off` chords."""
-    note = (
-        f"the wall is a smooth curve through the points, up to {off:.2g} chords away from straight lines "
-        "between them; give more points where it matters"
-    )
+    note = departure_note("the wall is a smooth curve", off, " chords")
     return Change(note) if off > FAR_OFF else note
 
 

@@ -16,7 +16,7 @@ from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, measu
 from meshonet.geometry.sections.section import Section
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.shapes.airfoil.naca import naca
-from meshonet.solvers.aircraft.aircraft_grid import aircraft_grid, planned_grid
+from meshonet.solvers.aircraft.aircraft_grid import aircraft_grid
 from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.request import AircraftRequest, aircraft_request
 
@@ -84,7 +84,7 @@ def test_the_far_field_is_as_far_as_it_should_be(grid: Grid) -> None:
     ("y", "sweep", "section"), [(0.35, 0.0, "0012"), (-0.15, 3.0, "4418"), (0.1, -1.0, "2412")]
 )
 def test_wings_high_low_and_swept_are_made(y: float, sweep: float, section: str) -> None:
-    made, _ = aircraft_grid(aircraft(y, sweep, section), COARSE)
+    made, *_ = aircraft_grid(aircraft(y, sweep, section), COARSE)
     assert sum(count_folded_solids(block.nodes, BEZIER) for block in made.blocks) == 0
 
 
@@ -106,7 +106,7 @@ def test_a_wing_that_meets_the_body_at_a_sharp_angle_is_refused_with_place_and_a
     near = aircraft(0.5, 1.0)
     with pytest.raises(InputError, match=r"wing meets the fuselage at (9|10) degrees, at x=.*, y=0\.69"):
         aircraft_grid(near, COARSE)
-    folded, _ = aircraft_grid(near, replace(COARSE, allow_invalid=True))
+    folded, *_ = aircraft_grid(near, replace(COARSE, allow_invalid=True))
     assert sum(count_folded_solids(block.nodes, BEZIER) for block in folded.blocks) > 0
 
 
@@ -122,7 +122,7 @@ def test_a_low_edge_far_from_the_middle_of_its_collar_is_made_with_many_nodes_to
     """Lines behind the edge would cross each other if they went to the middle of the collar's side."""
     root = Section(naca("2409"), 3.4, 0.0, x=3.2, y=-0.15, twist=6.0)
     wing = Stack((root, Section(naca("2409"), 1.2, 5.0, x=5.4, y=0.0)), tip="flat")
-    made, _ = aircraft_grid(Aircraft(body(), wing), replace(SMALL, around=129, growth=1.3))
+    made, *_ = aircraft_grid(Aircraft(body(), wing), replace(SMALL, around=129, growth=1.3))
     assert sum(count_folded_solids(block.nodes, BEZIER) for block in made.blocks) == 0
 
 
@@ -198,7 +198,9 @@ def test_there_are_about_as_many_cells_as_wanted() -> None:
 
 def test_cells_grow_more_where_there_would_be_too_many_of_them() -> None:
     """By 1.25 at most, which the note names; around the wing they grow by no more than 1.3, too."""
-    made, notes = aircraft_grid(aircraft(), aircraft_request(cells=500_000, first_cell=2e-4, far_field=8.0))
+    made, _, notes = aircraft_grid(
+        aircraft(), aircraft_request(cells=500_000, first_cell=2e-4, far_field=8.0)
+    )
     assert any("cells grow by 1.25 in place of 1.2" in note for note in notes)
     assert cells_of(made) < 600_000
     growth = np.concatenate(
@@ -209,14 +211,14 @@ def test_cells_grow_more_where_there_would_be_too_many_of_them() -> None:
 
 def test_a_growth_that_is_given_is_kept() -> None:
     request = aircraft_request(cells=500_000, first_cell=2e-4, far_field=8.0, growth=1.2)
-    _, growth, notes = planned_grid(aircraft(), request)
+    _, growth, notes = aircraft_grid(aircraft(), request)
     assert growth == 1.2
     assert not any("in place of" in note for note in notes)
 
 
 def test_layers_that_need_more_cells_are_named_in_a_note_with_the_number_that_is_made() -> None:
     """The sections beyond the tips of wings count, too: they are a tenth of all cells."""
-    made, notes = aircraft_grid(aircraft(), aircraft_request(cells=20_000, span=9, first_cell=1e-2))
+    made, _, notes = aircraft_grid(aircraft(), aircraft_request(cells=20_000, span=9, first_cell=1e-2))
     note = next(note for note in notes if "layers need about" in note)
     assert int(note.split()[3]) == pytest.approx(cells_of(made), rel=0.02)
 
@@ -271,14 +273,14 @@ def test_a_drooped_wing_with_a_thin_edge_is_made() -> None:
     root = Section(naca("2409"), 3.0, 0.0, x=3.2, y=-0.15, twist=6.0)
     wing = (root, Section(naca("2409"), 1.0, 5.0, x=5.0))
     request = AircraftRequest(around=97, span=9, first_cell=FIRST, far_field=8.0, base=0.002)
-    made, _ = aircraft_grid(Aircraft(body(), Stack(wing, tip="flat")), request)
+    made, *_ = aircraft_grid(Aircraft(body(), Stack(wing, tip="flat")), request)
     assert sum(count_folded_solids(block.nodes, BEZIER) for block in made.blocks) == 0
 
 
 def test_a_tail_that_ends_in_a_cone_has_growing_rows() -> None:
     """Beside a point of the body distances from it are no smooth function of the levels of the map."""
     half = np.array([[0, 0], [0.1, 0.3], [1, 0.6], [6, 0.6], [9, 0.4], [10.5, 0.1], [11, 0]])
-    made, _ = aircraft_grid(Aircraft(Body(half), aircraft().wing), COARSE)
+    made, *_ = aircraft_grid(Aircraft(Body(half), aircraft().wing), COARSE)
     rows = np.linalg.norm(np.diff(np.asarray(made.blocks[6].nodes)[:, :, :6], axis=2), axis=-1)
     assert (rows[:, :, 1:] / rows[:, :, :-1]).min() > 1.0
     assert sum(count_folded_solids(block.nodes, BEZIER) for block in made.blocks) == 0

@@ -77,20 +77,20 @@ def test_lines_leave_the_tip_of_a_fin_upwards(grid: Grid) -> None:
     [{"x": 7.6, "sweep": 0.0}, {"x": 8.2, "sweep": 45.0}, {"height": 3.0}],
 )
 def test_fins_without_a_tail_plane_are_made(changes: dict[str, float]) -> None:
-    made, _ = aircraft_grid(replace(aircraft(), others=(fin(**changes),)), SMALL)
+    made, *_ = aircraft_grid(replace(aircraft(), others=(fin(**changes),)), SMALL)
     assert folded(made) == 0
     assert measure_volumes(made)["scaled_jacobian"].min > 0.05
 
 
 @pytest.mark.parametrize("sweep", [50.0, 55.0])
 def test_no_cell_is_folded_at_the_tip_of_a_fin_swept_beyond_the_tail_of_the_body(sweep: float) -> None:
-    made, _ = aircraft_grid(with_fin(sweep=sweep), SMALL)
+    made, *_ = aircraft_grid(with_fin(sweep=sweep), SMALL)
     assert folded(made) == 0
 
 
 def test_cells_between_a_long_wing_and_a_short_fin_and_behind_it_grow_evenly() -> None:
     request = AircraftRequest(around=49, span=13, first_cell=2e-3, growth=1.2, far_field=20.0)
-    made, _ = aircraft_grid(replace(aircraft(), others=(fin(),)), request)
+    made, *_ = aircraft_grid(replace(aircraft(), others=(fin(),)), request)
     for name in ("wing-to-fin", "fuselage-tail"):
         block = made.blocks[made.provenance["zones"].index(name)]
         ratios = np.concatenate([each.ravel() for each in growth(np.asarray(block.nodes))])
@@ -109,19 +109,19 @@ def growth(nodes: Floats) -> list[Floats]:
 
 
 def test_a_fin_close_behind_the_wing_is_in_its_column() -> None:
-    made, _ = aircraft_grid(replace(aircraft(), others=(fin(x=6.6, sweep=0.0),)), COARSE)
+    made, *_ = aircraft_grid(replace(aircraft(), others=(fin(x=6.6, sweep=0.0),)), COARSE)
     assert folded(made) == 0
     assert "wing-to-fin" not in made.provenance["zones"]
 
 
 def test_a_fin_may_be_the_only_wing() -> None:
-    made, _ = aircraft_grid(Aircraft(aircraft().body, fin()), COARSE)
+    made, *_ = aircraft_grid(Aircraft(aircraft().body, fin()), COARSE)
     assert folded(made) == 0
     assert {patch.name for patch in made.patches} == {"fuselage", "fin", "tip", "symmetry", "farfield"}
 
 
 def test_the_surface_of_a_whole_aircraft_with_a_fin_is_closed() -> None:
-    whole, _ = aircraft_grid(replace(with_fin(), half=False), COARSE)
+    whole, *_ = aircraft_grid(replace(with_fin(), half=False), COARSE)
     assert folded(whole) == 0
     assert unclaimed_faces(whole) == 0
     assert not wall_surface(whole).patches
@@ -135,7 +135,7 @@ def test_the_number_of_cells_is_planned(grid: Grid) -> None:
 
 
 def test_the_order_in_the_file_makes_no_difference(grid: Grid) -> None:
-    made, _ = aircraft_grid(replace(with_fin(), others=with_fin().others[::-1]), SMALL)
+    made, *_ = aircraft_grid(replace(with_fin(), others=with_fin().others[::-1]), SMALL)
     for own, other in zip(made.blocks, grid.blocks, strict=True):
         assert np.array_equal(own.nodes, other.nodes)
 

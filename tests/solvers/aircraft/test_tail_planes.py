@@ -70,7 +70,7 @@ def test_the_order_of_wings_in_the_file_makes_no_difference(grid: Grid) -> None:
     """Canards, a second wing before the first: lengths are still in chords of the first."""
     swapped = Aircraft(aircraft().body, tail(), others=(replace(aircraft().wing, name="wing"),))
     unit = tail().chord / aircraft().wing.chord
-    made, _ = aircraft_grid(swapped, replace(SMALL, first_cell=SMALL.height() / unit, far_field=8.0 / unit))
+    made, *_ = aircraft_grid(swapped, replace(SMALL, first_cell=SMALL.height() / unit, far_field=8.0 / unit))
     assert [block.counts for block in made.blocks] == [block.counts for block in grid.blocks]
     for own, other in zip(made.blocks, grid.blocks, strict=True):
         assert np.abs(own.nodes - other.nodes).max() < 1e-6
@@ -78,13 +78,13 @@ def test_the_order_of_wings_in_the_file_makes_no_difference(grid: Grid) -> None:
 
 @pytest.mark.parametrize(("x", "y", "span"), [(8.6, 0.0, 3.0), (7.6, 0.45, 1.2), (0.9, 0.0, 1.5)])
 def test_tail_planes_high_low_long_and_canards_are_made(x: float, y: float, span: float) -> None:
-    made, _ = aircraft_grid(with_tail(x=x, y=y, span=span), COARSE)
+    made, *_ = aircraft_grid(with_tail(x=x, y=y, span=span), COARSE)
     assert folded(made) == 0
     assert measure_volumes(made)["scaled_jacobian"].min > 0.05
 
 
 def test_the_surface_of_a_whole_aircraft_with_a_tail_plane_is_closed() -> None:
-    whole, _ = aircraft_grid(replace(with_tail(), half=False), COARSE)
+    whole, *_ = aircraft_grid(replace(with_tail(), half=False), COARSE)
     assert folded(whole) == 0
     assert unclaimed_faces(whole) == 0
     assert not wall_surface(whole).patches

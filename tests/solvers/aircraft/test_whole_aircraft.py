@@ -101,6 +101,6 @@ def test_its_surface_is_closed(whole: Grid) -> None:
 
 def test_the_number_of_cells_is_that_of_both_halves() -> None:
     request = aircraft_request(cells=400_000, span=9, first_cell=1e-2, growth=1.4, far_field=8.0)
-    made, notes = aircraft_grid(replace(aircraft(), half=False), request)
+    made, _, notes = aircraft_grid(replace(aircraft(), half=False), request)
     cells = sum(int(np.prod([count - 1 for count in block.counts])) for block in made.blocks)
     assert cells == pytest.approx(400_000, rel=0.2), notes
