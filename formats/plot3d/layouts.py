@@ -51,14 +51,14 @@ class FileLayout:
         return int(self.counted) + self.axes * len(self.dims)
 
     def starts(self, real: int = 1, integer: int = 1) -> list[int]:
-        """Return the start of each block, and the end of the last one, for the given sizes of numbers."""
+        """Return the start of each block and the end of the last; numbers take `real`, `integer` bytes."""
         node = self.axes * real + integer * int(self.iblank)
         return list(
             itertools.accumulate((node * prod(dims) for dims in self.dims), initial=integer * self.header)
         )
 
     def length(self, real: int = 1, integer: int = 1) -> int:
-        """Return the length of the file for the given sizes of numbers."""
+        """Return the length of the file, if its numbers take `real` or `integer` bytes."""
         return self.starts(real, integer)[-1]
 
 

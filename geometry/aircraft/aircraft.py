@@ -23,13 +23,14 @@ class Aircraft:
     ----------
     body : Body
         The fuselage: a body of revolution (`Body`) or a body given by sections (`LoftedBody`).
-    wing : Stack or SurfaceWing Sections of the wing from the inside of the body to the tip, or the surface of
-        the wing. Lengths of the grid, such as the first-cell height, are in units of the longest chord of
-        this wing.
+    wing : Stack or SurfaceWing
+        Sections of the wing from the inside of the body to the tip, or the surface of the wing. Lengths of
+        the grid, such as the first-cell height, are in units of the longest chord of this wing.
     name : str, optional
         Name of the aircraft.
-    half : bool, optional True: the grid is the half z >= 0 and ends in the plane of symmetry. False: the grid
-        is this half joined to its mirror image; the patches of both halves have the same names.
+    half : bool, optional
+        True: the grid is the half z >= 0 and ends in the plane of symmetry. False: the grid is this half
+        joined to its mirror image; the patches of both halves have the same names.
     others : tuple of Stack or SurfaceWing, optional
         Further wings upstream or downstream of the wing, such as a tail plane or canards, and a `Fin`. Each
         needs a name of its own.

@@ -24,8 +24,8 @@ class AircraftAxes:
     ----------
     up, span : int, optional
         1 for y, 2 for z.
-    sign : int, optional -1 if the file has the half of the aircraft with negative coordinates along the span,
-        else 1.
+    sign : int, optional
+        -1 if the file has the half of the aircraft with negative coordinates along the span, else 1.
     """
 
     up: int = 1

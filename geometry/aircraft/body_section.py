@@ -37,14 +37,16 @@ class BodySection:
     ----------
     x : float
         Position of the plane.
-    y : float, optional Height y of the centre of a superellipse; if `points` are given, they are displaced
-        upwards by this value.
+    y : float, optional
+        Height y of the centre of a superellipse; if `points` are given, they are displaced upwards by this
+        value.
     width, height : float, optional
         Size of a superellipse from side to side, and from keel (lowest point) to crown (highest point).
     exponent : float, optional
         Exponent of the superellipse: 2 gives an ellipse, a larger value a rectangle with rounded corners.
-    points : array, optional Points (n, 2) of y and z on the half z >= 0, ordered from keel to crown or from
-        crown to keel. They replace width, height and exponent.
+    points : array, optional
+        Points (n, 2) of y and z on the half z >= 0, ordered from keel to crown or from crown to keel. They
+        replace width, height and exponent.
 
     Raises
     ------

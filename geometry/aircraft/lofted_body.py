@@ -43,8 +43,9 @@ class LoftedBody(Body):
 
     Raises
     ------
-    InputError There are fewer than 4 sections; x does not increase; the first or last section is not a point,
-        or another section is one; a section is very flat; sections are so different and so far apart that the
+    InputError
+        There are fewer than 4 sections; x does not increase; the first or last section is not a point, or
+        another section is one; a section is very flat; sections are so different and so far apart that the
         surface bulges between them.
 
     Examples

@@ -49,9 +49,11 @@ class Boundary(Connected):
         (ni, 2) nodes along xi.
     west, east : array
         (nj, 2) nodes along eta.
-    topology : {'quad', 'o', 'c'}, optional Kind of grid. The south side of a ``c`` boundary runs along the
-        wake to the body, around the body, and back along the wake; the nodes of the two wake parts coincide.
-    patches : tuple of Patch, optional Named parts of the sides; if empty, the patches of `default_patches`.
+    topology : {'quad', 'o', 'c'}, optional
+        Kind of grid. The south side of a ``c`` boundary runs along the wake to the body, around the body, and
+        back along the wake; the nodes of the two wake parts coincide.
+    patches : tuple of Patch, optional
+        Named parts of the sides; if empty, the patches of `default_patches`.
     name : str, optional
         Name of the shape in the input.
     wall : Curve, optional

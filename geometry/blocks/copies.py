@@ -42,8 +42,8 @@ def copied(grid: Grid, copies: int | Sequence[int]) -> Grid:
 
     Raises
     ------
-    InputError The grid is not periodic; there are more or fewer numbers than periods; a number is out of its
-        range.
+    InputError
+        The grid is not periodic; there are more or fewer numbers than periods; a number is out of its range.
     """
     counts = (copies,) if isinstance(copies, int) else tuple(copies)
     if counts == (1,):

@@ -57,8 +57,9 @@ class Revolution:
     ----------
     degrees : float
         Angle from the first plane to the last, up to 360.
-    planes : int, optional Number of planes of nodes, one more than the number of cells. If None: 2 planes for
-        an angle of up to 10 degrees, otherwise as many as make cells of at most 4 degrees.
+    planes : int, optional
+        Number of planes of nodes, one more than the number of cells. If None: 2 planes for an angle of up to
+        10 degrees, otherwise as many as make cells of at most 4 degrees.
     axis : AxisLine, optional
         Axis in the plane of the grid; by default the x axis.
 

@@ -33,9 +33,9 @@ class Domain:
         Notes on parts of the file that were ignored.
     periodic : tuple of Periodic, optional
         Pairs of periodic parts of the outer loop.
-    heights, counts : mapping, optional Prescribed first-cell heights and numbers of cells, by the name of a
-        part of a loop. A mirror of the domain is used only if the image of each part has the same prescribed
-        values.
+    heights, counts : mapping, optional
+        Prescribed first-cell heights and numbers of cells, by the name of a part of a loop. A mirror of the
+        domain is used only if the image of each part has the same prescribed values.
 
     Raises
     ------

@@ -55,8 +55,9 @@ def with_periodic_sides(domain: Domain, pairs: Sequence[tuple[str, str]]) -> Dom
 
     Raises
     ------
-    InputError No part of the outer loop has one of the names; a name is given twice; the sides of a pair are
-        not translated copies of each other (the message gives the distance).
+    InputError
+        No part of the outer loop has one of the names; a name is given twice; the sides of a pair are not
+        translated copies of each other (the message gives the distance).
     """
     if not pairs:
         return domain

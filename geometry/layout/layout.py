@@ -28,13 +28,15 @@ class Layout:
     ----------
     mesh : QuadMesh
         Quadrilaterals, their nodes, and the positions of nodes on the boundary.
-    blocks : tuple of array Right-handed arrays (ni, nj) of node indices; each quad of the mesh is in exactly
-        one block.
-    layers : dict, optional For blocks with layers: a dict from the index of a block to the number of its rows
-        of cells, counted from its south side, that are layers at a wall. The heights of these rows are
-        prescribed, so that the optimisation does not move them.
-    fronts : tuple of int, optional Indices of the loops that are not walls but the outer sides of layers. The
-        cells of these layers are added later.
+    blocks : tuple of array
+        Right-handed arrays (ni, nj) of node indices; each quad of the mesh is in exactly one block.
+    layers : dict, optional
+        For blocks with layers: a dict from the index of a block to the number of its rows of cells, counted
+        from its south side, that are layers at a wall. The heights of these rows are prescribed, so that the
+        optimisation does not move them.
+    fronts : tuple of int, optional
+        Indices of the loops that are not walls but the outer sides of layers. The cells of these layers are
+        added later.
     """
 
     mesh: QuadMesh

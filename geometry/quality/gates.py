@@ -104,10 +104,12 @@ class Judgement:
 
     Parameters
     ----------
-    problems : tuple of str A line for each gate that failed, and for each failed check of a profile.
+    problems : tuple of str
+        A line for each gate that failed, and for each failed check of a profile.
     beyond : tuple of str
         The same as short texts, including the warnings of profiles: ``max_angle 178.2 > 170``.
-    replaced : tuple of str Limits of gates that replace limits of profiles: ``box_ratio > 4000``.
+    replaced : tuple of str
+        Limits of gates that replace limits of profiles: ``box_ratio > 4000``.
     profile : ProfileReport, optional
         The outcome of every check of the profiles.
     """

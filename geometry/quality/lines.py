@@ -30,9 +30,9 @@ from meshonet.kernels import _native
 class Lines:
     """Largest growth and bend at the nodes of grid lines, with their places; None if there are no nodes.
 
-    `growth` is the growth along each direction of the blocks; at a node on a side between blocks, the
-    direction is that normal to the side. `leaving` is the growth along the lines that start at walls,
-    continued through all blocks that they cross; `by_wall` is the same for each wall, by name.
+    `growth` is the growth along each direction of the blocks; at a node on a side between two blocks, it is
+    the growth across this side. `leaving` is the growth along the lines that start at walls, continued
+    through all blocks that they cross; `by_wall` is the same for each wall, by name.
     """
 
     growth: Growth

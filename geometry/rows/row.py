@@ -26,10 +26,10 @@ class Row:
 
     Parameters
     ----------
-    profiles : sequence of array Two or more closed curves (n, 3) of x, y, z around one blade, ordered from
-        hub to casing.
-    hub, shroud : array Points (n, 2) of x and r on the inner and on the outer wall, ordered from inlet to
-        outlet.
+    profiles : sequence of array
+        Two or more closed curves (n, 3) of x, y, z around one blade, ordered from hub to casing.
+    hub, shroud : array
+        Points (n, 2) of x and r on the inner and on the outer wall, ordered from inlet to outlet.
     blades : int
         Number of blades.
     tip_gap, hub_gap : float, optional
@@ -40,8 +40,9 @@ class Row:
         Notes on changes of the profiles.
     frame : Motion, optional
         The rotation from the coordinates of the grid to the coordinates of the row; None: they are the same.
-    unit : {'m', 'cm', 'mm', 'in', 'ft'}, optional Unit of lengths in reports; the lengths of the row and of
-        the grid are then in metres. If empty, reports give lengths without conversion.
+    unit : {'m', 'cm', 'mm', 'in', 'ft'}, optional
+        Unit of lengths in reports; the lengths of the row and of the grid are then in metres. If empty,
+        reports give lengths without conversion.
 
     Raises
     ------

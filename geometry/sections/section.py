@@ -46,11 +46,13 @@ class Section:
         Twist angle in degrees, nose up.
     about : tuple of 2 float, optional
         Centre of the twist, in chords from the leading edge along x and y.
-    cant : float or 'panel', optional Angle in degrees by which the section's plane is rotated about the line
-        through the leading edge that is parallel to x; positive like dihedral. ``panel``: the dihedral of the
-        adjacent panels (`Stack.cants`).
-    nodes : int, optional Number of nodes along the span from the previous section to this one, including both
-        sections. None: it follows from the number for the whole stack.
+    cant : float or 'panel', optional
+        Angle in degrees by which the section's plane is rotated about the line through the leading edge that
+        is parallel to x; positive like dihedral. ``panel``: the dihedral of the adjacent panels
+        (`Stack.cants`).
+    nodes : int, optional
+        Number of nodes along the span from the previous section to this one, including both sections. None:
+        it follows from the number for the whole stack.
 
     Raises
     ------

@@ -171,8 +171,8 @@ class Stack:
     def steep(self) -> str:
         """A note on the steepest panel; empty if no panel is steep.
 
-        If the planes of the sections are inclined to the normal of a panel, the panel is as thick as its
-        sections times the cosine of the angle between them.
+        If the sections' planes are inclined to the plane that is normal to a panel, the panel is thinner than
+        its sections: by the factor cos(angle between the planes).
         """
         if self.kind != "wing":
             return ""

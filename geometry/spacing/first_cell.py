@@ -17,10 +17,10 @@ class FirstCell:
 
     Parameters
     ----------
-    first_cell : float or mapping, optional First-cell height, in the unit of the request; for multi-block
-        grids also heights by name of the wall.
-    y_plus : float or mapping, optional First-cell height as y+, which is converted by the friction of a flat
-        plate.
+    first_cell : float or mapping, optional
+        First-cell height, in the unit of the request; for multi-block grids also heights by name of the wall.
+    y_plus : float or mapping, optional
+        First-cell height as y+, which is converted by the friction of a flat plate.
     reynolds : float, optional
         Reynolds number for `y_plus`.
     chord_fraction : float, optional

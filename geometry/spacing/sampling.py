@@ -30,8 +30,9 @@ class Sampling:
     ni, nj : int, optional
         Number of nodes along xi (around the body) and eta (away from it). None: the numbers of the shape, or
         `DEFAULT_NI` and `DEFAULT_NJ` if the shape is a curve.
-    nk : int, optional Number of nodes of a volume along zeta. None: the number of the given volume; planar
-        grids accept only None.
+    nk : int, optional
+        Number of nodes of a volume along zeta. None: the number of the given volume; planar grids accept only
+        None.
     topology : {'auto', 'quad', 'o', 'c'}, optional
         Topology of the grid; ``auto``: the topology that suits the shape.
     spacing : str, optional
@@ -39,10 +40,11 @@ class Sampling:
         (``tanh`` if a cell size is given), and ``uniform`` elsewhere.
     le_spacing, te_spacing : float, optional
         Length of the wall cells at the leading and at the trailing edge, in chords.
-    far_field : float, optional Smallest distance of the outer boundary from the middle of the body. The unit
-        is the chord of an airfoil, or the largest extent of another body. None: `DEFAULT_FAR_FIELD`. For
-        marching from a surface, it is the marching distance in the unit of the surface. Shapes without a far
-        field accept only None.
+    far_field : float, optional
+        Smallest distance of the outer boundary from the middle of the body. The unit is the chord of an
+        airfoil, or the largest extent of another body. None: `DEFAULT_FAR_FIELD`. For marching from a
+        surface, it is the marching distance in the unit of the surface. Shapes without a far field accept
+        only None.
     corners : tuple of 4 int, optional
         Indices, from 0, of the points that become the corners of a quad domain.
     te : {'auto', 'exact', 'round', 'wedge'}, optional
@@ -67,8 +69,9 @@ class Sampling:
     refined : int, optional
         Place corners on nodes whose index is a multiple of this number, so that the grid can be coarsened by
         this factor.
-    viscous : bool, optional Whether cells at the wall will be thin; if so, the topology ``auto`` is C around
-        airfoils with a sharp trailing edge.
+    viscous : bool, optional
+        Whether cells at the wall will be thin; if so, the topology ``auto`` is C around airfoils with a sharp
+        trailing edge.
     normalise : bool, optional
         Move the leading edge to (0, 0) and the trailing edge to (1, 0).
 

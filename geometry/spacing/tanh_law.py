@@ -15,9 +15,8 @@ from meshonet.geometry.errors import InputError
 class TanhLaw:
     """Vinokur's two-sided stretching s(q), with q and s in [0, 1], from the slopes ds/dq at the two ends.
 
-    u = 1/2 + tanh(d (q - 1/2)) / (2 tanh(d/2)),  s = u / (a + (1 - a) u), a = sqrt(end/start), sinh(d)/d =
-    1/sqrt(start end); tan and sin replace tanh and sinh if this is < 1. Vinokur, J. Comput. Phys. 50 (1983)
-    215-234.
+    u = 1/2 + tanh(d (q - 1/2)) / (2 tanh(d/2)),  s = u / (a + (1 - a) u), a = sqrt(end/start),  sinh(d)/d =
+    1/sqrt(start end); below 1, tan and sin replace tanh, sinh. Vinokur, J. Comput. Phys. 50 (1983) 215-234.
     """
 
     start: float

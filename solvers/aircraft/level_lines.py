@@ -26,8 +26,8 @@ def lines_between(
 ) -> Floats:
     """Return nodes (n, cells + 1, 3) on n lines from `begin` (n, 3) to `end` (n, 3).
 
-    All of them are s, theta, zeta. Cell lengths in space change evenly along a line; the first and the last
-    cell have the lengths `sizes` (n,) in s.
+    Nodes, `begin` and `end` are given by s, theta, zeta. Cell lengths in space change evenly along a line;
+    the lengths of the first and of the last cell in s are `sizes` (n,).
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
     nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))

@@ -106,9 +106,9 @@ class Passage:
         return pairs_of(self.centre + times(zeta, self.period) / (1j * np.pi))
 
     def domain(self, inlet: float, outlet: float) -> Domain:
-        """Return the domain of the blocks, with the loops front, inlet, outlet, and one around them.
+        """Return the domain of the blocks: a loop around all blocks, and three holes: front, inlet, outlet.
 
-        The loops inlet and outlet are rectangles upstream and downstream of the passage. The first side of
+        The holes inlet and outlet are rectangles upstream and downstream of the passage. The first side of
         the upstream rectangle is the inlet: it starts at `inlet` and goes against the pitch. The first side
         of the downstream rectangle is the outlet: it goes along the pitch and ends at `outlet`. `inlet` and
         `outlet` are distances from the centre in the direction of the pitch, in pitches.

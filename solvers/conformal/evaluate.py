@@ -131,7 +131,7 @@ class _HighModes:
         return np.concatenate([k, -k]), modes
 
     def bands(self, depth: Floats) -> Iterator[tuple[slice, Complexes, Complexes]]:
-        """Yield slices of `depth`, from the wall outwards, each with the modes (levels, m) that reach it."""
+        """Yield slices of `depth`, from the wall outwards, each with its modes (levels, m) not negligible."""
         start = 0
         for count, some in self.felt(depth):
             if count > start:
@@ -142,9 +142,9 @@ class _HighModes:
                 start = count
 
     def felt(self, depth: Floats) -> list[tuple[int, int]]:
-        """Return, for each octave of modes, the number of levels that it reaches, and its last mode.
+        """Return, for each octave of modes, on how many levels it is not negligible, and its last mode.
 
-        The highest octave comes first. `depth` ascends; on further levels an octave is negligible.
+        The highest octave comes first. `depth` ascends; an octave is negligible on all deeper levels.
         """
         octaves: list[tuple[int, int]] = []
         strength = modulus(self.ahead) + modulus(self.behind[::-1])

@@ -151,7 +151,7 @@ def from_columns(values: Any, xp: Any = np) -> Any:
 def picard(
     c: Complexes, steps: int, settled: float = 0.0, diverged: float = np.inf
 ) -> tuple[Complexes, list[float]]:
-    """Return the modes after at most `steps` Picard steps, and the largest change of F in each step.
+    """Return the modes of F after at most `steps` Picard steps, and the largest change of F in each step.
 
     The iteration ends after a step in which the change is below `settled` or at least `diverged`; a change
     that is not finite counts as infinite. `c` (2 MODES + 1, LEVELS) are the modes at the Chebyshev points;

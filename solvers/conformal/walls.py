@@ -75,7 +75,7 @@ def is_rough(body: StripWalls) -> bool:
 
 
 def sharp_turns(body: StripWalls) -> tuple[int, ...]:
-    """Return the indices of the trailing corners, then of nodes with sharp turns of the wall.
+    """Return the indices of the trailing corners, followed by those of nodes where the wall turns sharply.
 
     At these nodes grid lines may cross the wall.
     """

@@ -13,7 +13,7 @@ from meshonet.geometry.arrays import Floats, as_planar
 
 @dataclass(frozen=True)
 class Window:
-    """Nodes `first` to `last`, inclusive, along each direction; i may extend across the seam of an O grid.
+    """The nodes from `first` to `last`, inclusive, along each direction; i may cross the seam of an O grid.
 
     >>> Window((-2, 0), (4, 3)).cells
     18

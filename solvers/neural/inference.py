@@ -131,7 +131,7 @@ def _refuse(**parameters: object) -> None:
 class OperatorMethod:
     """The method ``operator``: grids by `infer_many`, whose settings are its fields.
 
-    Raises InputError: `fallback` for a model that is no network.
+    Raises InputError: `fallback` is given for a model that is no network.
     """
 
     model: str | None = None

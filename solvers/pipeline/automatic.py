@@ -39,7 +39,7 @@ class Auto(OneByOne):
 
 @dataclass(frozen=True)
 class Fewer(Wrapper):
-    """`method` on fewer nodes if the quality is the same; on twice as many nodes if cells are folded."""
+    """Solves by `method` on fewer nodes if quality stays the same; on twice as many if cells are folded."""
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
         """Return the solution of a boundary; all nodes are used if there is an initial grid."""

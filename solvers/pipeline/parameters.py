@@ -18,8 +18,9 @@ def grid_request(method: str = "best", *, res: Counts | None = None, **parameter
     ----------
     method : str, optional
         Name of the method, as in `GridRequest`.
-    res : int or tuple of int, optional Number of nodes along xi, eta and, for volumes, zeta. A single number
-        applies to all directions, or only to xi if ``growth`` determines the number of rows.
+    res : int or tuple of int, optional
+        Number of nodes along xi, eta and, for volumes, zeta. A single number applies to all directions, or
+        only to xi if ``growth`` determines the number of rows.
     **parameters
         Fields of `Sampling` and `GridRequest`, and settings of the method. Settings that are None are
         ignored. ``wall_spacing`` is another name of ``first_cell``.

@@ -155,15 +155,17 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     ----------
     sampling : Sampling, optional
         Numbers of nodes and spacing of the boundary.
-    method : str, optional A key of `METHODS`, ``best`` or ``auto``. ``best`` is the default method for the
-        topology, or marching around bodies with a first-cell height. ``auto`` is Winslow's equations, or
-        marching in the same cases.
+    method : str, optional
+        A key of `METHODS`, ``best`` or ``auto``. ``best`` is the default method for the topology, or marching
+        around bodies with a first-cell height. ``auto`` is Winslow's equations, or marching in the same
+        cases.
     settings : dict, optional
         Settings of the method by name.
-    first_cell : float or mapping, optional Height of the first cell at every wall node, in chords around a
-        body, otherwise in the unit of the domain. In a four-sided domain the walls are south and north,
-        unless sides have names such as ``inlet``. In four-sided and multi-block domains, a mapping from names
-        to heights selects the walls that get layers.
+    first_cell : float or mapping, optional
+        Height of the first cell at every wall node, in chords around a body, otherwise in the unit of the
+        domain. In a four-sided domain the walls are south and north, unless sides have names such as
+        ``inlet``. In four-sided and multi-block domains, a mapping from names to heights selects the walls
+        that get layers.
     y_plus : float or mapping, optional
         First-cell height as y+, or y+ of several walls by name, instead of `first_cell`. The conversion
         assumes a turbulent flat plate.
@@ -181,8 +183,9 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         Number of rows at the wall that have the height of the first cell.
     spacing_south, spacing_north, spacing_west, spacing_east : float, optional
         First-cell heights at single sides of a four-sided domain.
-    slide : bool, optional Whether nodes slide along the walls south and north. None: only if a first-cell
-        height is given and the wall nodes were not given but placed by the program.
+    slide : bool, optional
+        Whether nodes slide along the walls south and north. None: only if a first-cell height is given and
+        the wall nodes were not given but placed by the program.
     wall_angle : float, optional
         Angle between grid lines and walls in degrees, for ``steger-sorenson``.
     coarse : int or 'auto', optional
@@ -226,8 +229,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         coarsest grid.
     layers : int, optional
         Number of nodes along each grid line of a volume marched from a surface, including the wall node.
-    symmetry : {'x', 'y', 'z', 'none'}, optional Axis that is normal to the plane of symmetry, the plane that
-        contains the open edges of a surface.
+    symmetry : {'x', 'y', 'z', 'none'}, optional
+        Axis that is normal to the plane of symmetry, the plane that contains the open edges of a surface.
     poles : {'replace', 'refuse'}, optional
         Treatment of a pole, a side of a surface patch that is a single point: a core patch replaces it, or it
         is an error.

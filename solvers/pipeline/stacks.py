@@ -49,8 +49,8 @@ def stack_surface(stack: Stack, request: StackRequest | None = None) -> tuple[Gr
 def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
     """Return the volume grid around or inside a stack, with its quality.
 
-    Raises InputError: parameters that do not suit the stack; NoValidGridError: folded cells, unless these are
-    allowed.
+    Raises InputError: parameters do not suit the stack; NoValidGridError: cells are folded, and the request
+    does not allow that.
     """
     request = _with_panels(stack, request)
     seconds: dict[str, float] = {}

@@ -31,12 +31,12 @@ def upright(
     ends: tuple[Floats, Floats], free: tuple[bool, bool], planes: Sequence[SectionPlane], pairs: Indices,
     fixed: Bools,
 ) -> tuple[Floats, Floats]:  # fmt: skip
-    """Return places u (k,) at the hub and at the casing with which lines across the channel lean less.
+    """Return places u (k,) at hub and casing so that lines across the channel are more nearly normal.
 
     `ends` are the given places; only those at ends that are `free` are moved. `pairs` (p, 2) are a node on
     the upper side of a blade and a node on the lower side of the next blade that a line joins. Nodes in the
     mask `fixed` (k,) do not move, and no node moves beyond the leading or the trailing edge. No node moves
-    if, in the half of the span at each free end, no line leans by more than `LEAN`.
+    if, in the half of the span at each free end, no line deviates from the normal by more than `LEAN`.
     """
     heights = np.array([plane.height for plane in planes])
     parts = np.stack([1.0 - heights, heights], axis=1)[:, free]

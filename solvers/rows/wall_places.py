@@ -33,8 +33,8 @@ def even_wall_places(
 
     Nodes at `corners` (c,) do not move. `pairs` (p, 2) are a node on the upper side of a blade and a node on
     the lower side of the next blade that one of the `lines` across the channel joins; it is penalised if a
-    line leans more than before. With `opposite`, there remains a node at 1 - u for each node at u, and
-    `lines` have no effect.
+    line deviates more from the normal than before. With `opposite`, there remains a node at 1 - u for each
+    node at u, and `lines` have no effect.
     """
     limit = MARGIN * math.log(growth)
     lead = int(np.abs(wrapped(places)).argmin())

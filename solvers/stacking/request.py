@@ -27,8 +27,9 @@ class StackRequest(FirstCell):
 
     Parameters
     ----------
-    around : int, optional Number of nodes around a section, an odd number; the first node is counted again as
-        the last. None: 129.
+    around : int, optional
+        Number of nodes around a section, an odd number; the first node is counted again as the last. None:
+        129.
     span : int, optional
         Number of nodes from the first section to the last. None: 49.
     cells : int, optional
@@ -48,8 +49,9 @@ class StackRequest(FirstCell):
         Growth ratio of cells away from the wall, if `layers` is not given; None: 1.2.
     far_field : float, optional
         Distance of the far field.
-    revolve : float, optional Angle in degrees, from the first section to the last, by which the z axis of a
-        blade or duct is bent around `axis`.
+    revolve : float, optional
+        Angle in degrees, from the first section to the last, by which the z axis of a blade or duct is bent
+        around `axis`.
     axis : AxisLine, optional
         Axis of `revolve`, in the plane of the sections; None: the x axis.
     threads : int, optional

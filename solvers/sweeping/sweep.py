@@ -38,8 +38,9 @@ class Sweep:
 
     Parameters
     ----------
-    planes : int, optional Number of planes of nodes. None: so many that the path turns by at most 4 degrees
-        per cell, and cells are at most three times as long as the mean cell width of the section.
+    planes : int, optional
+        Number of planes of nodes. None: so many that the path turns by at most 4 degrees per cell, and cells
+        are at most three times as long as the mean cell width of the section.
     up : tuple of 3 float, optional
         Direction (3,) in which the y axis of the section points at the start of the path, as closely as
         possible. None: z, or y for a path along z.

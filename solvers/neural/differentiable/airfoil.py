@@ -106,8 +106,9 @@ def conformal(south: Tensor, north: Tensor, nj: int, *, failed: Failed = "raise"
     ------
     InputError
         Tensors of other shapes, of unequal counts or of different dtypes; `nj` below 2.
-    SolverError A body of the batch has no conformal lift or a coordinate that is not finite, or its equations
-        do not converge. The message and the attribute ``members`` have the indices of such bodies.
+    SolverError
+        A body of the batch has no conformal lift or a coordinate that is not finite, or its equations do not
+        converge. The message and the attribute ``members`` have the indices of such bodies.
     """
     return AirfoilGrids("base", "converged", str(south.device))(south, north, nj, failed=failed)
 

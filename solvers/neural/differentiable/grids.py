@@ -44,17 +44,20 @@ def winslow(
     Parameters
     ----------
     south, north, west, east : as in `transfinite`.
-    coarse : int, optional Solve on at most this number of nodes along a direction, and interpolate the grid
-        to all nodes of the sides. The option ``--coarse`` does the same, and sweeps near kinks afterwards.
-    failed : {"raise", "nan"} With "nan", there is no error if members have no solution: their nodes are NaN
-        and have no gradients, and the other members are solved again without them.
+    coarse : int, optional
+        Solve on at most this number of nodes along a direction, and interpolate the grid to all nodes of the
+        sides. The option ``--coarse`` does the same, and sweeps near kinks afterwards.
+    failed : {"raise", "nan"}
+        With "nan", there is no error if members have no solution: their nodes are NaN and have no gradients,
+        and the other members are solved again without them.
 
     Raises
     ------
     InputError
         As `transfinite`, and for `coarse` below 9.
-    SolverError The equations of a member of the batch do not converge, or it has a coordinate that is not
-        finite. The message and the attribute ``members`` have the indices of such members.
+    SolverError
+        The equations of a member of the batch do not converge, or it has a coordinate that is not finite. The
+        message and the attribute ``members`` have the indices of such members.
     """
     return _solved(Winslow(), coarse, failed, south, north, west, east)
 
@@ -71,8 +74,8 @@ def variational(
     Parameters
     ----------
     south, north, west, east : as in `transfinite`.
-    coarse : int, optional As in `winslow`. 65 makes all grids cheap, but only the coarse grid is then
-        optimal.
+    coarse : int, optional
+        As in `winslow`. 65 makes all grids cheap, but only the coarse grid is then optimal.
     failed : {"raise", "nan"}
         As in `winslow`.
 
@@ -80,8 +83,9 @@ def variational(
     ------
     InputError
         As `winslow`, and for more than about 400 x 400 nodes to solve on, whose systems need too much memory.
-    SolverError No grid without folded cells was found for a member of the batch, or it has a coordinate that
-        is not finite. The message and the attribute ``members`` have the indices of such members.
+    SolverError
+        No grid without folded cells was found for a member of the batch, or it has a coordinate that is not
+        finite. The message and the attribute ``members`` have the indices of such members.
     """
     return _solved(Optimum(), coarse, failed, south, north, west, east)
 

@@ -17,7 +17,8 @@ class MemberError(SolverError):
 
     Parameters
     ----------
-    reasons : dict By index of a member (from 0): what is wrong with this member, and what a user can do.
+    reasons : dict
+        By index of a member (from 0): what is wrong with this member, and what a user can do.
     """
 
     members: tuple[int, ...]

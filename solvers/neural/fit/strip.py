@@ -44,7 +44,8 @@ class StripTask(Task):
 
     Strips with small residuals get larger weights.
 
-    `training`, `held_out`: strips; `sizes`: of the network; `device`: to compute on.
+    `training`, `held_out`: strips for training, and for measuring errors; `sizes`: of the network; `device`:
+    on which to compute.
     """
 
     parts: tuple[str, ...] = ("difference",)

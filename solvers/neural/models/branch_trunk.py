@@ -31,7 +31,7 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONet(Architecture):
-    """The paper's operator: two branches, for x and y, and one trunk."""
+    """The operator of the MeshONet paper: two branches, one for x and one for y, and one trunk."""
 
     interior: ClassVar[float] = 900.0
     boundary: ClassVar[float] = 1000.0
@@ -59,7 +59,7 @@ class MeshONet(Architecture):
 
 @dataclass(frozen=True)
 class DeepONet(Architecture):
-    """One branch and one trunk, half of whose features serve x, the other half y."""
+    """One branch and one trunk; half of their features are for x, the other half for y."""
 
     hidden: tuple[int, ...] = (64, 128, 64)  # widths of a branch's hidden layers
     features: int = 50  # of each coordinate

@@ -83,7 +83,7 @@ class MGNet(Architecture):
         return xp.concatenate([xp.sin(turn * xi), xp.cos(turn * xi), 2.0 * eta - 1.0], -1)
 
     def slopes(self, xp: Any, points: Any) -> Sequence[Any]:
-        """Return the features (p, features) and their derivatives by xi, eta, xi xi, xi eta and eta eta."""
+        """Return features (p, features), and their first and second derivatives by xi and eta."""
         f = self.features(xp, points)
         zero, two = 0.0 * f[:, :1], 0.0 * f[:, :1] + 2.0
         if not self.periodic:

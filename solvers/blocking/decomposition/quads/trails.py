@@ -99,7 +99,7 @@ class Trails:
 
 
 def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int) -> Trails:
-    """Return the trails of rays, made of the integers (p, 3) and floats (p, 5) that `trace_rays` returned."""
+    """Return the trails of rays, from what `trace_rays` returned: `pieces` (p, 3) and `lines` (p, 5)."""
     order = np.argsort(pieces[:, 0], kind="stable")
     pieces, lines = pieces[order], lines[order]
     count = np.bincount(pieces[:, 0], minlength=rays)
