@@ -64,7 +64,9 @@ def format_of(source: Source, fmt: str | None = None) -> Format:
     if len(claimed) == 1:
         return claimed[0]
     head = source.head()
-    for record in claimed or TABLE.values():
+    for record in (
+        claimed[:-1] or TABLE.values()
+    ):  # the last that claims an ending takes what the others do not
         if record.sniff is not None and record.sniff(head):
             return record
     if claimed:

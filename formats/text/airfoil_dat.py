@@ -35,11 +35,11 @@ sniff = partial(mostly_rows, counts=(2,), least=4)
 
 def read_shapes(source: Source) -> Iterator[Airfoil]:
     """Yield the airfoil of a file. Raises InputError, with the line: the file is not an airfoil."""
-    yield parse(decode(source.text_bytes()), source.name, source.stem)
+    yield parse(decode(source.text_bytes()), source.name)
 
 
-def parse(text: str, source: str, stem: str = "") -> Airfoil:
-    r"""Return the airfoil that the text of the file `source` describes; `stem` is the default of its name.
+def parse(text: str, source: str) -> Airfoil:
+    r"""Return the airfoil that the text of the file `source` describes, which is named after it by default.
 
     >>> parse("Plate\n1 0\n.5 .05\n0 0\n.5 -.05\n1 0\n", "plate.dat").name
     'Plate'
@@ -53,7 +53,7 @@ def parse(text: str, source: str, stem: str = "") -> Airfoil:
         notes = left_out(lines)
         if counts is not None:
             notes += _wrong_counts(counts, len(rows), upper)
-        name = _name(lines, rows[0].number) or stem or source
+        name = _name(lines, rows[0].number) or Source(source).stem
         return Airfoil(points, name, list(map("line {}".format, numbers)), notes)
 
 

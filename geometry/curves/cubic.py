@@ -4,7 +4,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.monotone import hermite_piece
-from meshonet.kernels._native import solve_tridiagonal
+from meshonet.kernels._native import cubic_values, solve_tridiagonal
 
 
 class CubicTable:
@@ -22,7 +22,12 @@ class CubicTable:
 
     def __call__(self, places: Floats) -> Floats:
         """Return the values (p, ...) of the spline at `places` (p,)."""
-        return cubic_piece(*self._parts(places))
+        n, *shape = self.values.shape
+        arrays = (self.knots, self.values.reshape(n, -1), self.bends.reshape(n, -1), places.reshape(-1))
+        knots, values, bends, at = (np.ascontiguousarray(each, np.float64) for each in arrays)
+        out = np.empty((at.size, values.shape[1]))
+        cubic_values(knots, values, bends, at, out)
+        return out.reshape(*places.shape, *shape)
 
     def slope(self, places: Floats) -> Floats:
         """Return the derivatives (p, ...) of the spline at `places` (p,)."""
@@ -54,17 +59,6 @@ class CubicTable:
         t = ((places - self.knots[first]) / h).reshape(shape)
         tables = self.values[first], self.values[first + 1], self.bends[first], self.bends[first + 1]
         return (h.reshape(shape), t, *tables)
-
-
-def cubic_piece(h: Floats, t: Floats, start: Floats, stop: Floats, begin: Floats, end: Floats) -> Floats:
-    """Return the values of cubic pieces of length `h` at t (0 to 1).
-
-    `start` and `stop` are the values at the two ends, `begin` and `end` the second derivatives there. All
-    arrays broadcast.
-    """
-    bend = (2.0 - t) * begin + (1.0 + t) * end
-    inner = start + t * (stop - start) - t * (1.0 - t) * h**2 / 6.0 * bend
-    return np.asarray(np.where(t == 1.0, stop, inner))
 
 
 def cubic_spline(values: Floats, knots: Floats, places: Floats) -> Floats:

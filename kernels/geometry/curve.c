@@ -70,6 +70,28 @@ void curve_speeds(const double *cubic, ptrdiff_t n, const double *places, ptrdif
         }
 }
 
+void cubic_values(const double *knots, const double *values, const double *bends, ptrdiff_t n, ptrdiff_t width,
+                  const double *places, ptrdiff_t m, double *out)
+{
+    for (ptrdiff_t i = 0; i < m; i++) {
+        ptrdiff_t low = 0, high = n - 1;
+        while (high - low > 1) {
+            const ptrdiff_t k = (low + high) / 2;
+            if (knots[k] <= places[i])
+                low = k;
+            else
+                high = k;
+        }
+        const double *start = values + low * width, *begin = bends + low * width;
+        const double h = knots[low + 1] - knots[low], t = (places[i] - knots[low]) / h;
+        const double part = t * (1.0 - t) * (h * h) / 6.0;
+        for (ptrdiff_t j = 0; j < width; j++) {
+            const double bend = (2.0 - t) * begin[j] + (1.0 + t) * begin[j + width], stop = start[j + width];
+            out[i * width + j] = t == 1.0 ? stop : start[j] + t * (stop - start[j]) - part * bend;
+        }
+    }
+}
+
 void tridiagonal_solve(const double *lower, const double *diagonal, const double *upper, double *right, ptrdiff_t n,
                        ptrdiff_t k, double *ratio)
 {

@@ -26,6 +26,11 @@ void curve_slopes(const double *cubic, ptrdiff_t n, const ptrdiff_t *interval, c
 /* Lengths (n, m) of the derivatives at the same places (m) of every interval. */
 void curve_speeds(const double *cubic, ptrdiff_t n, const double *places, ptrdiff_t m, double *lengths);
 
+/* Values (m, width) at `places` (m) of the spline through `values` (n, width) at rising `knots` (n), of which `bends`
+   (n, width) are the second derivatives; outer cubics go on beyond both ends. Values at knots are kept, bit for bit. */
+void cubic_values(const double *knots, const double *values, const double *bends, ptrdiff_t n, ptrdiff_t width,
+                  const double *places, ptrdiff_t m, double *out);
+
 /* Solve a tridiagonal system of n rows in place of `right` (n, k), by elimination without pivoting: the rows of a
    spline are diagonally dominant. Row i is lower[i] x[i-1] + diagonal[i] x[i] + upper[i] x[i+1]; `ratio` (n) is
    scratch. */

@@ -27,6 +27,8 @@ cdef extern from "geometry/curve.h":
                                        const double *place, ptrdiff_t m, double *derivatives) nogil
     void c_curve_speeds "curve_speeds"(const double *cubic, ptrdiff_t n, const double *places, ptrdiff_t m,
                                        double *lengths) nogil
+    void c_cubic_values "cubic_values"(const double *knots, const double *values, const double *bends, ptrdiff_t n,
+                                       ptrdiff_t width, const double *places, ptrdiff_t m, double *out) nogil
     void c_tridiagonal_solve "tridiagonal_solve"(const double *lower, const double *diagonal, const double *upper,
                                                  double *right, ptrdiff_t n, ptrdiff_t k, double *ratio) nogil
 
@@ -111,6 +113,15 @@ def curve_speeds(cubic, places, lengths):
     """Fill `lengths` (n, m) with the norms of the derivatives at parameters `places` (m,) of each of n intervals."""
     cdef ptrdiff_t n = cubic.shape[1], m = len(places)
     c_curve_speeds(reads(cubic, (4, n, 2)), n, reads(places, (m,)), m, fills(lengths, (n, m)))
+
+
+def cubic_values(knots, values, bends, places, out):
+    """Fill `out` (m, width) at `places` (m,) from a spline's `values` and `bends` (n, width) at `knots` (n,)."""
+    cdef ptrdiff_t n = len(knots), width = values.shape[1], m = len(places)
+    if n < 2:
+        raise ValueError("a spline of one knot")
+    c_cubic_values(reads(knots, (n,)), reads(values, (n, width)), reads(bends, (n, width)), n, width,
+                   reads(places, (m,)), m, fills(out, (m, width)))
 
 
 def solve_tridiagonal(lower, diagonal, upper, right):

@@ -3,6 +3,8 @@ cdef extern from "quads/topology.h":
     ptrdiff_t c_line_neighbours "line_neighbours"(
         const ptrdiff_t *quads, const ptrdiff_t *edge_of, ptrdiff_t m, ptrdiff_t n, ptrdiff_t e, const ptrdiff_t *node,
         const ptrdiff_t *edge, ptrdiff_t *line, ptrdiff_t *room) nogil
+    int c_quad_images "quad_images"(const ptrdiff_t *twin, ptrdiff_t m, ptrdiff_t quad, ptrdiff_t image, ptrdiff_t corner,
+                                    ptrdiff_t *images, ptrdiff_t *first, ptrdiff_t *room) nogil
 
 cdef extern from "quads/corners.h":
     void c_smallest_corners "smallest_corners"(
@@ -73,6 +75,22 @@ def line_neighbours(quads, edge_of, node, edge):
     with nogil:
         pairs = c_line_neighbours(q, s, m, n, e, v, w, to, scratch)
     return line, pairs
+
+
+def quad_images(twin, ptrdiff_t quad, ptrdiff_t image, ptrdiff_t corner):
+    """Return images (m,) of quads in a mirror and their first corners (m,), or None; see ``topology.h``."""
+    cdef ptrdiff_t m = len(twin)
+    cdef bint fits
+    if not (0 <= quad < m and 0 <= image < m and 0 <= corner < 4):
+        raise ValueError("a quad or corner that there is not")
+    images, first, room = np.empty(m, np.intp), np.empty(m, np.intp), np.empty(3 * m, np.intp)
+    cdef const ptrdiff_t *t = reads_places(twin, (m, 4), 4 * m, -1)
+    cdef ptrdiff_t *to = fills_indices(images, (m,))
+    cdef ptrdiff_t *corners = fills_indices(first, (m,))
+    cdef ptrdiff_t *scratch = fills_indices(room, (3 * m,))
+    with nogil:
+        fits = c_quad_images(t, m, quad, image, corner, to, corners, scratch)
+    return (images, first) if fits else None
 
 
 def smallest_corners(nodes, quads):

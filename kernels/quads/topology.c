@@ -1,5 +1,6 @@
 /* The neighbours of edges of quads along grid lines. */
 #include "topology.h"
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct {
@@ -92,4 +93,39 @@ ptrdiff_t line_neighbours(const ptrdiff_t *quads, const ptrdiff_t *edge_of, ptrd
             pair_up(&lines, ends[0], ends[1]);
     }
     return lines.pairs;
+}
+
+static int by_number(const void *a, const void *b)
+{
+    const ptrdiff_t one = *(const ptrdiff_t *)a, other = *(const ptrdiff_t *)b;
+    return (one > other) - (one < other);
+}
+
+int quad_images(const ptrdiff_t *twin, ptrdiff_t m, ptrdiff_t quad, ptrdiff_t image, ptrdiff_t corner,
+                ptrdiff_t *images, ptrdiff_t *first, ptrdiff_t *room)
+{
+    ptrdiff_t *front = room, *next = room + m, *reached = room + 2 * m, count = 1;
+    for (ptrdiff_t q = 0; q < m; q++)
+        images[q] = reached[q] = -1, first[q] = 0;
+    images[quad] = image, first[quad] = corner, front[0] = quad;
+    for (ptrdiff_t round = 0; count > 0; round++) {
+        ptrdiff_t found = 0;
+        for (ptrdiff_t i = 0; i < count; i++)
+            for (ptrdiff_t side = 0; side < 4; side++) {
+                const ptrdiff_t q = front[i], across = twin[4 * q + side];
+                const ptrdiff_t beyond = twin[4 * images[q] + (first[q] - side + 7) % 4];
+                if ((across < 0) != (beyond < 0))
+                    return 0;
+                if (across < 0 || (images[across / 4] >= 0 && reached[across / 4] != round))
+                    continue;
+                if (reached[across / 4] != round)
+                    next[found++] = across / 4;
+                reached[across / 4] = round;
+                images[across / 4] = beyond / 4, first[across / 4] = (across + beyond + 1) % 4;
+            }
+        qsort(next, (size_t)found, sizeof *next, by_number);
+        ptrdiff_t *const swap = front;
+        front = next, next = swap, count = found;
+    }
+    return 1;
 }

@@ -1,4 +1,4 @@
-/* Consecutive edges along grid lines of a mesh of quads. */
+/* Consecutive edges along grid lines of a mesh of quads, and meshes that are images of themselves. */
 #pragma once
 #include <stddef.h>
 
@@ -11,3 +11,10 @@
    that stand for themselves are compared. Returns the number of pairs; `room` holds 2 n + 1 + 5 m + 2 e. */
 ptrdiff_t line_neighbours(const ptrdiff_t *quads, const ptrdiff_t *edge_of, ptrdiff_t m, ptrdiff_t n, ptrdiff_t e,
                           const ptrdiff_t *node, const ptrdiff_t *edge, ptrdiff_t *line, ptrdiff_t *room);
+
+/* Fill the quad `images` (m) that each quad becomes in a mirror, and the corner `first` (m) of it that its first corner
+   becomes, from those of one `quad`: quads turn round, corner i becomes number first - i of the image. -1 is the image of
+   quads that are not reached. `twin` (m, 4) is 4 q + k where edge k of quad q is on the other side of an edge, or -1.
+   Returns 0 where one of two edges that become each other is on the boundary and the other is not. `room` holds 3 m. */
+int quad_images(const ptrdiff_t *twin, ptrdiff_t m, ptrdiff_t quad, ptrdiff_t image, ptrdiff_t corner,
+                ptrdiff_t *images, ptrdiff_t *first, ptrdiff_t *room);

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from meshonet.solvers.pipeline.methods import METHODS
 from meshonet_cli import options as o
+from meshonet_cli.options.sides import SideOptions
 from meshonet_cli.terminal.errors import with_options
 
 EXAMPLES = (
@@ -39,7 +40,7 @@ def solve_pde(
     sampling: o.SamplingOptions,
     boundary_layer: o.LayerOptions,
     checks: o.CheckOptions,
-    sides: o.SideOptions,
+    sides: SideOptions,
     domain: o.DomainOptions,
     volume: o.VolumeOptions,
     blocks: o.BlocksName = "auto",

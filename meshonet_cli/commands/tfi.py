@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from meshonet.solvers.pipeline.methods import METHODS
 from meshonet_cli import options as o
+from meshonet_cli.options.sides import SideOptions
 
 EXAMPLES = (
     "meshonet tfi duct.csv --res 80x40 -o duct.vts",
@@ -26,7 +27,7 @@ def tfi(
     sampling: o.SamplingOptions,
     boundary_layer: o.LayerOptions,
     checks: o.CheckOptions,
-    sides: o.SideOptions,
+    sides: SideOptions,
     method: Annotated[MethodName, _option(
         "--method", metavar="|".join(ALGEBRAIC), show_default=True,
         help=" ".join(f"{name}: {text}." for name, text in ALGEBRAIC.items()),

@@ -17,7 +17,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, arc_lengths, norms
+from meshonet.geometry.arrays import Floats, arc_lengths, norms, rolled
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.cubic import CubicTable, cubic_spline
 from meshonet.geometry.elementary import exp, power
@@ -229,10 +229,10 @@ def _lines(root: Floats, outer: Floats, straight: float = 0.0) -> tuple[Floats, 
 def _normals(loop: Floats) -> Floats:
     """Return unit normals (n, 2) of a closed loop, counter-clockwise, away from its inside, smoothed."""
     ring = loop[:-1]
-    after, before = np.roll(ring, -1, axis=0) - ring, ring - np.roll(ring, 1, axis=0)
+    after, before = rolled(ring, -1) - ring, ring - rolled(ring, 1)
     tangent = after / np.hypot(*after.T)[:, None] + before / np.hypot(*before.T)[:, None]
     normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
     normal /= np.hypot(*normal.T)[:, None]
-    normal = 0.5 * normal + 0.25 * (np.roll(normal, 1, axis=0) + np.roll(normal, -1, axis=0))
+    normal = 0.5 * normal + 0.25 * (rolled(normal, 1) + rolled(normal, -1))
     normal /= np.hypot(*normal.T)[:, None]
     return np.concatenate([normal, normal[:1]])

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, norms
+from meshonet.geometry.arrays import Floats, Indices, norms, rolled
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.elementary import cos, product, sin
 from meshonet.solvers.sweeping.ring_steps import ring_steps
@@ -131,8 +131,8 @@ class Cap:
         share = np.clip(1.0 / self.rows, low, high)
         for _ in range(_SWEEPS):
             around = share[:-1]
-            smooth = 0.5 * around + 0.25 * (np.roll(around, 1) + np.roll(around, -1))
-            share = np.clip(np.append(smooth, smooth[:1]), low, high)
+            smooth = 0.5 * around + 0.25 * (rolled(around, 1) + rolled(around, -1))
+            share = np.minimum(np.maximum(np.concatenate([smooth, smooth[:1]]), low), high)
         return share * length
 
     def _lines(self, loop: Floats, inner: Floats, part: Floats) -> Floats:

@@ -32,7 +32,7 @@ EXPECTED = Airfoil(SELIG)
 
 def same(text: str, name: str = "TEST") -> None:
     """Hold the airfoil of a text to the one expected."""
-    got = parse(text, "a.dat", "a")
+    got = parse(text, "a.dat")
     np.testing.assert_allclose(got.curve.points, EXPECTED.curve.points, atol=1e-12)
     assert got.name == name
 

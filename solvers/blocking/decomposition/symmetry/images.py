@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Indices, distinct, norms
+from meshonet.geometry.arrays import Indices, norms
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.kernels._native import nearest_points
+from meshonet.kernels._native import nearest_points, quad_images
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
 
 Images = Sequence[tuple[Mirror, Indices]]
@@ -111,19 +111,11 @@ def _continued(mesh: QuadMesh, quad: int, image: int, corner: int) -> Indices | 
 
     Quads turn round: their corner i becomes number `first` - i of the image. None where quads do not fit.
     """
-    images, first = np.full(len(mesh.quads), -1, dtype=np.intp), np.zeros(len(mesh.quads), dtype=np.intp)
-    images[quad], first[quad] = image, corner
-    front, sides = np.array([quad]), np.arange(4)
-    while len(front):
-        across = mesh.twin[front]
-        beyond = mesh.twin[images[front][:, None], (first[front][:, None] - sides - 1) % 4]
-        if ((across < 0) != (beyond < 0)).any():
-            return None
-        across, beyond = across[across >= 0], beyond[across >= 0]
-        new = images[across // 4] < 0
-        across, beyond = across[new], beyond[new]
-        images[across // 4], first[across // 4] = beyond // 4, (across + beyond + 1) % 4
-        front = distinct(across // 4)
+    found = quad_images(mesh.twin, quad, image, corner)
+    if found is None:
+        return None
+    images, first = found
+    sides = np.arange(4)
     to = np.zeros(len(mesh.nodes), dtype=np.intp)
     turned = mesh.quads[images[:, None], (first[:, None] - sides) % 4]
     to[mesh.quads] = turned
