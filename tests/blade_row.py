@@ -1,9 +1,11 @@
 """A row of blades that exists nowhere: circular arcs of a thickness, in a channel that narrows."""
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
+from meshonet.geometry.arrays import read_only
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.rows.row import Row
 
@@ -22,9 +24,10 @@ def profile(radius: float, stagger: float, count: int = 80) -> np.ndarray:
     return np.stack([0.5 + a * c - b * s, radius * np.sin(angle), radius * np.cos(angle)], axis=1)
 
 
+@cache
 def profiles() -> tuple[np.ndarray, ...]:
     """Profiles from below the hub to above the shroud, more and more staggered."""
-    return tuple(profile(radius, 20.0 * (radius - 1.0)) for radius in (1.95, 2.3, 2.7, 3.02))
+    return tuple(read_only(profile(radius, 20.0 * (radius - 1.0))) for radius in (1.95, 2.3, 2.7, 3.02))
 
 
 def blade_row(tip_gap: float = 0.0, hub_gap: float = 0.0) -> Row:

@@ -1,9 +1,11 @@
 """Fixtures of all tests; the mark of those that run Debian's programs, from ``make test-clients``."""
 
+import contextlib
 import gc
 import os
 import shutil
 import signal
+import sys
 from collections.abc import Iterator
 
 import pytest
@@ -47,6 +49,19 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "solver(program): runs a program that Debian does not have either")
     config.addinivalue_line("markers", "slow: takes a second or more; make test-fast leaves it out")
     config.addinivalue_line("markers", "browser: opens pages in Chromium")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems() -> None:
+    """Have hypothesis draw no constants of this project's modules, all of which it would parse: 5 s.
+
+    What its tests draw then does not depend on the modules that other tests load either.
+    """
+    if "hypothesis" in sys.modules:
+        with contextlib.suppress(ImportError):  # an older one has none
+            from hypothesis.internal.conjecture import providers
+
+            providers._get_local_constants = providers.Constants
 
 
 def pytest_collection_finish() -> None:

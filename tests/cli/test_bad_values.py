@@ -31,9 +31,12 @@ TAKES_WORDS = ("--output", "--log-csv")
 """Options that name a file or folder, and may be called anything."""
 
 
+PARSERS = application().commands
+
+
 def options(command: str) -> list[str]:
     """Every option of a command that takes a value."""
-    parameters = application().commands[command].params
+    parameters = PARSERS[command].params
     return [p.opts[-1] for p in parameters if p.opts[-1].startswith("--") and not p.is_flag]
 
 
@@ -41,7 +44,7 @@ CASES = [(command, option) for command in INPUTS for option in options(command) 
 
 
 def test_no_command_is_left_out() -> None:
-    assert {*INPUTS, "train"} == set(application().commands)
+    assert {*INPUTS, "train"} == set(PARSERS)
 
 
 @pytest.fixture(scope="module")
