@@ -43,13 +43,13 @@ def solve(matrix: Any, right: Any) -> Floats:
         A matrix is singular.
     """
     left = np.array(matrix, np.float64, order="C")
-    given = np.asarray(right, np.float64)
+    values = np.asarray(right, np.float64)
     size, stack = left.shape[-1], left.shape[:-2]
     left = left.reshape(math.prod(stack), size, size)
-    out = given.reshape(len(left), size, math.prod(given.shape[len(stack) + 1 :])).copy()
+    out = values.reshape(len(left), size, math.prod(values.shape[len(stack) + 1 :])).copy()
     if not solve_systems(left, out):
         raise ValueError("the matrix is singular")
-    return out.reshape(given.shape)
+    return out.reshape(values.shape)
 
 
 def inverse(matrix: Any) -> Floats:

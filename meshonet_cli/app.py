@@ -111,8 +111,8 @@ def run(arguments: Sequence[str]) -> int:
     alone = words[0] in BY_NAME and not completion
     name = f"meshonet {words[0]}" if alone else "meshonet"
     try:
-        meant = [BY_NAME[words[0]]] if alone else COMMANDS
-        program = application(meant, overview=not (alone or completion))
+        commands = [BY_NAME[words[0]]] if alone else COMMANDS
+        program = application(commands, overview=not (alone or completion))
         try:
             code: Any = program.main(words[alone:], prog_name=name, standalone_mode=False)
         finally:

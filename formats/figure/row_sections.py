@@ -143,12 +143,12 @@ class RowSections:
     @cached_property
     def _spans(self) -> list[tuple[Floats, Floats]]:
         """For each block the parts of the ways from hub to shroud and from inlet to outlet."""
-        found = []
+        sections = []
         for nodes in self.places:
             flat = nodes[..., :2].reshape(-1, 2)
             part, along = _ruled(flat, *self._curves)
-            found.append((part.reshape(nodes.shape[:-1]), along.reshape(nodes.shape[:-1])))
-        return found
+            sections.append((part.reshape(nodes.shape[:-1]), along.reshape(nodes.shape[:-1])))
+        return sections
 
     def at(self, span: float, values: list[Floats] | None) -> Cut:
         """Return the section at the fraction `span` of the distance from hub to shroud.

@@ -33,7 +33,7 @@ def boundary_of(grid: Grid) -> Shape:
 
         layout = layout_of(grid)
         whole = all(joins_whole_sides(grid, each) for each in grid.connections)
-        return DomainShape(layout.mesh.domain, layout=layout if whole else None, given=grid)
+        return DomainShape(layout.mesh.domain, layout=layout if whole else None, grid=grid)
     nodes = grid.nodes
     edges = nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1]
     return Boundary(*edges, grid.topology, grid.patches, grid.name, origin=grid.origin)

@@ -226,8 +226,8 @@ def _difficult(number: int, text: str, words: list[str]) -> Line:
         values.append(value)
     if len(values) == len(bare) > 1:
         return Line(number, "row", tuple(values), text)
-    meant = bare[:2] if len(values) < 2 else bare
-    if len(bare) > 1 and all(_MEANT.fullmatch(word) or _ONE.fullmatch(word) for word in meant):
+    numbers = bare[:2] if len(values) < 2 else bare
+    if len(bare) > 1 and all(_MEANT.fullmatch(word) or _ONE.fullmatch(word) for word in numbers):
         return Line(number, "damaged", (), text)
     if len(values) == 2 and not re.search(r"[\d>=:/]", " ".join(words[2:])):
         return Line(number, "noted", tuple(values), text)

@@ -198,13 +198,13 @@ class LoftedBody(Body):
         return f"where its section is from y={low:.4g} to {high:.4g} and {2.0 * across:.4g} wide"
 
 
-def _denser(given: Floats) -> Floats:
-    """Return x, half the width and half the height (m, 3): `given` ones (n, 3), and more in long intervals.
+def _denser(sections: Floats) -> Floats:
+    """Return x, half the width and half the height (m, 3): `sections` (n, 3) and more in long intervals.
 
     They are on limited splines for squares of sizes, in which round noses and tails are straight lines; steps
     shrink to nose and tail, as x there is a parabola in the sizes.
     """
-    x, halves = given[:, 0], given[:, 1:]
+    x, halves = sections[:, 0], sections[:, 1:]
     squares = LimitedSpline(halves * halves, x)
     counts = np.ceil(np.diff(x) / (_LONGEST * np.ptp(x))).astype(int).tolist()
     rows = []
@@ -215,5 +215,5 @@ def _denser(given: Floats) -> Floats:
         elif number == len(counts) - 1:
             part = part * (2.0 - part)
         within = x[number] + part * (x[number + 1] - x[number])
-        rows += [given[number : number + 1], np.column_stack([within, np.sqrt(squares(within))])]
-    return np.concatenate([*rows, given[-1:]])
+        rows += [sections[number : number + 1], np.column_stack([within, np.sqrt(squares(within))])]
+    return np.concatenate([*rows, sections[-1:]])

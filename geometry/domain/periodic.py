@@ -63,9 +63,9 @@ def with_periodic_sides(domain: Domain, pairs: Sequence[tuple[str, str]]) -> Dom
         return domain
     _check_names(domain, pairs)
     loop = _without_kinks(domain.loops[0], {name for pair in pairs for name in pair})
-    found = tuple(each for pair in pairs for each in _matched(loop, pair, domain.extent))
-    loop = _with_cells(loop, found)
-    made = replace(domain, loops=(loop, *domain.loops[1:]), periodic=(*domain.periodic, *found))
+    matches = tuple(each for pair in pairs for each in _matched(loop, pair, domain.extent))
+    loop = _with_cells(loop, matches)
+    made = replace(domain, loops=(loop, *domain.loops[1:]), periodic=(*domain.periodic, *matches))
     shifts = rounded(np.array([each.shift for each in made.periodic]), made).tolist()
     return replace(
         made,
@@ -132,13 +132,13 @@ def _matched(loop: Loop, names: tuple[str, str], extent: float) -> list[Periodic
 def _stretches(loop: Loop, name: str) -> list[tuple[float, float]]:
     """Return the arc lengths at which the stretches of a name start and end, the end after the start."""
     arcs, count = loop.corner_arcs.tolist(), len(loop.corners)
-    found = []
+    stretches = []
     for k in range(count):
         if loop.names[k] != name:
             continue
         stop = arcs[(k + 1) % count]
-        found.append((arcs[k], stop if stop > arcs[k] else stop + loop.length))
-    return found
+        stretches.append((arcs[k], stop if stop > arcs[k] else stop + loop.length))
+    return stretches
 
 
 def _with_cells(loop: Loop, pairs: Sequence[Periodic]) -> Loop:

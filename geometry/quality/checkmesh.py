@@ -148,8 +148,8 @@ def _summed(
     largest, cosine = angles.extreme, cosines.extreme
     if largest and cosine:
         largest = replace(largest, mean=math.degrees(math.acos(min(1.0, max(-1.0, cosine.mean)))))
-    found = largest, skews.extreme, boxes.extreme
-    return FaceMeasures(*(replace(each, at=each.at[1:]) if each and alone else each for each in found))
+    extremes = largest, skews.extreme, boxes.extreme
+    return FaceMeasures(*(replace(each, at=each.at[1:]) if each and alone else each for each in extremes))
 
 
 def _within(nodes: Floats, number: int) -> Iterator[Values]:

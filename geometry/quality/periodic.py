@@ -38,18 +38,18 @@ class Period:
 
 def periods(grid: Grid) -> tuple[Period, ...]:
     """Return the different periods of a grid."""
-    found: list[tuple[Motion, list[tuple[Floats, Floats]]]] = []
+    groups: list[tuple[Motion, list[tuple[Floats, Floats]]]] = []
     for each in grid.connections:
         if each.transform is None:
             continue
         ways = [(way, way.transform or Motion()) for way in (each, each.reversed())]
-        known = ((way, sides) for way, own in ways for motion, sides in found if motion.alike(own, _ALIKE))
+        known = ((way, sides) for way, own in ways for motion, sides in groups if motion.alike(own, _ALIKE))
         way, sides = next(known, (each, None))
         if sides is None:
             sides = []
-            found.append((each.transform, sides))
+            groups.append((each.transform, sides))
         sides.append(_sides(grid, way))
-    return tuple(_period(screw_of(motion), sides) for motion, sides in found)
+    return tuple(_period(screw_of(motion), sides) for motion, sides in groups)
 
 
 def _sides(grid: Grid, each: Connection) -> tuple[Floats, Floats]:

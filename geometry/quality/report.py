@@ -16,7 +16,8 @@ from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.quality.periodic import periods
 from meshonet.geometry.quality.profiles import CheckResult, ProfileReport, profile_report
-from meshonet.geometry.quality.wall_cells import Flow, YPlus, skewness_at, y_plus_at
+from meshonet.geometry.quality.wall_skewness import skewness_at
+from meshonet.geometry.quality.wall_y_plus import Flow, YPlus, y_plus_at
 from meshonet.geometry.quality.walls import Spread, WallRow
 from meshonet.geometry.summary import Quality
 

@@ -48,12 +48,12 @@ def assembled(
     bodies = list(chain(*(_bodies(shape, label) for (shape, _), label in zip(as_asked, names, strict=True))))
     groups = nested([body.curve.points for body in bodies])
     several = len(shapes) > 1
-    said = [
+    texts = [
         type(note)(f"{label}: {note}") if several else note
         for (_, own), label in zip(as_asked, names, strict=True)
         for note in own
     ]
-    notes = tuple(dict.fromkeys(said))
+    notes = tuple(dict.fromkeys(texts))
     if len(groups) == 1 and len(bodies) > 1:
         outer, holes = groups[0]
         if len(holes) < len(bodies) - 1:
@@ -78,7 +78,7 @@ def _check_airfoils(shapes: Sequence[Shape], sampling: Sampling) -> None:
     of_airfoils = {"base": sampling.base, "smooth": sampling.smooth, "te": sampling.te != "auto"}
     bodies = [shape.body if isinstance(shape, Annulus) else shape for shape in shapes]
     bodies = [body.shape if isinstance(body, Labelled) else body for body in bodies]
-    name = next((name for name, given in of_airfoils.items() if given), "")
+    name = next((name for name, value in of_airfoils.items() if value), "")
     if name and not any(isinstance(body, Airfoil) for body in bodies):
         raise InputError("none of the shapes is an airfoil", f"leave {{{name}}} out")
 

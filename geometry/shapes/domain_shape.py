@@ -44,7 +44,7 @@ class DomainShape:
     far_field : whether a far field was added around bodies.
     layout : blocks of the domain, if the input contains them.
     assembled : whether the domain was assembled from several shapes.
-    given : the multi-block grid that the domain was taken from, if the input is a grid.
+    grid : the multi-block grid that the domain was taken from, if the input is a grid.
     """
 
     domain: Domain
@@ -54,7 +54,7 @@ class DomainShape:
     far_field: bool = False
     layout: Layout | None = None
     assembled: bool = False
-    given: Grid | None = field(default=None, repr=False)
+    grid: Grid | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         if not self.unit:

@@ -63,9 +63,9 @@ def polygon_shape(
         return DomainShape(domain)
     named = any(ring.names for ring in rings)
     if len(loops) == 1:
-        given = rings[0].corners is not None
+        with_corners = rings[0].corners is not None
         return DomainShape(
-            domain, not four_sided(domain), partial(_outline, domain, named=named, given=given)
+            domain, not four_sided(domain), partial(_outline, domain, named=named, with_corners=with_corners)
         )
     if len(loops) == 2:
         return DomainShape(domain, not in_far_field(domain), partial(_annulus, domain, named=named))
@@ -90,9 +90,9 @@ def default_name(number: int) -> str:
     return "outer" if number == 0 else "body" if number == 1 else f"body{number}"
 
 
-def _outline(domain: Domain, *, named: bool, given: bool) -> Shape:
+def _outline(domain: Domain, *, named: bool, with_corners: bool) -> Shape:
     loop, corners = domain.loops[0], None
-    if given and four_sided(domain):
+    if with_corners and four_sided(domain):
         a, b, c, d = convex_corners(loop)
         corners = (a, b, c, d)
     outline = Outline(loop.curve.points, domain.name, corners, loop.places)

@@ -43,8 +43,8 @@ class FirstCell:
     @property
     def by_wall(self) -> tuple[str, ...]:
         """Names of the walls that have their own height; empty if one height is given for all walls."""
-        given = self.first_cell if self.y_plus is None else self.y_plus
-        return tuple(given) if isinstance(given, Mapping) else ()
+        setting = self.first_cell if self.y_plus is None else self.y_plus
+        return tuple(setting) if isinstance(setting, Mapping) else ()
 
     def check_first_cell(self) -> None:
         """Raise InputError for a height out of range, or for fields that need or exclude each other."""
@@ -54,18 +54,18 @@ class FirstCell:
         if (self.y_plus is None) != (self.reynolds is None):
             needed, known = ("reynolds", "y_plus") if self.reynolds is None else ("y_plus", "reynolds")
             raise InputError(f"{{{known}}} without {{{needed}}}", f"give {{{needed}}} as well")
-        for name, given in (
+        for name, setting in (
             ("chord_fraction", self.chord_fraction != 0.5),
             ("length", self.length is not None),
         ):
-            if self.y_plus is None and given:
+            if self.y_plus is None and setting:
                 raise InputError(f"{{{name}}} without {{y_plus}}", "give {y_plus} and {reynolds} as well")
         if self.length is not None and not 0 < self.length < math.inf:
             problem = f"a reference length of {self.length:g}"
             raise InputError(problem, "give a positive length", parameter="length")
         for name in ("first_cell", "y_plus"):
-            given = getattr(self, name)
-            if isinstance(given, Mapping) and not (given and all(given)):
+            setting = getattr(self, name)
+            if isinstance(setting, Mapping) and not (setting and all(setting)):
                 remedy = "give e.g. tubes=1e-3,floor=5e-3, or one value"
                 raise InputError("a wall without a name", remedy, parameter=name)
         if self.at_walls:
@@ -79,10 +79,10 @@ class FirstCell:
         None if no first cell is requested. `unit` is the reference length of the Reynolds number if `length`
         is None.
         """
-        given = self.first_cell if self.y_plus is None else self.y_plus
-        if isinstance(given, Mapping):
-            return {name: self._height(value, unit) for name, value in given.items()}
-        return None if given is None else self._height(given, unit)
+        setting = self.first_cell if self.y_plus is None else self.y_plus
+        if isinstance(setting, Mapping):
+            return {name: self._height(value, unit) for name, value in setting.items()}
+        return None if setting is None else self._height(setting, unit)
 
     def height(self, unit: float = 1.0) -> float | None:
         """Return the first-cell height in the unit of the request; None if no height is requested.
@@ -99,12 +99,12 @@ class FirstCell:
             raise InputError(problem, "give one value, without a name", parameter=name)
         return height
 
-    def _height(self, given: float, unit: float) -> float:
+    def _height(self, setting: float, unit: float) -> float:
         if self.y_plus is None or self.reynolds is None:
-            return given
+            return setting
         from meshonet.geometry.spacing.y_plus import first_cell
 
-        return first_cell(given, self.reynolds, self.chord_fraction) * (self.length or unit)
+        return first_cell(setting, self.reynolds, self.chord_fraction) * (self.length or unit)
 
     def height_note(self, where: str, unit: float = 1.0, in_unit: str = "", scale: float = 1.0) -> str:
         """Return a note on how the first-cell height follows from y+; an empty text if no y+ is given.
@@ -123,10 +123,10 @@ class FirstCell:
         return height_note(y_plus, self.reynolds, where, heights)
 
 
-def _values(given: AtWalls | None) -> tuple[float, ...]:
-    if given is None:
+def _values(setting: AtWalls | None) -> tuple[float, ...]:
+    if setting is None:
         return ()
-    return tuple(given.values()) if isinstance(given, Mapping) else (given,)
+    return tuple(setting.values()) if isinstance(setting, Mapping) else (setting,)
 
 
 def check_names(names: Iterable[str], known: Iterable[str], parameter: str) -> None:

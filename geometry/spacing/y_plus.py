@@ -45,23 +45,23 @@ def height_note(y_plus: str, reynolds: float | None, where: str, height: str) ->
 def first_cell_note(
     low: float,
     high: float,
-    asked: float,
+    target: float,
     growth: float | None,
     where: str = "wall node",
     chord: float = 1.0,
 ) -> str:
-    """Return a sentence that compares the first-cell heights, from `low` to `high`, with `asked`.
+    """Return a sentence that compares the first-cell heights, from `low` to `high`, with `target`.
 
     `growth` is the mean growth ratio away from the wall, None if unknown; `where` is the word for the nodes
-    in the sentence. Heights are in the unit of the nodes; if `chord` is not 1, `asked` is also given in
+    in the sentence. Heights are in the unit of the nodes; if `chord` is not 1, `target` is also given in
     chords.
     """
     size = (
-        f"{asked:.6g}"
+        f"{target:.6g}"
         if chord == 1.0
-        else f"{asked:.6g} in the unit of the points ({asked / chord:.6g} chords)"
+        else f"{target:.6g} in the unit of the points ({target / chord:.6g} chords)"
     )
-    if max(abs(low / asked - 1.0), abs(high / asked - 1.0)) > SAME:
+    if max(abs(low / target - 1.0), abs(high / target - 1.0)) > SAME:
         return f"first cells are {low:.3g} to {high:.3g} instead of {size}"
     rows = "" if growth is None else f"; the mean growth ratio is {growth:.3f}"
     return f"the first-cell height is {size} at every {where}{rows}"

@@ -12,7 +12,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.gates import parse_gates
 from meshonet.geometry.quality.report import QualityReport, quality_report
-from meshonet.geometry.quality.wall_cells import Flow
+from meshonet.geometry.quality.wall_y_plus import Flow
 from meshonet.geometry.threads import limited_to
 
 

@@ -14,7 +14,7 @@ from meshonet.geometry.quality.metrics import metrics_of
 from meshonet.geometry.quality.periodic import Period, periods
 from meshonet.geometry.quality.profiles import CheckResult, Limit, ProfileReport
 from meshonet.geometry.quality.report import Comparison, QualityReport
-from meshonet.geometry.quality.wall_cells import Flow, YPlus
+from meshonet.geometry.quality.wall_y_plus import Flow, YPlus
 from meshonet.geometry.quality.walls import Spread, WallRow
 from meshonet.geometry.summary import Quality, named
 from meshonet_cli.report.timed import Timed

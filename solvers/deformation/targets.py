@@ -125,9 +125,9 @@ def _placed(
         return
     if isinstance(new, Grid) or table.nodes.shape[1] == 3:
         arrays = _of_grid(new, name) if isinstance(new, Grid) else _arrays(new, name)
-        had, given = ([piece.numbers.shape for piece in pieces], [array.shape[:-1] for array in arrays])
-        if had != given or arrays[0].shape[-1] != table.nodes.shape[1]:
-            own, other = (", ".join(" x ".join(map(str, size)) for size in each) for each in (had, given))
+        had, sizes = ([piece.numbers.shape for piece in pieces], [array.shape[:-1] for array in arrays])
+        if had != sizes or arrays[0].shape[-1] != table.nodes.shape[1]:
+            own, other = (", ".join(" x ".join(map(str, size)) for size in each) for each in (had, sizes))
             problem = f"{name!r} has patches of {own} nodes, and its new shape {other or 'none'}"
             raise InputError(problem, "give as many nodes, in order", parameter="wall")
         yield from ((piece.numbers, array) for piece, array in zip(pieces, arrays, strict=True))
@@ -139,8 +139,8 @@ def _placed(
         raise InputError(problem, "give the nodes of each", parameter="wall")
     for line, shape in zip(lines, shapes, strict=True):
         wall = table.nodes[line]
-        places, said = _on(wall, shape, name)
-        notes += said
+        places, more = _on(wall, shape, name)
+        notes += more
         _check_outline(places, name)
         yield line, places
 

@@ -100,21 +100,21 @@ def hyperbolic(
 
 def marched(
     front: Front,
-    asked: int,
+    rows: int,
     first: float,
     growth: float | None,
     free_rows: bool,
     constant: int,
     multiple: int = 1,
 ) -> Floats:
-    """Return the nodes (ni, nj, 2) of a march with `asked` rows of cells.
+    """Return the nodes (ni, nj, 2) of a march with `rows` rows of cells.
 
     With `free_rows` the number of rows follows from `growth`, and is a multiple of `multiple`.
 
     Raises InputError: too few rows. Raises SolverError: no attempt gave finite nodes.
     """
     distance = front.outer - front.inner
-    least = cells = _rows(asked, first, distance, growth, free_rows, constant, multiple)
+    least = cells = _rows(rows, first, distance, growth, free_rows, constant, multiple)
     if free_rows:
         cells = -(-cells // multiple) * multiple
     nodes = _unfolded(front, cells, first, growth, constant, free_rows)
@@ -124,8 +124,8 @@ def marched(
             problem = f"no number of rows keeps to a growth of {growth:g}"
             raise InputError(problem, "allow more", parameter="growth")
         nodes = _unfolded(front, cells, first, growth, constant, free_rows)
-    if cells > asked and not free_rows:
-        raise _too_few(asked, cells, growth or MOST_GROWTH, multiple)
+    if cells > rows and not free_rows:
+        raise _too_few(rows, cells, growth or MOST_GROWTH, multiple)
     return nodes
 
 

@@ -122,8 +122,8 @@ def _refuse(**parameters: object) -> None:
     """Raise InputError for parameters that do not apply to C grids, which no network makes."""
     for name, value in parameters.items():
         if value is not None:
-            given = f"{{{name}}}" if value is True else f"{{{name}}} {value}"
-            problem = f"{given} is of no use to a c grid: it is marched, no model makes it"
+            option = f"{{{name}}}" if value is True else f"{{{name}}} {value}"
+            problem = f"{option} is of no use to a c grid: it is marched, no model makes it"
             raise InputError(problem, f"drop {{{name}}}")
 
 

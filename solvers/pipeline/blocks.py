@@ -47,7 +47,7 @@ def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
 def smooths(shape: DomainShape, request: GridRequest) -> bool:
     """Return whether a request smooths the blocks of a given grid instead of making new blocks."""
     new_blocks = request.asks_for_blocks or request.sampling.ni or request.at_walls
-    return shape.given is not None and request.method in SMOOTHERS and not new_blocks
+    return shape.grid is not None and request.method in SMOOTHERS and not new_blocks
 
 
 def smoothed(grid: Grid, request: GridRequest) -> Solution:
@@ -139,7 +139,7 @@ def _for_one(request: GridRequest) -> dict[str, bool]:
 
 def _check_single(request: GridRequest, asks: tuple[str, ...]) -> bool:
     """Return whether an option asks for a single block. Raises InputError if others `asks` for many."""
-    single = [name for name, given in _for_one(request).items() if given]
+    single = [name for name, used in _for_one(request).items() if used]
     if single and asks:
         problem = f"{{{asks[0]}}} asks for many blocks and {{{single[0]}}} for one"
         raise InputError(problem, "give one of them")

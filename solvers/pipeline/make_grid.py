@@ -246,8 +246,8 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
 
     reached("grid")
     begun = time.perf_counter()
-    if shape.given is not None and smooths(shape, request):
-        solution = smoothed(shape.given, request)
+    if shape.grid is not None and smooths(shape, request):
+        solution = smoothed(shape.grid, request)
         seconds |= {"load": time.perf_counter() - begun - solution.seconds["grid"], **solution.seconds}
         solution = replace(solution, notes=(*shape.notes, *solution.notes))
         return judged(solution, seconds, request, remedy="find other blocks with {cells}, or {allow_invalid}")

@@ -21,23 +21,23 @@ _SMALL = 0.02
 """Fraction of the displacement below which a node is reset."""
 
 
-def held_back(grid: Grid, given: Layout, layout: Layout, before: PlaneMeasures) -> Grid | None:
-    """Return `grid`, whose layout is `given`, moved towards `layout` where that does not make it worse.
+def held_back(grid: Grid, original: Layout, layout: Layout, before: PlaneMeasures) -> Grid | None:
+    """Return `grid`, whose layout is `original`, moved towards `layout` where that does not make it worse.
 
     `before` are the measures of `grid`. The result is None if hardly any node would move.
     """
-    part = np.ones(len(given.mesh.nodes))
+    part = np.ones(len(original.mesh.nodes))
     for number in range(_ROUNDS):
-        made = with_nodes(grid, part_of_the_way(given, layout, part))
+        made = with_nodes(grid, part_of_the_way(original, layout, part))
         now = measures(made)
         if now.no_worse(before):
             return made
         bad = np.zeros(len(part), dtype=bool)
         for block, i, j in cells_beyond(made, before.angle, before.skew):
-            bad[given.blocks[block][i : i + 2, j : j + 2]] = True
+            bad[original.blocks[block][i : i + 2, j : j + 2]] = True
         if not bad.any():  # the mean deviation, or folded cells
             bad[:] = True
-        quads = given.mesh.quads
+        quads = original.mesh.quads
         for share in _SHARES:
             part[bad] *= share if number < _GENTLE else 0.0
             bad[quads[bad[quads].any(axis=1)].ravel()] = True  # and the nodes around them
@@ -47,9 +47,9 @@ def held_back(grid: Grid, given: Layout, layout: Layout, before: PlaneMeasures) 
     return None
 
 
-def part_of_the_way(given: Layout, layout: Layout, part: Floats) -> Layout:
+def part_of_the_way(original: Layout, layout: Layout, part: Floats) -> Layout:
     """Return the layout with nodes at the fraction `part` (n,) between two layouts; boundary nodes slide."""
-    old, mesh = given.mesh, layout.mesh
+    old, mesh = original.mesh, layout.mesh
     nodes = old.nodes + part[:, None] * (mesh.nodes - old.nodes)
     arc = old.places.arc.copy()
     moved = (mesh.nodes != old.nodes).any(axis=1) & (old.places.partner < 0)

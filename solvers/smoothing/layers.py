@@ -20,20 +20,20 @@ ROWS = 200
 """Largest number of rows of layers."""
 
 
-def with_layers(mesh: QuadMesh, given: QuadMesh) -> tuple[QuadMesh, Bools]:
-    """Return `mesh` with the layer heights of `given`, and a mask (n,) of the nodes in layers.
+def with_layers(mesh: QuadMesh, original: QuadMesh) -> tuple[QuadMesh, Bools]:
+    """Return `mesh` with the layer heights of `original`, and a mask (n,) of the nodes in layers.
 
     Both meshes have the same quads.
 
     Layers are rows of cells at the boundary that are `THIN`. If wall nodes have moved, the heights are those
-    of `given` at the same arc length. Nodes in the layers of two walls do not move.
+    of `original` at the same arc length. Nodes in the layers of two walls do not move.
     """
-    lines = _lines(given)
-    held = np.zeros(len(given.nodes), dtype=bool)
+    lines = _lines(original)
+    held = np.zeros(len(original.nodes), dtype=bool)
     if not len(lines.nodes):
         return mesh, held
     claimed = np.bincount(lines.nodes[:, 1:][lines.thin], minlength=len(held))
-    heights = _at_new_places(_heights(given.nodes, lines), lines, mesh, given)
+    heights = _at_new_places(_heights(original.nodes, lines), lines, mesh, original)
     nodes, own = mesh.nodes.copy(), _heights(mesh.nodes, lines)
     for k, line in enumerate(lines.nodes):
         rows = int(lines.thin[k].sum())
@@ -103,13 +103,13 @@ def _heights(nodes: Floats, lines: _WallLines) -> Floats:
     return np.asarray(np.hypot(*np.moveaxis(np.diff(nodes[lines.nodes], axis=1), -1, 0)))
 
 
-def _at_new_places(heights: Floats, lines: _WallLines, mesh: QuadMesh, given: QuadMesh) -> Floats:
+def _at_new_places(heights: Floats, lines: _WallLines, mesh: QuadMesh, original: QuadMesh) -> Floats:
     """Return heights (n, m) of lines with moved wall nodes, interpolated along the wall."""
     wall = lines.nodes[:, 0]
     new = heights.copy()
-    for number, loop in enumerate(given.domain.loops):
-        on = np.flatnonzero(given.places.loop[wall] == number)
-        old, now = (each.places.arc[wall[on]] for each in (given, mesh))
+    for number, loop in enumerate(original.domain.loops):
+        on = np.flatnonzero(original.places.loop[wall] == number)
+        old, now = (each.places.arc[wall[on]] for each in (original, mesh))
         for row in range(heights.shape[1] if (old != now).any() else 0):
             known = lines.thin[on, row]
             if known.any():

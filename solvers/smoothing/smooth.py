@@ -40,13 +40,13 @@ def smooth(grid: Grid, *, slide: bool = False, iterations: int = ITERATIONS) -> 
 
     Raises InputError: the blocks are not planar, or do not form a domain.
     """
-    given = layout_of(grid)
+    original = layout_of(grid)
     before = measures(grid)
     candidates: list[tuple[PlaneMeasures, Grid]] = []
-    for layout in _optima(given, slide=slide, iterations=iterations):
+    for layout in _optima(original, slide=slide, iterations=iterations):
         made: Grid | None = with_nodes(grid, layout)
         if made is not None and not measures(made).no_worse(before):
-            made = held_back(grid, given, layout, before)
+            made = held_back(grid, original, layout, before)
         if made is not None:
             candidates.append((measures(made), made))
     least, best = first_least(candidates or [(before, grid)], key=lambda pair: pair[0].score)
@@ -58,9 +58,9 @@ def smooth(grid: Grid, *, slide: bool = False, iterations: int = ITERATIONS) -> 
     return Solution(facts, METHOD, notes=notes, outcome=outcome)
 
 
-def _optima(given: Layout, *, slide: bool, iterations: int) -> Iterator[Layout]:
+def _optima(original: Layout, *, slide: bool, iterations: int) -> Iterator[Layout]:
     """Yield the optimum with jumps evened out, if there are any, and the optimum with all ratios kept."""
-    mesh = given.mesh
+    mesh = original.mesh
     places = mesh.places
     fixed = (places.loop >= 0) & (places.partner < 0)
     fixed[places.partner[places.partner >= 0]] = False
@@ -82,4 +82,4 @@ def _optima(given: Layout, *, slide: bool, iterations: int) -> Iterator[Layout]:
         if inside.any():
             optimum = towards(layers, held=stays | inside)
         if optimum.valid:
-            yield replace(given, mesh=optimum.mesh)
+            yield replace(original, mesh=optimum.mesh)

@@ -53,15 +53,17 @@ def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = Fa
 
     Raises InputError: the blocks are not volumes, or are left-handed.
     """
-    given = hex_mesh_of(grid)
-    before = measures(given)
-    slides, sliding = slides_of(grid, given) if slide else (Slides.none(), np.zeros(len(given.nodes), bool))
-    moves = ~given.outer | sliding
-    made, after = given, before
+    original = hex_mesh_of(grid)
+    before = measures(original)
+    slides, sliding = (
+        slides_of(grid, original) if slide else (Slides.none(), np.zeros(len(original.nodes), bool))
+    )
+    moves = ~original.outer | sliding
+    made, after = original, before
     if moves.any():
-        made, after = _best(given, before, moves, slides, iterations)
-    notes = () if made is not given else (_AS_GOOD,)
-    result = with_nodes(grid, made) if made is not given else grid
+        made, after = _best(original, before, moves, slides, iterations)
+    notes = () if made is not original else (_AS_GOOD,)
+    result = with_nodes(grid, made) if made is not original else grid
     return Solution(
         result.with_provenance(method=METHOD, slide=slide, **UNJUDGED),
         METHOD,
@@ -71,33 +73,33 @@ def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = Fa
 
 
 def _best(
-    given: HexMesh, before: VolumeMeasures, moves: Bools, slides: Slides, iterations: int
+    original: HexMesh, before: VolumeMeasures, moves: Bools, slides: Slides, iterations: int
 ) -> tuple[HexMesh, VolumeMeasures]:
     """Return the smoothed mesh and its measures, or the given one if smoothing does not improve it."""
-    targets = wanted_edges(given, moves)
-    layers = layers_of(given, moves, targets)
-    start, valid = given, before
+    targets = wanted_edges(original, moves)
+    layers = layers_of(original, moves, targets)
+    start, valid = original, before
     if before.folded:
-        start, valid, targets = _unfolded(given, before, moves, targets, slides)
+        start, valid, targets = _unfolded(original, before, moves, targets, slides)
         if valid.folded:
-            return (start, valid) if valid.folded < before.folded else (given, before)
+            return (start, valid) if valid.folded < before.folded else (original, before)
     for made, kept in _optima(start, moves, targets, layers, slides, iterations):
-        best = _held_back(start, made, valid, layers) if kept or start is not given else None
+        best = _held_back(start, made, valid, layers) if kept or start is not original else None
         if best is not None:
             return best
     return start, valid
 
 
 def _unfolded(
-    given: HexMesh, before: VolumeMeasures, moves: Bools, targets: Targets, slides: Slides
+    original: HexMesh, before: VolumeMeasures, moves: Bools, targets: Targets, slides: Slides
 ) -> tuple[HexMesh, VolumeMeasures, Targets]:
     """Return the mesh without folded cells, or with fewer, its measures, and the target lengths.
 
     If few cells are folded, the nodes around them are moved first. Then all nodes are moved, from several
     starts: the optimum of a coarser copy, the given nodes, and a harmonic restart.
     """
-    mesh, measured = given, before
-    for reach in _AROUND if before.folded < _SOME * given.cells else ():
+    mesh, measured = original, before
+    for reach in _AROUND if before.folded < _SOME * original.cells else ():
         near = moves & _around(mesh, reach)
         mesh, measured = _with_fewer(mesh, mesh, measured, near, targets, slides)
         if not measured.folded:

@@ -302,8 +302,8 @@ class Airfoil:
         notes += replaced
         if body.blunt:
             first = body.half_base
-            corner, asked = body.curve.at(np.array([first]))[0], sampling.base_nodes is not None
-            notes += base_note(wall, corner, 2.0 * first, body.chord, asked=asked)
+            corner, fixed = body.curve.at(np.array([first]))[0], sampling.base_nodes is not None
+            notes += base_note(wall, corner, 2.0 * first, body.chord, fixed=fixed)
         turned = not sampling.viscous
         return o_boundary(wall, nj, centre, radius, body.curve, self.name, self.unit, turned, notes)
 

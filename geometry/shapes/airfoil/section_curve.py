@@ -157,11 +157,11 @@ def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
     return ()
 
 
-def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, asked: bool) -> tuple[str, ...]:
+def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, fixed: bool) -> tuple[str, ...]:
     """Return a note if a base uses most nodes, or if cell sizes jump at its lower corner.
 
     The upper corner is like the lower one. `wall` (n, 2) runs from the middle of the base, which has length
-    `base` and ends at `corner` (2,); the number of its nodes may be `asked` for.
+    `base` and ends at `corner` (2,); the number of its nodes may be `fixed`.
     """
     steps = norms(np.diff(wall, axis=0))
     arcs = np.cumsum(steps)
@@ -172,7 +172,7 @@ def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, asked:
         return (
             f"{crowd} of {len(wall)} wall nodes lie on the base or within {BESIDE:g} chords of it, and the "
             f"longest cell elsewhere has {steps.max() / chord:.2g} chords: use "
-            + ("fewer {base_nodes}" if asked else f"{{te_spacing}} {usual:.1g} or more nodes"),
+            + ("fewer {base_nodes}" if fixed else f"{{te_spacing}} {usual:.1g} or more nodes"),
         )
     k = int(np.argmin(np.hypot(*(wall[: len(wall) // 2] - corner).T)))
     if k == 0:
@@ -194,15 +194,15 @@ def opened_note(height: float, thickness: float) -> str:
     return Change(f"the outline is changed: {was} is opened to {thickness:g}")
 
 
-def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, asked: TrailingEdge) -> tuple[str, ...]:
-    """Return a note on how `te` changed the base, or a note that there is no base to change as `asked`."""
+def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, option: TrailingEdge) -> tuple[str, ...]:
+    """Return a note on how `te` changed the base, or that there is no base to change as `option` says."""
     base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"
     if before.blunt and te == "wedge":
         length = float(np.hypot(*(after.trailing_edge - before.trailing_edge))) / before.chord
         return (Change(f"{base} is closed by a wedge {length:.3g} chords long"),)
     if before.blunt and te == "round":
         return (Change(f"{base} is rounded at its corners"),)
-    if not before.blunt and asked != "auto":
+    if not before.blunt and option != "auto":
         return (f"{{te}} {te} changes nothing, as the trailing edge is not blunt",)
     return ()
 

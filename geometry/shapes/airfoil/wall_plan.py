@@ -263,11 +263,11 @@ def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tu
 
 
 def _whole_base(
-    half_base: float, step: float, asked: int, half: int, steps: tuple[int, ...]
+    half_base: float, step: float, count: int, half: int, steps: tuple[int, ...]
 ) -> tuple[int, float]:
-    """Return the cells of half a base, `asked` or a multiple of a step, and the corner cell's size."""
+    """Return the cells of half a base, `count` or a multiple of a step, and the corner cell's size."""
     every = first_within(steps, half)
-    cells = asked or max(every, round(half / every) * every)
+    cells = count or max(every, round(half / every) * every)
     return cells, min(step, half_base / cells) if cells > 1 else half_base
 
 

@@ -27,16 +27,16 @@ def growth_of_levels(lines: Floats) -> Floats:
     return largest
 
 
-def slower_steps(steps: Floats, found: Floats, growth: float) -> Floats:
+def slower_steps(steps: Floats, last_growth: Floats, growth: float) -> Floats:
     """Return `steps` (m,), those of the last march, changed to grow less where cells grew too much.
 
-    `found` (m - 1,) are the largest growth ratios of cells in the last march. They exceed the ratios of the
-    steps because levels spread and turn. The quotient of both ratios' logarithms is assumed to stay the same
-    at the same distance from the wall. `growth` is the largest permitted growth ratio.
+    `last_growth` (m - 1,) are the largest growth ratios of cells in the last march. They exceed the ratios of
+    the steps because levels spread and turn. The quotient of both ratios' logarithms is assumed to stay the
+    same at the same distance from the wall. `growth` is the largest permitted growth ratio.
     """
     length, most = float(steps.sum()), math.log(growth)
     ratio = np.maximum(log(steps[1:] / steps[:-1]), _LEAST * most)
-    more = np.clip(log(found) / ratio - 1.0, 0.0, _MOST)
+    more = np.clip(log(last_growth) / ratio - 1.0, 0.0, _MOST)
     spread = np.max(
         [np.pad(more, _NEAR, mode="edge")[k : k + len(more)] for k in range(2 * _NEAR + 1)], axis=0
     )

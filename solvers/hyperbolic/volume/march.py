@@ -125,9 +125,9 @@ def _best(
         if volume.made == len(steps) and not volume.folded:
             volume = _with_growth(surface, lines, marched, steps, growth) or volume
             worth = _least_jacobian(volume.blocks) if wing else _POOR
-        found = min(volume.made, len(steps)), -volume.folded, worth
-        if best is None or found > most:
-            best, most = volume, found
+        score = min(volume.made, len(steps)), -volume.folded, worth
+        if best is None or score > most:
+            best, most = volume, score
         if worth >= _POOR:
             break
     return best or volume, tries
@@ -162,9 +162,9 @@ def _with_growth(
             limit_growth(made, growth)
             volume = _volume(surface, made)
             even = bool(growth_of_levels(made).max() <= growth)
-            found = even, 0.0 if volume.folded else _least_jacobian(volume.blocks)
-            if found[1] > 0.0 and found > most:
-                best, most = volume, found
+            score = even, 0.0 if volume.folded else _least_jacobian(volume.blocks)
+            if score[1] > 0.0 and score > most:
+                best, most = volume, score
     return best
 
 

@@ -115,18 +115,18 @@ def conformal(south: Tensor, north: Tensor, nj: int, *, failed: Failed = "raise"
 
 def _lifted(bodies: Tensor, fars: Tensor) -> list[TorchWalls]:
     """Return the walls in the strip. Raises MemberError, with the bodies without a conformal lift."""
-    found, reasons = [], {}
+    walls, reasons = [], {}
     for member, (z, far) in enumerate(zip(bodies, fars, strict=True)):
         if not bool((z != z[0]).any()):
             reasons[member] = "the body is a point", "leave it out"
             continue
         try:
-            found.append(torch_walls(z, far))
+            walls.append(torch_walls(z, far))
         except InputError as error:
             reasons[member] = error.problem, error.remedy
     if reasons:
         raise MemberError(reasons)
-    return found
+    return walls
 
 
 class _Correction:

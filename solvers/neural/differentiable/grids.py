@@ -90,7 +90,7 @@ def variational(
     return _solved(Optimum(), coarse, failed, south, north, west, east)
 
 
-def _solved(equations: Equations, coarse: int | None, failed: Failed, *given: Tensor) -> Tensor:
+def _solved(equations: Equations, coarse: int | None, failed: Failed, *four: Tensor) -> Tensor:
     check_failed(failed)
 
     def make(sides: Sides) -> Tensor:
@@ -99,7 +99,7 @@ def _solved(equations: Equations, coarse: int | None, failed: Failed, *given: Te
         return nodes
 
     if coarse is None:
-        return _four_sided(make, *given, decides=failed == "nan", failed=failed)
+        return _four_sided(make, *four, decides=failed == "nan", failed=failed)
     check_coarse(coarse)
 
     def lifted(sides: Sides) -> Tensor:
@@ -107,7 +107,7 @@ def _solved(equations: Equations, coarse: int | None, failed: Failed, *given: Te
         nodes = make(few)
         return refined(nodes, sides) if coarse < max(side.shape[-1] for side in sides) else nodes
 
-    return _four_sided(lifted, *given, decides=True, failed=failed)
+    return _four_sided(lifted, *four, decides=True, failed=failed)
 
 
 def _four_sided(

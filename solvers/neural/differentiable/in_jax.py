@@ -46,8 +46,8 @@ def in_jax(function: Callable[..., Tensor], nj: int | None = None) -> Callable[.
 
     def pulled(gradient: Any, *sides: Any) -> Any:
         tensors = [_tensor(side).requires_grad_() for side in sides]
-        found = torch.autograd.grad(function(*tensors, *more), tensors, _tensor(gradient))
-        return tuple(values.numpy() for values in found)
+        gradients = torch.autograd.grad(function(*tensors, *more), tensors, _tensor(gradient))
+        return tuple(values.numpy() for values in gradients)
 
     def called(*sides: Any) -> Any:
         return jax.pure_callback(forward, nodes_of(sides), *sides, vmap_method="broadcast_all")

@@ -52,11 +52,11 @@ def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None 
     nodes = low @ values + high @ bends
 
     south, north, west, east = sides
-    felt = [(low @ share @ line.mT)[:, None] for share in inwards(coarse)]
+    weights = [(low @ share @ line.mT)[:, None] for share in inwards(coarse)]
     missed = (west - nodes[:, :, 0])[:, :, None], (east - nodes[:, :, -1])[:, :, None]
-    nodes = nodes + felt[2] * missed[0] + felt[3] * missed[1]
+    nodes = nodes + weights[2] * missed[0] + weights[3] * missed[1]
     missed = (south - nodes[..., 0])[..., None], (north - nodes[..., -1])[..., None]
-    nodes = nodes + felt[0] * missed[0] + felt[1] * missed[1]
+    nodes = nodes + weights[0] * missed[0] + weights[1] * missed[1]
     return with_rim(sides, nodes[:, :, 1:-1, 1:-1])
 
 

@@ -166,7 +166,7 @@ def _compiled(batch: Floats) -> list[tuple[Floats, float]]:
 
     Raises MemberError, with the members for which it finds no valid grid.
     """
-    found, reasons = [], {}
+    optima, reasons = [], {}
     for member, nodes in enumerate(batch):
         sides = nodes[:, :, 0], nodes[:, :, -1], nodes[:, 0], nodes[:, -1]
         south, north, west, east = (np.ascontiguousarray(side.T) for side in sides)
@@ -182,10 +182,10 @@ def _compiled(batch: Floats) -> list[tuple[Floats, float]]:
         start = solution.grid.nodes
         if value(start, weights) > HARD:
             widen(start, weights)
-        found.append((np.moveaxis(start, -1, 0), weights.smoothness))
+        optima.append((np.moveaxis(start, -1, 0), weights.smoothness))
     if reasons:
         raise MemberError(reasons)
-    return found
+    return optima
 
 
 class BlockCholesky:

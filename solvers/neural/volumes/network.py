@@ -127,10 +127,10 @@ def infer_volume(faces: SixFaces, *, model: str, answer: Answer = "valid") -> So
     nodes = network.nodes(faces)
     error = 0.0
     for side in FACES:
-        own, given = face_of(nodes, side), getattr(faces, side)
-        error = max(error, float(norms(own - given).max()))
+        own, face = face_of(nodes, side), getattr(faces, side)
+        error = max(error, float(norms(own - face).max()))
         if answer != "raw":
-            own[...] = given
+            own[...] = face
     path: tuple[str, ...] = ()
     if answer == "valid":
         from meshonet.geometry.quality.measure import folded_cells

@@ -1,4 +1,4 @@
-"""Cells at walls in a flow: y+ of their heights; and their skewness, which is greatest at edges of bodies."""
+"""y+ of the first nodes above walls, in a flow."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,14 +6,11 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, middle, norms, percentiles_of
+from meshonet.geometry.arrays import Floats, middle, norms
 from meshonet.geometry.blocks.across import rows_at
-from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.growth import Extreme
-from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.spacing.y_plus import first_cell
 
 
@@ -68,30 +65,3 @@ def y_plus_at(grid: Grid, walls: Sequence[Patch], flow: Flow) -> dict[str, YPlus
         values.setdefault(wall.name, []).append(norms(rows[1] - rows[0]).ravel() / flow.height)
     every = {name: np.concatenate(parts) for name, parts in values.items()}
     return {name: YPlus(float(y.min()), middle(y), float(y.max())) for name, y in every.items()}
-
-
-def skewness_at(grid: Grid, walls: Sequence[Patch]) -> dict[str, Extreme]:
-    """Return, by name of the wall, the skewness of the cells at each of the `walls` of a volume."""
-    cells = per_cell_of_blocks(grid, "skewness")
-    stretches: dict[str, list[tuple[Floats, Patch]]] = {}
-    for wall in walls:
-        axis, end = PLACES[wall.side]
-        face = np.moveaxis(cells[wall.block], axis, 0)[end]
-        (a, b), (c, d) = wall.range(tuple(n + 1 for n in face.shape))
-        stretches.setdefault(wall.name, []).append((face[a:b, c:d], wall))
-    return {name: _extreme(grid, parts) for name, parts in stretches.items()}
-
-
-def _extreme(grid: Grid, parts: Sequence[tuple[Floats, Patch]]) -> Extreme:
-    """Return the extreme of values (n, m) of the cells at stretches of a wall."""
-    values, wall = max(parts, key=lambda part: float(part[0].max()))
-    axis, end = PLACES[wall.side]
-    last = grid.blocks[wall.block].counts[axis] - 2
-    place = [int(index) for index in np.unravel_index(int(values.argmax()), values.shape)]
-    starts = [first for first, _ in wall.range(tuple(n + 1 for n in values.shape))]
-    at = [index + start for index, start in zip(place, starts, strict=True)]
-    at.insert(axis, last if end else 0)
-    every = np.concatenate([part.ravel() for part, _ in parts])
-    return Extreme(
-        float(values.max()), float(every.mean()), (wall.block, *at), percentiles_of(every, (99,))[0]
-    )
