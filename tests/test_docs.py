@@ -154,6 +154,8 @@ def all_inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
             name = re.match(r"# (\w+\.toml)\n", text)
             if name:
                 (tmp_path / name[1]).write_text(text)
+        for file, text in re.findall(r"`(\w+\.geojson)`:\n\n```json\n(.*?)```", page.read_text(), re.DOTALL):
+            (tmp_path / file).write_text(text)
     for name in ("grid.vts", "predicted.h5", "solved.h5"):
         run(f"meshonet tfi ellipse.csv --res 41x21 -o {name}", tmp_path)
     return tmp_path

@@ -86,11 +86,15 @@ def grid_of(
 
 def _at_walls(grid: Grid, domain: Domain, walls: tuple[str, ...], height: AtWalls | None) -> list[str]:
     """Return notes on the first cells at walls, one for each height that is prescribed."""
+    from meshonet.solvers.blocking.layers.stretches import continued_notes
+
     if isinstance(height, Mapping):
-        return [wall_note(grid, domain, (name,), each) for name, each in height.items()]
+        at_walls = [wall_note(grid, domain, (name,), each) for name, each in height.items()]
+        return [*at_walls, *continued_notes(domain, tuple(height))]
     if height is None:
         return []
-    return [wall_note(grid, domain, walls, height), *([] if walls else without_layers(domain))]
+    others = [] if walls else without_layers(domain)
+    return [wall_note(grid, domain, walls, height), *others, *continued_notes(domain, walls)]
 
 
 def _cut_off(fine: Layout) -> str:

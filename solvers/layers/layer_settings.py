@@ -58,11 +58,13 @@ class LayerSettings:
     def at(self, names: Collection[str]) -> LayerSettings:
         """Return the settings for a wall whose stretches have the given `names`.
 
+        Layers of a wall go on along stretches whose names have no height.
+
         Raises InputError: stretches of the wall have different heights.
         """
         if not self.heights:
             return self
-        first = {self.heights[name]: name for name in reversed(list(names))}
+        first = {self.heights[name]: name for name in reversed(list(names)) if name in self.heights}
         if len(first) > 1:
             one, other = list(first.values())[:2]
             raise InputError(

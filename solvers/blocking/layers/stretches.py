@@ -1,12 +1,15 @@
 """Walls with layers: whole loops, and stretches of loops between convex corners."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from meshonet.geometry.blocks.patches import may_be_wall
+from meshonet.geometry.blocks.patches import kind_of, may_be_wall
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
+
+_LINES = ("symmetry", "other")
+"""Kinds of parts that are no walls, along which layers go on; an axis is of another kind."""
 
 
 @dataclass(frozen=True)
@@ -42,15 +45,16 @@ def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int
     """Return the indices of the loops with layers all around, and the stretches of other loops with layers.
 
     `names` are the walls with layers. Without names, `Domain.layered_loops` have layers, except where a name
-    says that a stretch is no wall. Raises InputError, with the place: no boundary has this name; layers would
-    end where the boundary is straight or at a reflex corner.
+    says that a stretch is no wall. They go on along an axis or a symmetry line that continues a wall. Raises
+    InputError, with the place: no boundary has this name; layers would end where the boundary is straight or
+    at a reflex corner.
     """
     whole: list[int] = []
     stretches: list[Stretch] = []
-    unnamed = domain.layered_loops
     for number, loop in enumerate(domain.loops):
-        on = [name in names if names else number in unnamed and may_be_wall(name) for name in loop.names]
-        on = on * len(loop.corners) if len(on) == 1 and loop.corners else on
+        on = _with_layers(domain, number, names)
+        for corner in _onward(loop, on):
+            on[corner] = True
         if all(on) and not (loop.corner_cells == 1).any():
             whole.append(number)
         elif any(on):
@@ -61,6 +65,43 @@ def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int
         none = f"whose only holes are {', '.join(dict.fromkeys(inside))}" if inside else "without holes"
         raise InputError(f"a first cell in a domain {none}", remedy)
     return whole, tuple(stretches)
+
+
+def continued_notes(domain: Domain, names: Collection[str]) -> list[str]:
+    """Return a note for each wall whose layers go on along an axis or symmetry line; see `layered_walls`."""
+    notes = []
+    for number, loop in enumerate(domain.loops):
+        walls = _with_layers(domain, number, names)
+        for part, (other, corner) in _onward(loop, walls).items():
+            if walls[other]:
+                x, y = loop.at(loop.corner_arcs[corner : corner + 1])[0]
+                line = loop.names[part]
+                notes.append(f"layers at {loop.names[other]} go on along {line} beyond ({x:.6g}, {y:.6g})")
+    return notes
+
+
+def _with_layers(domain: Domain, number: int, names: Collection[str]) -> list[bool]:
+    """Return whether each part of a loop between corners is a wall with layers."""
+    loop, unnamed = domain.loops[number], number in domain.layered_loops
+    on = [name in names if names else unnamed and may_be_wall(name) for name in loop.names]
+    return on * len(loop.corners) if len(on) == 1 and loop.corners else on
+
+
+def _onward(loop: Loop, walls: Sequence[bool]) -> dict[int, tuple[int, int]]:
+    """Return the parts of a loop along which layers of `walls` go on: axes, and symmetry lines.
+
+    With each are the part that it continues, and the corner between both.
+    """
+    count, found = len(loop.corners), dict[int, tuple[int, int]]()
+    lines = [k for k, name in enumerate(loop.names) if not may_be_wall(name) and kind_of(name) in _LINES]
+    for _ in lines:  # a line may continue another one
+        for part in lines:
+            after = (part + 1) % count
+            for other, corner in (((part - 1) % count, part), (after, after)):
+                goes_on = (walls[other] or other in found) and loop.corner_cells[corner] == 2
+                if goes_on and not walls[part]:
+                    found.setdefault(part, (other, corner))
+    return found
 
 
 def _stretches(loop: Loop, number: int, on: list[bool]) -> list[Stretch]:

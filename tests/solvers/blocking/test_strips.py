@@ -9,7 +9,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.solvers.blocking.layers.layered import layered
-from meshonet.solvers.blocking.layers.stretches import layered_walls
+from meshonet.solvers.blocking.layers.stretches import continued_notes, layered_walls
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.layers.layer_settings import LayerSettings
 
@@ -185,6 +185,33 @@ def test_layers_that_would_end_elsewhere_than_at_convex_corners_are_refused_with
 ):
     with pytest.raises(InputError, match=problem):
         layered_walls(Domain((loop,)), names.split())
+
+
+@pytest.mark.parametrize("line", ["axis", "symmetry"])
+def test_layers_go_on_along_an_axis_or_a_symmetry_line_that_continues_a_wall(line):
+    """A body with a blunt front and a pointed tail."""
+    points = [[-2, 0], [0, 0], [0, 0.3], [1, 0.3], [2, 0], [4, 0], [4, 2], [-2, 2]]
+    names = f"{line} body body body {line} outlet wall inlet"
+    loop = Loop.of_polygon(np.array(points, dtype=float), tuple(range(8)), tuple(names.split()))
+    domain = Domain((loop,))
+    _, stretches = layered_walls(domain, ["body"])
+    assert [each.names(loop) for each in stretches] == [("body", "body", "body", line)]
+    assert continued_notes(domain, ["body"]) == [f"layers at body go on along {line} beyond (2, 0)"]
+    layout = layered(domain, [], LayerSettings(FIRST), stretches=stretches, cells=3000)
+    assert smallest_jacobian(layout.mesh.nodes, layout.mesh.quads) > 0.0
+    np.testing.assert_allclose(first_cells(layout, ["body"]), FIRST, rtol=1e-6)
+    fore, aft = (layout.mesh.nodes[:, 0] < 0.0), (layout.mesh.nodes[:, 0] > 2.0)
+    heights = [layout.mesh.nodes[side & (layout.mesh.nodes[:, 1] > 0.0), 1].min() for side in (fore, aft)]
+    assert heights[1] == pytest.approx(FIRST, rel=0.02)  # lines lean at the tail
+    assert heights[0] > 3.0 * FIRST
+
+
+@pytest.mark.parametrize("name", ["inlet", "slip"])
+def test_layers_do_not_go_on_along_other_sides(name):
+    points = np.array([[0, 0], [2, 0], [4, 0.1], [4, 2], [0, 2]])
+    loop = Loop.of_polygon(points, tuple(range(5)), ("floor", name, "b", "c", "d"))
+    with pytest.raises(InputError, match="goes straight on"):
+        layered_walls(Domain((loop,)), ["floor"])
 
 
 def test_corners_too_tight_for_layers_are_refused_with_the_place():
