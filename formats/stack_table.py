@@ -28,7 +28,7 @@ def stack_table(data: Table, folder: Path, name: str, more: tuple[str, ...] = ()
 
 
 def stack_options(data: Table, name: str, more: tuple[str, ...]) -> dict[str, Any]:
-    """Return the arguments of `Stack`, except its sections, of a table; the keys `more` are also allowed.
+    """Return all arguments of `Stack` that a table states, without sections; keys `more` are also allowed.
 
     Raises InputError: there is another key; a word is unknown; a value is not a number.
     """

@@ -50,7 +50,7 @@ def norms(vectors: Floats) -> Floats:
 
 
 def dots(one: Floats, other: Floats) -> Floats:
-    """Return the scalar products (...) of vectors (..., 2 or 3), faster than sums over such short rows."""
+    """Return the scalar products (...) of vectors (..., 2 or 3), added component by component for speed."""
     total = one[..., 0] * other[..., 0]
     for k in range(1, one.shape[-1]):
         total += one[..., k] * other[..., k]

@@ -54,7 +54,7 @@ def painted(
     sheet: CellSheet, mask: Bools, steps: tuple[int, int], axes: Floats, colouring: Colouring | None,
     limits: tuple[float, float],
 ) -> Painted:  # fmt: skip
-    """Return the cells of a sheet in `mask` (n-1, m-1), projected along `axes` and grouped by `steps`."""
+    """Return the cells in `mask` (n-1, m-1) of a sheet, in groups of `steps` cells, projected onto `axes`."""
     import matplotlib as mpl
 
     marks = [

@@ -70,7 +70,7 @@ class PartFiles:
 
     @property
     def folder(self) -> Path:
-        """The folder of the parts, next to the index and with its name."""
+        """The folder of the parts, next to the index file; its name is that file's without extension."""
         return self.index.with_suffix("")
 
     def path(self, number: int) -> Path:

@@ -53,7 +53,7 @@ class Writer:
         self._common: dict[str, Any] = {}  # what the provenances of all grids say
 
     def append(self, sample: Boundary | Grid) -> None:
-        """Add a grid to a dataset of grids, or a boundary to one of boundaries."""
+        """Add a grid to a dataset of grids, or a boundary to a dataset of boundaries."""
         self._check_size(sample)
         arrays = _arrays_of(sample)
         if isinstance(sample, Grid):

@@ -146,7 +146,7 @@ def cells_beside(connection: Connection, cells: Sequence[Indices]) -> tuple[Indi
 
 
 def donor_range(each: Connection) -> Range:
-    """Return the range of the donor; first and last node are exchanged along opposite directions."""
+    """Return the donor's range; along reversed directions its first and last node are exchanged."""
     span = list(each.donor_range)
     for way in each.orientation:
         if way < 0:

@@ -58,7 +58,7 @@ class FileLayout:
         )
 
     def length(self, real: int = 1, integer: int = 1) -> int:
-        """Return the length of the file, if its numbers take `real` or `integer` bytes."""
+        """Return the length of the file, if a real number takes `real` bytes, an integer `integer`."""
         return self.starts(real, integer)[-1]
 
 

@@ -40,7 +40,7 @@ class Motion:
 
     @property
     def rotation(self) -> tuple[float, Floats]:
-        """Angle (radians, counter-clockwise) and centre (2,) of the rotation that a motion in the plane is.
+        """Angle (radians, counter-clockwise) and centre (2,) of a motion in the plane, as a rotation.
 
         Without a rotation the angle is 0 and the centre the origin; the motion is then only `shift`.
         """

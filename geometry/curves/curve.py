@@ -118,8 +118,8 @@ class Curve:
     def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:
         """Tables for kernels that evaluate the curve (``kernels/geometry/curve.h``).
 
-        Coefficients (4, n, 2) of the cubics, tables of arc length and of the slopes of its inverse, and the
-        number of parts into which the tables divide each interval.
+        They are the coefficients (4, n, 2) of the cubics, tables of arc length and of the slopes of its
+        inverse, and the number of parts into which the tables divide each interval.
         """
         return self._cubic, self._table, self._rate_start, self._rate_stop, _STEPS
 
@@ -133,7 +133,7 @@ class Curve:
     def at(self, s: Floats) -> Floats:
         """Return the points (m, 2) at arc lengths `s` (m,), clipped to the ends of an open curve.
 
-        The points at `knots` are the given ones, bitwise.
+        At `knots` they are bitwise the given points of the curve.
         """
         i, t = self._locate(s)
         points = np.empty((len(t), 2))

@@ -29,7 +29,7 @@ BEND = np.radians(25.0)
 
 
 class BodyCurve(NamedTuple):
-    """A closed curve, counter-clockwise around 0, first point not repeated; and indices of its corners."""
+    """A closed curve, counter-clockwise around 0, without its first point repeated; `corners` are indices."""
 
     points: Complexes
     corners: tuple[int, ...] = ()

@@ -40,9 +40,9 @@ def straight_intervals(points: Floats, corners: Indices) -> Bools:
 
     Such lines are between rounded corners. An interval is straight under two conditions. First, it is at
     least `LONG` times as long as one of its neighbours; a neighbour beyond one of the `corners` (indices of
-    points) is ignored. Second, at both ends the polygon turns by no more (with the tolerance `EXPLAINED`)
-    than where a tangent meets the circle through the next three points; at the ends of a long chord of a
-    curve it turns more.
+    points) is ignored. Second, at both ends the polygon turns by at most `EXPLAINED` times the angle between
+    a tangent and a chord of the circle through the next three points. At the ends of a long chord of a curve
+    it turns more.
     """
     turn, joined = turning(points, closed=True), np.ones(len(points), dtype=bool)
     turn[corners], joined[corners] = 0.0, False

@@ -47,7 +47,7 @@ class Gate:
         return figure
 
     def broken(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> str | None:
-        """Return a message if the grid meets the condition, else None.
+        """Return a message if the grid meets the condition and so fails, else None.
 
         Raises InputError: a figure that this grid does not have.
         """

@@ -104,7 +104,7 @@ class QualityReport:
         return f"<QualityReport: {', '.join(parts)}>"
 
     def under(self, gates: Gates) -> "QualityReport":
-        """Return the report with limits of profiles replaced by those of `gates` on the same metrics."""
+        """Return the report; where `gates` limit a metric, they replace the profile's limits on it."""
         return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
     def broken(self, gates: Gates = ()) -> list[str]:

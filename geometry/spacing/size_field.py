@@ -98,7 +98,8 @@ def arcs_by_curvature(
 def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -> Floats:
     """Return distances (cells + 1,) of nodes along a closed curve from `begin`, by curvature alone.
 
-    `way` is the length along which nodes are distributed; it is negative against the direction of the curve.
+    `way` is the length along which nodes are distributed; it is negative if they follow each other against
+    the direction of the curve.
     """
     s = np.linspace(0.0, abs(way), 2 * _SAMPLES + 1)
     bend = _bend(curve, begin + np.sign(way) * s, curve.length)

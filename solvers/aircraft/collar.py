@@ -87,7 +87,7 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return two counts that tell from which nodes of a `root` lines lead to the corners of `box`.
+    """Return two counts that define the nodes of a `root` from which lines lead to the corners of `box`.
 
     The first count is the number of steps along the root from the middle of the trailing edge to the nodes
     for the two rear corners, upwards and downwards. The second is the number of steps from the middle of the

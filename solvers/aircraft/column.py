@@ -75,7 +75,7 @@ class ColumnPlan:
 
     @property
     def beside(self) -> tuple[int, int]:
-        """Numbers of cells from keel to crown on the front side and on the back side of the column."""
+        """Numbers of cells from keel to crown: on the front side, and on the back side of the column."""
         shares = [1 if self.fin and each is self.collars[-1] else 2 for each in self.collars]
         before = sum(n * each.nose for n, each in zip(shares, self.collars, strict=True))
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))
@@ -238,7 +238,7 @@ class ColumnLevel:
         return self.zeta if self.crown is None else self.crown
 
     def patches(self) -> list[Floats]:
-        """Return the patches (ni, nj, 3): collar, those above and below it, collar of a fin above a wing."""
+        """Return the patches (ni, nj, 3): collar, above it, below it, collar of a fin above a wing."""
         below, above = self.levels[0].long_sides
         zeta = self.zeta
         patches = [_on(self.levels[0].collar(), zeta)]

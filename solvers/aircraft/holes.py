@@ -61,7 +61,7 @@ Each = TypeVar("Each")
 
 
 def ordered(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[Each]:
-    """Return `values`, one per wing in the order of their indices, sorted in the order of `columns`."""
+    """Return `values` (one per wing, by index) in the order in which `columns` list the indices."""
     return [values[k] for column in columns for k in column]
 
 

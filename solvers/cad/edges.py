@@ -37,7 +37,7 @@ class EdgeNodes:
 
 @dataclass(frozen=True, eq=False)
 class EdgeLaw:
-    """Node distribution of an edge: numbers of cells (s,) from its start to parameters (s,)."""
+    """Node distribution of an edge: for each of s parameters, the number of cells from the edge's start."""
 
     parts: Floats
     cells: Floats

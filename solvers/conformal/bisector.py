@@ -46,6 +46,6 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
 
 
 def fading(eta: Floats, first: float) -> Floats:
-    """Return the fraction of a shift that applies at `eta`: 1 at the level `first`, 0 at both walls."""
+    """Return the fraction of a shift that applies at `eta`: 1 where eta is `first`, 0 at both walls."""
     cells = eta / first
     return np.asarray(cells * exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - first))

@@ -91,7 +91,7 @@ def _frames(corners: Floats) -> Floats:
 
 
 def affine(places: Floats, moved: Floats, turns: Floats) -> Floats:
-    """Return a and B of the motion of each node, which displaces a point x by a + B x: stacked (d + d², n).
+    """Return a and B for each node, stacked (d + d², n): the node's motion displaces a point x by a + B x.
 
     `places` and `moved` (n, d) are the old and the new positions of the nodes, `turns` (n, d, d) is R - 1.
     """

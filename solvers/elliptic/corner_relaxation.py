@@ -70,7 +70,7 @@ def reentrant(edges: Four) -> list[Corner]:
 def patches(
     level: MultigridLevel, xi: Direction, eta: Direction, corners: list[Corner], scratch: Floats
 ) -> list[CornerPatch]:
-    """Return the patches of `level` around `corners`; the corners' indices are those on the finest level."""
+    """Return the patches of `level` around `corners`, which are given by indices on the finest level."""
     if min(xi.cells, eta.cells) < LEAST:
         return []
     return [CornerPatch(level, xi, eta, _window(xi, eta, side, index), scratch) for side, index in corners]

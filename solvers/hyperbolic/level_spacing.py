@@ -34,7 +34,7 @@ class Edge(NamedTuple):
 
 
 def sharpest_edge(ring: Floats) -> Edge | None:
-    """Return the sharpest convex corner of a wall (n, 2), closed and clockwise, first node not repeated.
+    """Return the sharpest convex corner of a closed, clockwise wall (n, 2), whose first node is not repeated.
 
     Return None if no corner turns by at least 60 degrees.
     """
@@ -47,7 +47,7 @@ def sharpest_edge(ring: Floats) -> Edge | None:
 
 
 def fastest(nodes: Floats) -> Floats:
-    """Return the logarithm (nj - 2,) of the largest growth ratio at inner levels of `nodes` (ni, nj, 2)."""
+    """Return the log (nj - 2,) of the largest growth ratio at each inner level of `nodes` (ni, nj, 2)."""
     heights = norms(np.diff(nodes, axis=1))
     return np.asarray(log(heights[:, 1:] / heights[:, :-1]).max(axis=0))
 

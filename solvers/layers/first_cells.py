@@ -55,7 +55,7 @@ class Heights:
 
 
 def check_fit(heights: Heights, boundary: Boundary) -> None:
-    """Raise InputError if `boundary` cannot have the heights: other edges, too few or too high cells."""
+    """Raise InputError if `boundary` cannot have the heights: wrong sides, too few or too high cells."""
     if boundary.around_body and (heights.north or heights.west or heights.east):
         raise InputError(
             f"a spacing off north, west or east in topology {boundary.topology}",

@@ -39,7 +39,7 @@ class Auto(OneByOne):
 
 @dataclass(frozen=True)
 class Fewer(Wrapper):
-    """Solves by `method` on fewer nodes if quality stays the same; on twice as many if cells are folded."""
+    """Solves large grids by `method` on fewer nodes; if cells are then folded, on twice as many."""
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
         """Return the solution of a boundary; all nodes are used if there is an initial grid."""

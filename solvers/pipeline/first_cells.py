@@ -33,7 +33,7 @@ class FirstCells:
     multiple: int = 1  # of which the number of rows is one then
 
     def in_chords(self) -> float:
-        """Return the height at a body. Raises InputError: no height is given, or several by wall."""
+        """Return the height at a body. Raises InputError: the request gives no height, or one per wall."""
         return self.prescribed.height() or 0.0
 
     def heights(self, boundary: Boundary) -> Heights:

@@ -79,7 +79,7 @@ class Chords:
         return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, images)
 
     def of_refined(self, layout: Layout) -> Chords:
-        """Return the edges of a layout with the same blocks and other numbers of cells.
+        """Return the edges of `layout`, whose blocks are the same and whose numbers of cells may differ.
 
         The chords are the same.
         """

@@ -16,7 +16,7 @@ _FROM = -0.25  # least place: u = 0, the leading edge, is between others
 
 @dataclass(frozen=True, eq=False)
 class ChannelLines:
-    """Lines across the channel between two blades, normal to the layers' outer edges; means over sections.
+    """Lines across the channel between two blades, normal to the layers' outer edges, averaged over sections.
 
     Parameters
     ----------

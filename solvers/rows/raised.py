@@ -81,7 +81,7 @@ class Rise:
         return replace(self, deep=self.deep[part], moves=self.moves[part])
 
     def shares(self, heights: Floats) -> Floats:
-        """Return the fraction (levels, k) of its displacement by which each column moves at given heights."""
+        """Return, for each height and column, the fraction of the displacement (levels, k)."""
         off = self.up * (heights - self.end)
         away = np.where(off > 0.0, off / self.gap, -off / self.deep)
         return np.asarray(smooth_step(np.clip(1.0 - away, 0.0, 1.0)))

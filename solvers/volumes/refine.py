@@ -23,7 +23,7 @@ def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws:
 
     The four laws of each direction must be equal.
 
-    `coarse` (3, mi, mj, mk) are the nodes inside `coarse_faces`, with equal steps in the same parameters.
+    `coarse` (3, mi, mj, mk) are the nodes inside `coarse_faces`, equally spaced in the parameters.
     """
     start = interpolate(coarse_faces, uniform_laws(coarse_faces.counts))
     spline = spline_of(coarse - np.moveaxis(start, -1, 0), tuple(law[0] for law in laws))

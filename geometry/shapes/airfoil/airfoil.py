@@ -232,7 +232,7 @@ class Airfoil:
         return nodes
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return this wall in a far field: a circle (O grid), or a half circle and a wake (C grid).
+        """Return this wall with a far field around: a circle (O grid), or a half circle and a wake (C grid).
 
         Topology ``auto`` becomes ``c`` if cells at the wall will be thin and the trailing edge (after the
         change by `Sampling.te`) is sharp, with an angle of at most 50 degrees; otherwise it becomes ``o``.

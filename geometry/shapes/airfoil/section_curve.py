@@ -195,7 +195,7 @@ def opened_note(height: float, thickness: float) -> str:
 
 
 def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, option: TrailingEdge) -> tuple[str, ...]:
-    """Return a note on how `te` changed the base, or that there is no base to change as `option` says."""
+    """Return a note on how `te` changed the base, or, without a base, that `option` changes nothing."""
     base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"
     if before.blunt and te == "wedge":
         length = float(np.hypot(*(after.trailing_edge - before.trailing_edge))) / before.chord

@@ -40,7 +40,7 @@ class GrowthLines:
 
     @classmethod
     def of(cls, mesh: QuadMesh, limit: float, factors: Floats | None = None) -> Self:
-        """Return all pairs of a mesh with the same limit.
+        """Return all pairs of a mesh; each gets the limit `limit`.
 
         If `factors` (e,) are given, edge lengths are multiplied by them before ratios are computed.
         """

@@ -30,7 +30,7 @@ _STEPS = 50  # of bisection, to round-off
 
 
 def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings) -> int:
-    """Return how many layers a row needs so that, in most columns, they fill it without growing too fast."""
+    """Return the number of layers of a row: in most columns they fill the row and do not grow too fast."""
     blocks = np.nonzero(rows.across == row)[0]
     columns = np.concatenate(
         [

@@ -86,7 +86,7 @@ class Ring:
 
     @cached_property
     def along(self) -> Measures:
-        """Corresponding arc lengths along the front, along the wall, and along the level next to the wall."""
+        """Arc lengths of corresponding points: on the front, the wall, and the level next to the wall."""
         n = len(self.arcs)
         index = np.arange(FINER * n + 1) / FINER
         knots = np.append(self.front.curve.knots, self.front.length)

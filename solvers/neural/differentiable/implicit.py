@@ -66,7 +66,7 @@ class Converged(torch.autograd.Function):
 
 
 class Adjoint(torch.autograd.Function):
-    """The derivative with respect to boundary nodes, computed from that with respect to all nodes."""
+    """The derivative by boundary nodes of a function whose derivative by all nodes of the grid is given."""
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:

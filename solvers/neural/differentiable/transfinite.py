@@ -27,7 +27,7 @@ def interpolated(sides: Sides, laws: tuple[Tensor, ...]) -> Tensor:
 
 
 def with_rim(sides: Sides, inner: Tensor) -> Tensor:
-    """Return nodes (batch, 2, ni, nj): `inner` ones (batch, 2, ni-2, nj-2) inside `sides`."""
+    """Return nodes (batch, 2, ni, nj): the nodes `inner` (batch, 2, ni-2, nj-2) with `sides` around them."""
     south, north, west, east = sides
     rows = torch.cat([south[:, :, 1:-1, None], inner, north[:, :, 1:-1, None]], 3)
     return torch.cat([west[:, :, None], rows, east[:, :, None]], 2)

@@ -69,8 +69,8 @@ def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
 def quads(variational: Samples, winslow: Samples) -> Quads:
     """Return the normalised domains whose grids are in both datasets.
 
-    Raises InputError: grids that are not quads of `LATENT` nodes along xi and eta, nor O grids of `AROUND`
-    along xi; no domain in common.
+    Raises InputError: grids that are neither quads with `LATENT` nodes along xi and along eta, nor O grids
+    with `AROUND` nodes along xi; no domain in common.
     """
     around = variational.topology == "o"
     wanted = ("o", AROUND, LATENT) if around else ("quad", LATENT, LATENT)

@@ -68,7 +68,7 @@ def train(
 
 
 def standard(model: str) -> Plan:
-    """Return the default plan of a model: that of the shipped model, or that of the paper."""
+    """Return the default plan of a model: the one that trained the shipped model, or the one of the paper."""
     plan: Plan = _module(model).PLAN
     return plan
 

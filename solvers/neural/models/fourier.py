@@ -96,7 +96,7 @@ class FNO2D(Architecture):
         return dense_shapes("lift", (10, self.width)) | layers | dense_shapes("project", (self.width, 64, 2))
 
     def encode(self, boundaries: Sequence[Boundary]) -> Arrays:
-        """Return x, y of south and north side by side (batch, ni, 4); of west and east (batch, nj, 4)."""
+        """Return x, y of south and north nodes (batch, ni, 4), and of west and east nodes (batch, nj, 4)."""
         along = np.array([np.hstack([boundary.south, boundary.north]) for boundary in boundaries])
         across = np.array([np.hstack([boundary.west, boundary.east]) for boundary in boundaries])
         return {"along": along, "across": across}

@@ -51,7 +51,7 @@ class Triangulation:
 
     @cached_property
     def fans(self) -> tuple[Indices, Indices]:
-        """All corners (3 t,) sorted by vertex, and the index (n + 1,) where each vertex's corners start."""
+        """Corners of triangles (3 t,), sorted by vertex, and the index (n + 1,) where each vertex begins."""
         start, corners, reached = surface_fans(self.arrays, self.size)
         if reached != len(corners):
             raise SolverError("triangles that meet in a point only")

@@ -10,7 +10,7 @@ from meshonet.kernels._native import nearest_points, quad_images
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
 
 Images = Sequence[tuple[Mirror, Indices]]
-"""For each mirror the mirror, and the number (n,) of the mirror image of each node of a mesh."""
+"""For each mirror: the mirror, and for each node of a mesh (n,) the index of its mirror image."""
 SOME = 100
 """Number of quads whose images are searched for; the images of the others follow from these."""
 
@@ -37,7 +37,7 @@ def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list
 
 
 def agree(images: Images) -> bool:
-    """Return whether any two reflections of the nodes combine to the same rotation as their mirrors do."""
+    """Return whether `images` combine like reflections about their mirrors: two give the right rotation."""
     if len(images) < 2:
         return True
     (_, one), (_, other) = images[:2]
