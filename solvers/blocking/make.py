@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 METHOD = "blocks"
 GROWTH = 1.2
 """Default ratio of neighbouring layers."""
+MORE = 1.2
+"""Ratio of the number of cells to the requested one above which a note says so."""
 CUT_OFF = 1e-3
 """Fraction of the area that cells may cut off along walls without a note."""
 
@@ -72,6 +74,7 @@ def grid_of(
     said = (
         request.height_note(f"on a length of {shape.unit:.6g}", shape.unit),
         _fewer_cells(request),
+        _more_cells(fine.cells, request),
         *_at_walls(grid, domain, request.walls, height),
         *(sharp_edge_notes(fine) if height is not None else ()),
         _cut_off(fine),
@@ -234,6 +237,14 @@ def _fewer_cells(request: BlockRequest) -> str:
     if cells == usual or request.cells or request.cell_size or request.res or request.pitch:
         return ""
     return f"{cells} cells before {{refine}} instead of {usual}: {MOST_CELLS} are the most after it"
+
+
+def _more_cells(made: int, request: BlockRequest) -> str:
+    """Return a note if layers, which have rows enough to keep the growth, need more cells than requested."""
+    wanted = (request.cells or 0) * 4**request.refine
+    if not wanted or not request.at_walls or made <= MORE * wanted:
+        return ""
+    return f"{made} cells instead of {wanted}: a higher {{first_cell}} or {{growth}} needs fewer rows of them"
 
 
 def _folded_coarser(grid: Grid, halvings: int) -> list[str]:

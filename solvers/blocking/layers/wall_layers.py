@@ -14,6 +14,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_points
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.spacing.gradual_sizes import graded
 from meshonet.kernels._native import nearest_points
 from meshonet.solvers.blocking.decomposition.side_counts import nearer, suited
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
@@ -38,7 +39,7 @@ from meshonet.solvers.layers.layer_settings import LayerSettings
 from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.refinement.size_metric import SizeMetric
 
-INNER_THICKNESS = 0.12
+INNER_THICKNESS = 0.075
 """Thickness of layers inside an outer loop in hydraulic diameters: four times area over perimeter."""
 MOST_OPTIMISED = 4000
 """Largest number of cells that are optimised directly; finer grids are splines through these."""
@@ -135,9 +136,23 @@ class WallLayers:
         return bool((thick < GAP_PART * gap).all())
 
     @cached_property
-    def _ring_metric(self) -> SizeMetric | None:
-        parts = [ring_metric(ring, self.of_ring(k)) for k, ring in self.rings.items()]
-        return SizeMetric.joined(parts) if parts else None
+    def _ring_metrics(self) -> list[SizeMetric]:
+        return [ring_metric(ring, self.of_ring(k)) for k, ring in self.rings.items()]
+
+    def _at_rings(self, scale: float) -> list[SizeMetric]:
+        """Return the sizes of cells beyond rings, whose lengths along the rings are multiplied by `scale`.
+
+        Lengths are gradual without a factor, and with one that makes cells shorter. A factor above 1 also
+        multiplies how much they change from one cell to the next, which is therefore limited.
+        """
+        parts = []
+        for ring, each in zip(self.rings.values(), self._ring_metrics, strict=True):
+            along = scale * each.along
+            if scale > 1.0:
+                front = ring.front
+                along = graded(along, front.curve.knots, front.length, self.settings.grading)
+            parts.append(replace(each, along=along))
+        return parts
 
     def metric(
         self, scale: float, size: float = 0.0, wakes: Mapping[int, Floats] | None = None
@@ -151,10 +166,7 @@ class WallLayers:
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
         for loop, wake in (wakes or {}).items():
             parts.append(self.sizes[loop].wake_metric(wake, scale, self.settings))
-        if self._ring_metric is not None:
-            rings = self._ring_metric
-            parts.append(replace(rings, along=scale * rings.along))
-        metric = SizeMetric.joined(parts)
+        metric = SizeMetric.joined([*parts, *self._at_rings(scale)])
         if size:
             along = metric.along * max(size / metric.along.max(), 1.0) ** 0.5
             return replace(metric, along=np.minimum(along, size), largest=size)
@@ -223,11 +235,10 @@ def rings_around(domain: Domain, loops: Sequence[int], settings: LayerSettings) 
 def _sizes(domain: Domain, number: int) -> tuple[float, float]:
     """Return the thickness of layers at a loop, and the length of the longest cells along it."""
     loop = domain.loops[number]
-    thickness = THICKNESS * loop.length
-    if number == 0:
-        around = sum(each.length for each in domain.loops)
-        thickness = min(thickness, INNER_THICKNESS * 2.0 * domain.area / around)
-    return thickness, loop.length / COLUMNS
+    if number > 0:
+        return THICKNESS * loop.length, loop.length / COLUMNS
+    around = sum(each.length for each in domain.loops)
+    return INNER_THICKNESS * 4.0 * domain.area / around, loop.length / COLUMNS
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,9 +11,13 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.blocks import block_figures
+from meshonet.geometry.quality.measure import measure
+from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.blocking.layers.layered import layered
 from meshonet.solvers.blocking.layers.stretches import layered_walls
+from meshonet.solvers.blocking.make import make_blocks
+from meshonet.solvers.blocking.request import BlockRequest
 from meshonet.solvers.layers.layer_settings import LayerSettings
 
 
@@ -95,3 +99,29 @@ def test_ratios_are_compared_as_they_will_be_after_edges_have_grown_by_factors(a
     plain, grown = (GrowthLines.of(mesh, 1.0, each).growth(z) for each in (None, factors))
     change = np.unique(np.round(np.abs(grown - plain), 12))
     np.testing.assert_allclose(change, [0.0, np.log(2.0)], atol=1e-11)
+
+
+def rounded_square(half: float, radius: float) -> Domain:
+    """A square with arcs of the given radius at its corners."""
+    turn = 0.5 * np.pi * (np.linspace(0.0, 1.0, 25) + np.arange(4.0)[:, None])
+    centres = (half - radius) * np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+    arcs = centres[:, None] + radius * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    return Domain.of_polygons([arcs.reshape(-1, 2)], names=[("wall",)])
+
+
+@pytest.mark.parametrize(("cells", "mean"), [(1500, 95.5), (3000, 92.5)])
+def test_few_cells_inside_a_rounded_square_do_not_kink_where_the_layers_end(cells: int, mean: float) -> None:
+    request = BlockRequest(cells=cells, first_cell=0.08, walls=("wall",))
+    made = make_blocks(DomainShape(rounded_square(20.0, 8.0)), request)
+    angle = measure(made.grid)["max_angle"]
+    assert angle.mean < mean
+    assert angle.max < 124.0
+
+
+def test_more_cells_than_asked_are_told_with_what_makes_them_fewer() -> None:
+    request = BlockRequest(cells=1500, first_cell=0.005, walls=("wall",))
+    made = make_blocks(DomainShape(rounded_square(1.0, 0.1)), request)
+    cells = sum(block.cells for block in made.grid.blocks)
+    assert cells > 1800
+    remedy = "a higher {first_cell} or {growth} needs fewer rows of them"
+    assert f"{cells} cells instead of 1500: {remedy}" in made.notes
