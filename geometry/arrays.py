@@ -208,6 +208,11 @@ def array_like(values: NDArray[Any], like: Any, xp: Any) -> Any:
     return xp.tensor(values, dtype=dtype, device=like.device)  # a copy: torch warns of read-only memory
 
 
+def ring_of(nodes: AnyArray) -> AnyArray:
+    """Return the corners (4, ni-1, nj-1, ...) of the cells of `nodes` (ni, nj, ...), counter-clockwise."""
+    return np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]])  # type: ignore[return-value]
+
+
 def planar_nodes(ni: int, nj: int) -> Floats:
     """Return an uninitialised (ni, nj, 2) array in planar layout: its x and y planes are each contiguous."""
     return np.moveaxis(np.empty((2, ni, nj)), 0, -1)

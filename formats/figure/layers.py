@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Bools, Floats
+from meshonet.geometry.arrays import Bools, Floats, cross2
 from meshonet.geometry.blocks.grid import Grid
 
 if TYPE_CHECKING:
@@ -219,7 +219,7 @@ def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tup
     i, j = i[::stride] + part.i0, j[::stride] + part.j0
     corner = grid.nodes[i, j]
     along, across = grid.nodes[i + 1, j] - corner, grid.nodes[i, j + 1] - corner
-    area = np.abs(along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0])
+    area = np.abs(cross2(along, across))
     return (np.hypot(along[:, 0], along[:, 1]), area), (np.hypot(across[:, 0], across[:, 1]), area)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from meshonet.formats.figure.layers import INK, Colouring, reduced
 from meshonet.formats.figure.slices import CellSheet
-from meshonet.geometry.arrays import Bools, Floats, extent_of, norms
+from meshonet.geometry.arrays import Bools, Floats, extent_of, norms, ring_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -63,7 +63,7 @@ def painted(
     ]
     nodes = sheet.nodes[np.ix_(*marks)]
     keep = reduced(np.logical_or, mask, *marks)
-    ring = np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]], axis=2)[keep]
+    ring = np.moveaxis(ring_of(nodes), 0, 2)[keep]
     normal = np.cross(ring[:, 2] - ring[:, 0], ring[:, 3] - ring[:, 1])
     normal /= np.maximum(norms(normal), 1e-300)[:, None]
     facing = normal @ axes.T

@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from meshonet.formats.figure.slices import Cut, cut_where
-from meshonet.geometry.arrays import Floats, arc_lengths, norms
+from meshonet.geometry.arrays import Floats, arc_lengths, cross2, norms
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.screw import screw_of
 from meshonet.geometry.elementary import product
@@ -238,12 +238,8 @@ def _ruled(points: Floats, hub: Floats, shroud: Floats) -> tuple[Floats, Floats]
             slope = slopes[k]
             here = lines[k] + (t - k / (len(lines) - 1))[:, None] * slope
             off, way = own - here[:, :2], here[:, 2:]
-            change = _cross(off, slope[:, 2:]) - _cross(slope[:, :2], way)
-            t = t - _cross(off, way) / change
+            change = cross2(off, slope[:, 2:]) - cross2(slope[:, :2], way)
+            t = t - cross2(off, way) / change
         across[first : first + _AT_ONCE] = (off * way).sum(axis=1) / (way**2).sum(axis=1)
         along[first : first + _AT_ONCE] = t
     return across, along
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Side
+from meshonet.geometry.arrays import Side, ring_of
 from meshonet.geometry.blocks.block import PLACES
 
 Indices = NDArray[np.int64]
@@ -24,8 +24,8 @@ Indices = NDArray[np.int64]
 def cells_of(number: Indices) -> Indices:
     """Return the node numbers (m, 4 or 8) of the cells of a block of node `number` (ni, nj[, nk])."""
     if number.ndim == 2:
-        return _flat(_around(number))
-    below, above = _around(number[:, :, :-1]), _around(number[:, :, 1:])
+        return _flat(ring_of(number))
+    below, above = ring_of(number[:, :, :-1]), ring_of(number[:, :, 1:])
     return _flat([*below, *above])
 
 
@@ -47,7 +47,7 @@ def faces_of(side_numbers: Indices, side: Side) -> Indices:
     if side_numbers.ndim == 1:
         rows = np.stack([side_numbers[:-1], side_numbers[1:]], axis=-1)
         return rows[:, ::-1] if side in ("north", "west") else rows
-    faces = _flat(_around(side_numbers))
+    faces = _flat(ring_of(side_numbers))
     return faces if points_out(side) else faces[:, [0, 3, 2, 1]]
 
 
@@ -57,11 +57,6 @@ def points_out(side: Side) -> bool:
     return (axis == 1) == (end == 0)
 
 
-def _around(number: Indices) -> list[Indices]:
-    """Return the four nodes around each cell along the first two directions of a lattice."""
-    return [number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]]
-
-
-def _flat(corners: list[Indices]) -> Indices:
+def _flat(corners: Sequence[Indices] | Indices) -> Indices:
     """Return one row per cell, the first index fastest."""
     return np.stack([corner.ravel(order="F") for corner in corners], axis=-1)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from meshonet.formats.mesh.slices import lattices
 from meshonet.formats.plot3d.stream import Stream
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, cross2
 from meshonet.geometry.errors import InputError
 
 Dims = tuple[int, ...]
@@ -224,24 +224,18 @@ def regular_cells(nodes: Floats) -> tuple[int, int]:
     than a right angle.
     """
     if nodes.shape[2:] == (3,):
-        normal = _cross(*_diagonals(nodes))
+        normal = np.cross(*_diagonals(nodes))
         pairs = (normal[1:], normal[:-1]), (normal[:, 1:], normal[:, :-1])
         signs = np.concatenate([np.ones(1), *((a * b).sum(axis=-1).ravel() for a, b in pairs)])
         return int((signs > 0).sum()), len(signs)
     if nodes.ndim == 3:
-        (x, y), (u, v) = (np.moveaxis(d, -1, 0) for d in _diagonals(nodes))
-        signs = x * v - y * u
+        signs = cross2(*_diagonals(nodes))
     else:
         u, v, w = (nodes[1:, :-1, :-1], nodes[:-1, 1:, :-1], nodes[:-1, :-1, 1:])
         corner = nodes[:-1, :-1, :-1]
-        signs = (_cross(u - corner, v - corner) * (w - corner)).sum(axis=-1)
+        signs = (np.cross(u - corner, v - corner) * (w - corner)).sum(axis=-1)
     return max(int((signs > 0).sum()), int((signs < 0).sum())), signs.size
 
 
 def _diagonals(nodes: Floats) -> tuple[Floats, Floats]:
     return nodes[1:, 1:] - nodes[:-1, :-1], nodes[:-1, 1:] - nodes[1:, :-1]
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    (x, y, z), (u, v, w) = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
-    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)

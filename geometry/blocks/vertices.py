@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, Indices
+from meshonet.geometry.arrays import Bools, Floats, Indices, ring_of
 from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.shared_nodes import shared_nodes
@@ -58,11 +58,7 @@ def vertices(grid: Grid) -> Vertices:
     """Return the nodes, with their valence, of a grid of planar blocks."""
     numbers = shared_nodes([block.counts for block in grid.blocks], grid.connections, periodic=True)
     count = 1 + max(int(number.max()) for number in numbers)
-    corners = [
-        corner.ravel()
-        for number in numbers
-        for corner in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
-    ]
+    corners = [ring_of(number).ravel() for number in numbers]
     valence = np.bincount(np.concatenate(corners), minlength=count)
     outer = np.zeros(count, dtype=bool)
     for patch in grid.outer_patches():

@@ -5,14 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import AnyArray, Floats, Indices, cross2
+from meshonet.geometry.arrays import Floats, Indices, cross2, ring_of
 from meshonet.geometry.layout.layout import Layout
 from meshonet.kernels._native import smallest_corners
-
-
-def ring_of(nodes: AnyArray) -> AnyArray:
-    """Return the corners (4, ni-1, nj-1, ...) of the cells of `nodes` (ni, nj, ...), counter-clockwise."""
-    return np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]])  # type: ignore[return-value]
 
 
 def corner_jacobians(corners: Floats) -> Floats:

@@ -5,11 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, percentiles_of
+from meshonet.geometry.arrays import Floats, percentiles_of, ring_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.shared_nodes import shared_nodes
 from meshonet.geometry.blocks.vertices import Vertices, vertices
-from meshonet.geometry.layout.lattice import ring_of
 from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.lines import Lines, lines, solid_lines

@@ -15,9 +15,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, cross2, norms
+from meshonet.geometry.arrays import Floats, cross2, norms, ring_of
 from meshonet.geometry.elementary import arccos
-from meshonet.geometry.layout.lattice import ring_of
 from meshonet.geometry.quality.bad_cell import BadCell
 from meshonet.geometry.quality.metrics import NAMES
 

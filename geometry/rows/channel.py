@@ -175,9 +175,9 @@ class Channel:
             across = self.across(s)
             off = self.hub(s) + part[:, None] * across - p
             along = self.hub.slope(s) + part[:, None] * self.across.slope(s)
-            area = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]
-            s = s - (off[:, 0] * across[:, 1] - off[:, 1] * across[:, 0]) / area
-            part = part - (along[:, 0] * off[:, 1] - along[:, 1] * off[:, 0]) / area
+            area = cross2(along, across)
+            s = s - cross2(off, across) / area
+            part = part - cross2(along, off) / area
         h = self._heights(s, part)
         return s.reshape(points.shape[:-1]), h.reshape(points.shape[:-1])
 

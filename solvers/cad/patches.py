@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, arc_parts, norms
+from meshonet.geometry.arrays import Floats, arc_parts, norms, ring_of
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.cad.model import CadFace, CadModel
@@ -166,7 +166,7 @@ def blended(south: Floats, north: Floats, west: Floats, east: Floats) -> Floats:
 
 def _check(patch: Floats, number: int) -> None:
     """Raise InputError if cells of a patch are folded: corners that turn against their cell."""
-    a, b, c, d = patch[:-1, :-1], patch[1:, :-1], patch[1:, 1:], patch[:-1, 1:]
+    a, b, c, d = ring_of(patch)
     normal = np.cross(c - a, d - b)
     folded = np.zeros(normal.shape[:2], dtype=bool)
     for p, q, r in ((a, b, d), (b, c, a), (c, d, b), (d, a, c)):

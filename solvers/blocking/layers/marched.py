@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, distinct
+from meshonet.geometry.arrays import Bools, Floats, distinct, ring_of
 from meshonet.geometry.elementary import power
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.layout.lattice import corner_jacobians, ring_of
+from meshonet.geometry.layout.lattice import corner_jacobians
 from meshonet.geometry.spacing.gradual_sizes import graded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
 from meshonet.kernels._native import hyperbolic_march
