@@ -13,15 +13,14 @@ from meshonet.geometry.errors import InputError, meant
 from meshonet.geometry.polygon.area import check_extent
 from meshonet.geometry.quality.figures import COUNTS, FIGURES
 from meshonet.geometry.quality.measure import per_cell_of_blocks
-from meshonet.geometry.quality.metrics import ALL_NAMES, FACE_NAMES, metric_of
+from meshonet.geometry.quality.metrics import ALL_NAMES, FACE_NAMES, LINE_METRIC, metric_of
 
-DRAWN = (*ALL_NAMES, *FACE_NAMES)
+DRAWN = (*ALL_NAMES, LINE_METRIC.name, *FACE_NAMES)
 """Names of the metrics by which cells can be coloured."""
-_RATIO, _ANGLE = "area_ratio, of volumes volume_ratio", "max_angle"
+_RATIO, _ANGLE = LINE_METRIC.name, "max_angle"
 _RELATED = {
     "folded": "scaled_jacobian, which is 0 or less there",
     "bezier_folded": "bezier_ratio, which is 0 or less there",
-    "growth": _RATIO,
     "growth_across": _RATIO,
     "wall_growth": _RATIO,
     "equal_wall_cells": _RATIO,

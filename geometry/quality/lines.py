@@ -13,13 +13,13 @@ from itertools import chain
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.across import across
 from meshonet.geometry.blocks.block import PLACES, face_of
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.families import families
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.vertices import Vertices
+from meshonet.geometry.blocks.vertices import Vertices, vertices
 from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.quality.growth import DIRECTIONS, Extreme, Growth, Tally, ratios
 from meshonet.geometry.threads import over_blocks, threads_for
@@ -187,3 +187,33 @@ def _solid_across(grid: Grid, each: Connection, kept: bool) -> BlockLines:
     at.insert(axis, 0 if end == 0 else grid.blocks[each.block].counts[axis] - 1)
     values = (np.expand_dims(measure(line)[0], axis) for measure in (ratios, bends))
     return part_of_values((each.block, *at), axis, False, values, kept=kept)
+
+
+def growth_of_cells(grid: Grid) -> list[Floats]:
+    """Return, for each block, the greatest growth (ni-1, nj-1[, nk-1]) at the nodes of each of its cells."""
+    at_nodes = [np.ones(block.counts) for block in grid.blocks]
+    for block, values in zip(grid.blocks, at_nodes, strict=True):
+        for axis in range(values.ndim):
+            inner = np.moveaxis(values, axis, 0)[1:-1]
+            np.maximum(inner, _growth(np.moveaxis(block.nodes, axis, 0)), out=inner)
+    regular = None if grid.form == "volume" else vertices(grid)
+    for each in (way for connection in grid.connections for way in (connection, connection.reversed())):
+        own, donor = across(grid, each, 2)
+        part = tuple(slice(start, stop + 1) for start, stop in each.range)
+        values = face_of(at_nodes[each.block], each.side)[part]
+        growth = _growth(np.stack([own[1], own[0], donor[1]]))[0]
+        if regular is not None:
+            growth[~face_of(regular.regular[regular.numbers[each.block]], each.side)[part]] = 1.0
+        np.maximum(values, growth, out=values)
+    for number, values in enumerate(at_nodes):
+        for axis in range(values.ndim):
+            nodes = np.moveaxis(values, axis, 0)
+            values = np.moveaxis(np.maximum(nodes[:-1], nodes[1:]), 0, axis)
+        at_nodes[number] = values
+    return at_nodes
+
+
+def _growth(nodes: Floats) -> Floats:
+    """Return the growth (m-2, ...) along the first axis of nodes (m, ..., d); 1 within lines of length 0."""
+    length = norms(np.diff(nodes, axis=0))
+    return np.where(length[:-1] + length[1:] > 0.0, ratios(nodes), 1.0)

@@ -18,7 +18,7 @@ from meshonet.geometry.blocks.block import form_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality import metrics
 from meshonet.geometry.quality.cell_run import FEW, PERCENTS, CellRun, run_over, summary_of
-from meshonet.geometry.quality.metrics import FACE_NAMES, NAMES, QUAD_METRICS, metric_of
+from meshonet.geometry.quality.metrics import FACE_NAMES, LINE_METRIC, NAMES, QUAD_METRICS, metric_of
 from meshonet.geometry.summary import Quality, Summary
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
@@ -181,7 +181,7 @@ def per_cell(grid: Grid, name: str) -> Floats:
     metric = metric_of(grid, name)
     if metric.cells:
         return metric.cells(grid.nodes)
-    if name in FACE_NAMES:
+    if name in (LINE_METRIC.name, *FACE_NAMES):
         return per_cell_of_blocks(grid, name)[0]
     k = NAMES.index(name)
     return np.asarray(_run(grid, slice(k, k + 1)).values[0])
@@ -199,6 +199,10 @@ def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
         from meshonet.geometry.quality.checkmesh import worst_faces
 
         return worst_faces(grid, name)
+    if name == LINE_METRIC.name:
+        from meshonet.geometry.quality.lines import growth_of_cells
+
+        return growth_of_cells(grid)
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import solid_metric
 

@@ -112,6 +112,8 @@ FACE_METRICS: tuple[Metric, ...] = (
     Metric("face_skewness", "", "max", "greatest of its faces, as in checkMesh"),
     Metric("box_ratio", "", "max", "aspect ratio, as in checkMesh"),
 )
+# that of geometry/quality/lines.py: drawn, but no part of the table, since lines have it and not cells
+LINE_METRIC = Metric("growth", "", "max", "greatest growth of lines at its nodes")
 
 SOLID_NAMES: tuple[str, ...] = tuple(map(_NAME, SOLID_METRICS))
 FACE_NAMES: tuple[str, ...] = tuple(map(_NAME, FACE_METRICS))
@@ -126,7 +128,7 @@ def metrics_of(grid: Grid) -> tuple[Metric, ...]:
 
 def metric_of(grid: Grid, name: str) -> Metric:
     """Return the metric called `name`; raise InputError if cells of `grid` have none of that name."""
-    metrics = (*metrics_of(grid), *(() if grid.form == "surface" else FACE_METRICS))
+    metrics = (*metrics_of(grid), LINE_METRIC, *(() if grid.form == "surface" else FACE_METRICS))
     for metric in metrics:
         if metric.name == name:
             return metric

@@ -48,8 +48,8 @@ def plot(
     run: o.InputOptions,
     metric: Annotated[str, _option(
         "--metric", metavar="METRIC", show_default=True,
-        help="Metric that colours the cells: a metric of the report of meshonet quality, or checkMesh's "
-        "non_orthogonality, face_skewness or box_ratio. none draws grid lines only.",
+        help="Metric that colours the cells: a metric of the report of meshonet quality, growth along grid "
+        "lines, or checkMesh's non_orthogonality, face_skewness or box_ratio. none draws grid lines only.",
     )] = "max_angle",
     zoom: Annotated[str | None, _option(
         "--zoom", metavar="x0,x1,y0,y1",

@@ -63,7 +63,7 @@ def test_a_batch_becomes_one_picture_each(meshonet: Meshonet, three_h5: Path) ->
     [
         (("-o", "g.vts"), "g.vts: vts is no picture; use .png, .svg, .pdf or .html"),
         (("-o", "g.png", "--metric", "beauty"), "--metric: metric 'beauty' is not known; use none or one of"),
-        (("-o", "g.png", "--metric", "wall_growth"), "of the whole grid; draw area_ratio, of volumes volume"),
+        (("-o", "g.png", "--metric", "wall_growth"), "of the whole grid; draw growth"),
         (("-o", "g.png", "--zoom", "1,0,0,1"), "--zoom: '1,0,0,1' is not a box; use x0,x1,y0,y1"),
         (("-o", "g.png", "--zoom", "a"), "--zoom: 'a' is not a box"),
         (("-o", "g.png", "--zoom", "90,91,90,91"), "shows none of the grid"),
