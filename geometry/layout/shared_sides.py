@@ -4,6 +4,8 @@ from itertools import groupby
 from operator import itemgetter
 from typing import TypeAlias
 
+import numpy as np
+
 from meshonet.geometry.arrays import Indices, Side
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.motion import Motion
@@ -49,6 +51,11 @@ def shared_in_part(lines: list[Line]) -> tuple[list[Connection], list[tuple[Line
 
     A side that is next to several blocks, or to itself, shares a part of its nodes with each of them.
     """
+    if not lines:
+        return [], []
+    edges = np.concatenate([np.sort([nodes[:-1], nodes[1:]], axis=0) for _, _, nodes in lines], axis=1)
+    if len(np.unique(edges[0] * (edges.max() + 1) + edges[1])) == edges.shape[1]:  # as is most often so
+        return [], [(line, 0) for line in lines]
     places: dict[tuple[int, ...], list[tuple[int, int]]] = {}
     for number, (_, _, nodes) in enumerate(lines):
         for cell in range(len(nodes) - 1):

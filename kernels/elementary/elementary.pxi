@@ -7,6 +7,22 @@ cdef extern from "elementary/functions.h":
                                            ptrdiff_t columns, double *out) nogil
     int c_solve_system "solve_system"(double *matrix, ptrdiff_t n, double *right, ptrdiff_t columns) nogil
 
+cdef extern from "Python.h":
+    void *PyEval_SaveThread() noexcept
+    void PyEval_RestoreThread(void *thread) noexcept
+
+cdef ptrdiff_t SHORT = 1 << 12  # operations that are over sooner than another thread would wake up
+
+
+cdef inline void *let_go(ptrdiff_t operations) noexcept:
+    """Let other threads run Python, unless that many operations are short; what follows is no Python until `take_back`."""
+    return PyEval_SaveThread() if operations > SHORT else NULL
+
+
+cdef inline void take_back(void *thread) noexcept:
+    if thread != NULL:
+        PyEval_RestoreThread(thread)
+
 
 def elementary(bytes name, x, out):
     """Fill `out` (n,) with the function `name` of `x` (n,)."""
@@ -16,8 +32,9 @@ def elementary(bytes name, x, out):
     cdef Written to = fills(out, (n,))
     if function is NULL:
         raise ValueError("no function of this name")
-    with nogil:
-        function(px, n, to)
+    cdef void *thread = let_go(n)
+    function(px, n, to)
+    take_back(thread)
 
 
 def angles_of(y, x, out):
@@ -25,8 +42,9 @@ def angles_of(y, x, out):
     cdef ptrdiff_t n = len(x)
     cdef Read px = reads(x, (n,)), py = reads(y, (n,))
     cdef Written to = fills(out, (n,))
-    with nogil:
-        function_angle(py, px, n, to)
+    cdef void *thread = let_go(n)
+    function_angle(py, px, n, to)
+    take_back(thread)
 
 
 def powers_of(x, y, out):
@@ -34,8 +52,9 @@ def powers_of(x, y, out):
     cdef ptrdiff_t n = len(x)
     cdef Read px = reads(x, (n,)), py = reads(y, (n,))
     cdef Written to = fills(out, (n,))
-    with nogil:
-        function_power(px, py, n, to)
+    cdef void *thread = let_go(n)
+    function_power(px, py, n, to)
+    take_back(thread)
 
 
 def matrix_product(a, b, out):
@@ -44,8 +63,9 @@ def matrix_product(a, b, out):
     rows, inner = a.shape
     cdef Read pa = reads(a, (rows, inner)), pb = reads(b, (inner, columns))
     cdef Written to = fills(out, (rows, columns))
-    with nogil:
-        c_matrix_product(pa, pb, rows, inner, columns, to)
+    cdef void *thread = let_go(rows * inner * columns)
+    c_matrix_product(pa, pb, rows, inner, columns, to)
+    take_back(thread)
 
 
 def solve_systems(matrices, right):

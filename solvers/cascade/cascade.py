@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -109,10 +111,9 @@ class Cascade:
         """The blade and its neighbours on both sides. Raises InputError: they intersect."""
         shift = pairs_of(np.array([-self.left, self.left]))
         beside = [_moved(self.blade, each) for each in shift]
-        points = np.concatenate([loop.curve.points for loop in (self.blade, *beside)])
-        around = far_loop(points.mean(axis=0), 2.0 * float(np.ptp(points, axis=0).max()))
+        farthest = max(float(np.abs(loop.curve.points).max()) for loop in (self.blade, *beside))
         try:
-            check_domain(Domain((around, self.blade, *beside)))
+            check_domain(Domain((_around(math.frexp(farthest)[1]), self.blade, *beside)))
         except InputError as error:
             problem = f"blades {abs(self.left):g} apart touch or cross"
             raise InputError(problem, "use a larger pitch", parameter="pitch") from error
@@ -212,6 +213,12 @@ class Cascade:
 def scaled(metric: SizeMetric, scale: float) -> SizeMetric:
     """Return the `metric` with target lengths along the blade multiplied by `scale`."""
     return replace(metric, along=scale * metric.along, largest=metric.largest * scale**0.5)
+
+
+@lru_cache(maxsize=8)
+def _around(exponent: int) -> Loop:
+    """Return a circle around all points with coordinates of at most 2 to the power `exponent`."""
+    return far_loop(np.zeros(2), math.ldexp(2.0, exponent))
 
 
 def _moved(blade: Loop, shift: Floats) -> Loop:

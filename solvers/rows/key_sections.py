@@ -160,9 +160,10 @@ def planned(
     held = np.zeros(len(m), dtype=bool)
     for own in (columns, *ends):
         held[own] = True
-    moves = HarmonicMoves(whole.mesh, held)
+    even, moves = run_in_threads(
+        [partial(places.evened, planes, growth, pairs), partial(HarmonicMoves, whole.mesh, held)]
+    )
     plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, held, moves, places, wake)
-    even = places.evened(planes, growth, pairs)
     section = KeySection(plane, whole, at)
     try:
         return _begun(replace(plan, places=even), planes, section)

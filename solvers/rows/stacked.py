@@ -110,22 +110,21 @@ class StackedRow:
         return values.reshape(*self.columns.shape, 3)[:, :2]
 
     def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
-        """Return the nodes, so far computed only at the blade, and tasks that compute all other nodes.
+        """Return the nodes, so far without those of layers off the blade, and tasks that store these.
 
-        The tasks can run in any order. They do not compute the nodes of the second periodic side.
+        The tasks can run in any order. The nodes of the second periodic side are not computed.
         """
         groups = self._groups()
         arcs = in_threads(NodeGroup.arcs, groups)
         spacings = in_threads(self._spacing, list(zip(self.zones, zip(*arcs, strict=True), strict=True)))
         count, levels = len(self.layout.mesh.nodes), self.levels[-1] + 1
         made = RowNodes(np.empty((levels, count, 3)), np.empty((levels, len(self.columns), 2, 3)))
-        each = list(zip(groups, arcs, strict=True))
-        layers = sum(bool(group.columns) for group in groups)
-        values = run_in_threads([partial(self._layers, made, *own, spacings) for own in each[:layers]])
-        jobs: list[Callable[[], None]] = [
-            partial(self._store, made, *own) for own in zip(groups[:layers], values, strict=True)
+        jobs: list[Callable[[], Floats | None]] = [
+            partial(self._layers if group.columns else self._fill, made, group, own, spacings)
+            for group, own in zip(groups, arcs, strict=True)
         ]
-        return made, [*jobs, *(partial(self._fill, made, *own, spacings) for own in each[layers:])]
+        values = zip(groups, run_in_threads(jobs), strict=True)
+        return made, [partial(self._store, made, group, own) for group, own in values if group.columns]
 
     def _spacing(self, lines: tuple[Zone, tuple[LineArcs, ...]]) -> Spacing:
         """Return the spacing of all lines of a zone."""
