@@ -7,7 +7,7 @@ be irregular.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
@@ -55,9 +55,14 @@ class BlockLines:
     bend: Tally
 
 
-def lines(grid: Grid, nodes: Vertices) -> Lines:
-    """Return growth and bend of the lines of planar blocks or surface patches; `nodes` are their vertices."""
-    return lines_of(grid, [*_inside(grid), *_across(grid, nodes)])
+def lines(grid: Grid, nodes: Vertices, *, all_measures: bool = True) -> Lines:
+    """Return growth and bend of the lines of planar blocks or surface patches; `nodes` are their vertices.
+
+    Without `all_measures`, there is neither a bend nor a percentile.
+    """
+    measures = (ratios, bends) if all_measures else (ratios,)
+    parts = [*_inside(grid, measures), *_across(grid, nodes, measures)]
+    return lines_of(grid, parts, along=all_measures, places=all_measures)
 
 
 def lines_of(grid: Grid, parts: list[BlockLines], *, along: bool = True, places: bool = True) -> Lines:
@@ -101,30 +106,32 @@ def part_of_values(
 ) -> BlockLines:
     """Return growth and bend of the lines through an array of nodes, as one part of the result for a grid.
 
-    `values` are two arrays (m, n[, l]), growth and bend at the nodes; the first node is at `place`, (block,
-    i, j[, k]). `axis` is the direction of the lines; `inside` tells whether the nodes are inside a block;
-    `kept` keeps the values for percentiles.
+    `values` are growth and bend, or growth alone, arrays (m, n[, l]) of the nodes; the first node is at
+    `place`, (block, i, j[, k]). `axis` is the direction of the lines; `inside` tells whether the nodes are
+    inside a block; `kept` keeps the values for percentiles.
     """
     tallies = Tally(kept=kept), Tally(kept=kept)
-    for tally, each in zip(tallies, values, strict=True):
+    for tally, each in zip(tallies, values, strict=False):
         tally.add(place, each, DIRECTIONS[axis])
     return BlockLines(place[0], axis, inside, *tallies)
 
 
-def _inside(grid: Grid) -> Iterator[BlockLines]:
+def _inside(grid: Grid, measures: Sequence[Callable[[Floats], Floats]]) -> Iterator[BlockLines]:
     for number, block in enumerate(grid.blocks):
         for axis in (0, 1):
             nodes = np.moveaxis(block.nodes, axis, 0)
-            values = (np.moveaxis(each(nodes), 0, axis) for each in (ratios, bends))
+            values = (np.moveaxis(each(nodes), 0, axis) for each in measures)
             yield part_of_values((number, 1 - axis, axis), axis, True, values)
 
 
-def _across(grid: Grid, nodes: Vertices) -> Iterator[BlockLines]:
+def _across(
+    grid: Grid, nodes: Vertices, measures: Sequence[Callable[[Floats], Floats]]
+) -> Iterator[BlockLines]:
     """Yield the lines across each connection, one unbroken stretch of regular nodes at a time."""
     for each in grid.connections:
         own, donor = across(grid, each, 2)
         line = np.stack([own[1], own[0], donor[1]])
-        growth, bend = ratios(line)[0], bends(line)[0]
+        measured = [each(line)[0] for each in measures]
         start, stop = each.range[0]
         regular = nodes.regular[face_of(nodes.numbers[each.block], each.side)[start : stop + 1]]
         axis, end = PLACES[each.side]
@@ -133,7 +140,7 @@ def _across(grid: Grid, nodes: Vertices) -> Iterator[BlockLines]:
         for first, last in ends:
             at = [start + first] * 2
             at[axis] = 0 if end == 0 else grid.blocks[each.block].counts[axis] - 1
-            values = (np.expand_dims(value[first:last], axis) for value in (growth, bend))
+            values = (np.expand_dims(value[first:last], axis) for value in measured)
             yield part_of_values((each.block, *at), axis, False, values)
 
 

@@ -34,7 +34,7 @@ def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) 
     patches = tuple(replace(p, kind="wall") if p.name in layered else p for p in grid.patches)
     grid = replace(grid, patches=patches)
     walls = [patch for patch in grid.walls() if patch.name in layered]
-    rows = wall_rows(grid, walls, lines(grid, vertices(grid)).by_wall)
+    rows = wall_rows(grid, walls, lines(grid, vertices(grid), all_measures=False).by_wall)
     low, high = min(row.height.min for row in rows), max(row.height.max for row in rows)
     growth = max((row.growth.mean for row in rows if row.growth), default=None)
     where = f"node of {', '.join(names)}" if names else "wall node"

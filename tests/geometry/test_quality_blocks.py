@@ -1,5 +1,7 @@
 """Grids of many blocks are measured as the same grid in one block is, and where blocks meet too."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from block_grids import butterfly, duct, joined, o_ring, turned
@@ -16,6 +18,7 @@ from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import parse_gates
 from meshonet.geometry.quality.growth import growth
+from meshonet.geometry.quality.lines import lines
 from meshonet.geometry.quality.measure import measure, per_cell_of_blocks, worst_cells_of
 from meshonet.geometry.quality.metrics import NAMES
 from meshonet.geometry.quality.report import quality_report
@@ -149,6 +152,14 @@ def test_growth_away_from_walls_goes_on_in_the_next_block() -> None:
     report = quality_report(grid, "viscous")
     assert report.figures.blocks.lines.leaving is not None
     assert report.figures.blocks.lines.leaving.max == 2.0
+
+
+def test_growth_alone_is_that_which_is_measured_with_bends() -> None:
+    grid = in_four(shaken(), 5, 3)
+    both, alone = lines(grid, vertices(grid)), lines(grid, vertices(grid), all_measures=False)
+    assert alone.bend_inside is None
+    assert alone.leaving == replace(both.leaving, p99=None)
+    assert alone.by_wall == {name: replace(each, p99=None) for name, each in both.by_wall.items()}
 
 
 def test_a_report_counts_blocks_and_judges_gates() -> None:

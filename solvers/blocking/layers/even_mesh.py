@@ -121,8 +121,16 @@ def _near(mesh: QuadMesh, lines: GrowthLines, growth: Floats) -> Bools:
     middle, begins = lines.nodes[uneven, 1], lines.begins[uneven]
     for cells in range(int(reach.max(initial=0)), 0, -1):
         near[middle[reach >= cells]] = near[begins[reach >= cells]] = True
-        near[mesh.quads[near[mesh.quads].any(axis=1)]] = True
+        near[mesh.quads[_touched(near, mesh.quads)]] = True
     return near
+
+
+def _touched(nodes: Bools, groups: Indices) -> Bools:
+    """Return which groups (k, m) of nodes have one in the mask `nodes` (n,)."""
+    touched = nodes[groups[:, 0]]
+    for column in groups.T[1:]:
+        touched |= nodes[column]
+    return np.asarray(touched)
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,16 +169,17 @@ class _Patch:
         own = free.copy()
         own[pairs[:, 1]] = False
         nodes = np.flatnonzero(own)
-        lines = lines.some(np.asarray(free[lines.nodes].any(axis=1)))
-        quads = mesh.quads[free[mesh.quads].any(axis=1)]
+        lines = lines.some(_touched(free, lines.nodes))
+        quads = mesh.quads[_touched(free, mesh.quads)]
         corners = np.concatenate(
             [np.stack([quads[:, k], quads[:, (k + 1) % 4], quads[:, k - 1]], axis=1) for k in range(4)]
         )
-        corners = corners[free[corners].any(axis=1)]
+        corners = corners[_touched(free, corners)]
         initial = _angles(z, corners)
         shortest = np.full(len(z), np.inf)
-        length = modulus(z[mesh.edges[:, 1]] - z[mesh.edges[:, 0]])
-        for end in mesh.edges.T:
+        edges = mesh.edges[_touched(free, mesh.edges)]
+        length = modulus(z[edges[:, 1]] - z[edges[:, 0]])
+        for end in edges.T:
             np.minimum.at(shortest, end, length)
         unknown = np.full(len(z), -1, dtype=np.intp)
         unknown[nodes] = np.arange(len(nodes))
