@@ -105,8 +105,9 @@ class Report(Timed):
                 f"confidence expected error {self.confidence.expected_error:.1e}, {judged} ({limit})"
             )
         if self.residual is not None:
-            cycles = f"{self.cycles} cycle{'' if self.cycles == 1 else 's'}"
-            lines.append(f"residual   {self.residual:.1e} after {cycles}")
+            cycles = f"after {self.cycles} cycle{'' if self.cycles == 1 else 's'}"
+            when = cycles if self.cycles else "in the initial grid: no cycles needed"
+            lines.append(f"residual   {self.residual:.1e} {when}")
         lines += [
             f"folded     {self.quality.folded} of {self.quality.cells} cells",
             f"max angle  {angle.max:.1f} degrees at {named(angle.worst)}; mean {angle.mean:.1f}",
