@@ -81,9 +81,9 @@ def painted(
     beside = [mask[0], mask[-1], mask[:, 0], mask[:, -1]]
     edges = [np.stack([line[:-1], line[1:]], axis=1)[own] for line, own in zip(border, beside, strict=True)]
     outline = np.concatenate(edges) @ axes.T
-    return Painted(
-        flat[..., :2], flat[..., 2].mean(axis=1), colours, outline[..., :2], outline[..., 2].mean(axis=1)
-    )
+    hidden = sheet.outside * facing[:, 2] < 0.0  # behind a wall whose thickness may be less than their extent
+    depth = flat[..., 2].mean(axis=1) - np.where(hidden, np.ptp(flat[..., 2], axis=1), 0.0)
+    return Painted(flat[..., :2], depth, colours, outline[..., :2], outline[..., 2].mean(axis=1))
 
 
 def paint(ax: Axes, painted: Sequence[Painted]) -> None:

@@ -59,10 +59,15 @@ def parse_slice(text: str) -> Slice:
 
 @dataclass(frozen=True, eq=False)
 class CellSheet:
-    """A lattice of nodes (n, m, 3) in space, and optional values (n-1, m-1) of its cells."""
+    """A lattice of nodes (n, m, 3) in space, and optional values (n-1, m-1) of its cells.
+
+    `outside` is 1 if the cells of a wall have the flow on the side of the cross product of their edges along
+    the first and the second index, -1 if on the other side, and 0 if this is not known.
+    """
 
     nodes: Floats
     values: Floats | None
+    outside: int = 0
 
 
 def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet]:

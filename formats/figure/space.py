@@ -20,7 +20,7 @@ from meshonet.formats.figure.row_sections import RowSections
 from meshonet.formats.figure.slices import CellSheet, Cut, cut, layers
 from meshonet.formats.figure.view import View, flat_box
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.block import Block, face_of
+from meshonet.geometry.blocks.block import PLACES, Block, face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -65,12 +65,14 @@ def _surface(grid: Grid, values: list[Floats] | None) -> list[CellSheet]:
     """Return the patches of a surface, or the walls of a volume; its whole boundary if it has no walls."""
     if grid.form == "surface":
         return [CellSheet(block.nodes, values[k] if values else None) for k, block in enumerate(grid.blocks)]
-    sheets = []
-    for patch in grid.walls() or grid.outer_patches():
+    sheets, walls = [], grid.walls()
+    for patch in walls or grid.outer_patches():
         spans = patch.range(grid.face(patch.block, patch.side).shape[:-1])
         cells = face_of(values[patch.block], patch.side) if values else None
         shown = None if cells is None else cells[tuple(slice(*span) for span in spans)]
-        sheets.append(CellSheet(grid.at(patch), shown))
+        axis, end = PLACES[patch.side]
+        inwards = (1, -1, 1)[axis] * (1 if end == 0 else -1)  # of a right-handed block
+        sheets.append(CellSheet(grid.at(patch), shown, inwards if walls else 0))
     return sheets
 
 

@@ -2,16 +2,18 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from meshonet.api.plot import plot
 from meshonet.formats.figure.figure import draw
-from meshonet.formats.figure.slices import Slice, cut, layers, parse_slice
+from meshonet.formats.figure.painting import Painted, painted
+from meshonet.formats.figure.slices import CellSheet, Slice, cut, layers, parse_slice
 from meshonet.formats.figure.space import draw_in_space
 from meshonet.formats.figure.view import View
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
@@ -172,3 +174,37 @@ def test_slices_are_of_volumes(tmp_path: Path) -> None:
         plot(surface, tmp_path / "made.png", slice="k=0")
     plot(surface, tmp_path / "made.svg", metric="area_ratio", zoom=(0, 2, -2, 2, -2, 2))
     assert (tmp_path / "made.svg").read_bytes().startswith(b"<?xml")
+
+
+@pytest.mark.parametrize("flipped", [False, True])
+def test_cells_of_the_far_side_of_a_thin_wall_are_drawn_first(flipped: bool) -> None:
+    """Cells are longer than the wall is thick, so that a cell of the far side may have the nearer centre."""
+    axes = np.array([[1.0, 0.0, 0.0], [0.0, np.sqrt(0.5), -np.sqrt(0.5)], [0.0, np.sqrt(0.5), np.sqrt(0.5)]])
+    x, y = np.meshgrid([0.0, 1.0], np.arange(0.0, 9.0, 2.0), indexing="ij")
+    near = np.stack([x, y, np.full_like(x, 0.05)], axis=-1)
+    far = np.stack([x, y + 0.9, np.full_like(x, -0.05)], axis=-1)
+    depths = []
+    for nodes, outside in ((near, 1), (far, -1)):
+        shown = nodes[::-1] if flipped else nodes
+        sheet = CellSheet(shown, None, -outside if flipped else outside)
+        depths.append(painted(sheet, np.ones((1, 4), dtype=bool), (1, 1), axes, None, (0.0, 1.0)).depth)
+    assert (depths[1] < depths[0]).all()
+
+
+def test_the_flow_is_on_the_side_of_walls_that_blocks_are_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    sheets: list[CellSheet] = []
+
+    def kept(sheet: CellSheet, *more: Any) -> Painted:
+        sheets.append(sheet)
+        return painted(sheet, *more)
+
+    monkeypatch.setattr("meshonet.formats.figure.space.painted", kept)
+    block = lattice(*[(0.0, 1.0, 3)] * 3)
+    middle = block.reshape(-1, 3).mean(axis=0)
+    sides: tuple[Side, ...] = ("south", "north", "west", "east", "bottom", "top")
+    grid = Grid((Block(block),), tuple(Patch(side, side, 0, 2, kind="wall") for side in sides))
+    draw_in_space(grid, None, View())
+    assert len(sheets) == len(sides)
+    for sheet in sheets:
+        normal = np.cross(sheet.nodes[-1, 0] - sheet.nodes[0, 0], sheet.nodes[0, -1] - sheet.nodes[0, 0])
+        assert sheet.outside * float(normal @ (middle - sheet.nodes[0, 0])) > 0.0
