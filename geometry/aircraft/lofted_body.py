@@ -100,7 +100,7 @@ class LoftedBody(Body):
     @cached_property
     def _at(self) -> Indices:
         """(n,) numbers of the points of the meridian that are at sections."""
-        return np.searchsorted(self.meridian[:, 0], self._given[:, 0])
+        return np.searchsorted(self.meridian[:, 0], self._at_sections[:, 0])
 
     @property
     def arcs(self) -> Floats:
@@ -110,22 +110,22 @@ class LoftedBody(Body):
     @property
     def width(self) -> float:
         """Largest width of a section."""
-        return 2.0 * float(self._given[:, 1].max())
+        return 2.0 * float(self._at_sections[:, 1].max())
 
     @property
     def height(self) -> float:
         """Largest height of a section."""
-        return 2.0 * float(self._given[:, 2].max())
+        return 2.0 * float(self._at_sections[:, 2].max())
 
     @cached_property
-    def _given(self) -> Floats:
+    def _at_sections(self) -> Floats:
         """x, half the width and half the height (n, 3) of sections."""
         return np.array([(section.x, *section.halves) for section in self.sections])
 
     @cached_property
     def _sizes(self) -> Floats:
         """x, half the width and half the height (3, m) at points of the meridian."""
-        return _denser(self._given).T
+        return _denser(self._at_sections).T
 
     @cached_property
     def _flatness(self) -> LimitedSpline:
@@ -135,7 +135,7 @@ class LoftedBody(Body):
 
     @cached_property
     def _middle(self) -> LimitedSpline:
-        return LimitedSpline(np.array([section.middle for section in self.sections]), self._given[:, 0])
+        return LimitedSpline(np.array([section.middle for section in self.sections]), self._at_sections[:, 0])
 
     @cached_property
     def _shapes_at(self) -> LimitedSpline:

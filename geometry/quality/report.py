@@ -177,7 +177,7 @@ class QualityReport:
             **(self.figures.blocks.as_dict() if many else {}),
             "form": grid.form,
             **_folded(self.quality),
-            "worst_cells": [_given(cell) for cell in self.worst],
+            "worst_cells": [_set_fields(cell) for cell in self.worst],
             "quality": self._metrics(),
             "walls": [_wall(row) | self._at_wall(row.name) for row in self.figures.wall_rows],
         }
@@ -251,12 +251,12 @@ def _comparison(grid: Grid, quality: Quality, reference: Grid) -> Comparison:
     return Comparison(difference, other.folded, own.max / angle.max, own.mean / angle.mean)
 
 
-def _given(of: BadCell | Spread) -> dict[str, Any]:
+def _set_fields(of: BadCell | Spread) -> dict[str, Any]:
     return {name: value for name, value in vars(of).items() if value is not None}
 
 
 def _wall(row: WallRow) -> dict[str, Any]:
-    sizes = {"first_cell": _given(row.height), "off_square": _given(row.off_square)}
+    sizes = {"first_cell": _set_fields(row.height), "off_square": _set_fields(row.off_square)}
     growth = {} if row.growth is None else {"growth": extreme_dict(row.growth)}
     return {"name": row.name, "side": row.side, **sizes, "equal_cells": row.equal_cells, **growth}
 

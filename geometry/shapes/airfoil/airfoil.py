@@ -105,8 +105,8 @@ class Airfoil:
         self.gap, self.blunt = section.gap, section.blunt
         curve, changes, self.crossing = section_curve(section, places)
         self.points_curve = curve
-        self._given = (*notes, *(swapped_note(section, places) if section.swapped else ()))
-        self.notes = tuple(dict.fromkeys((*self._given, *changes)))
+        self._file_notes = (*notes, *(swapped_note(section, places) if section.swapped else ()))
+        self.notes = tuple(dict.fromkeys((*self._file_notes, *changes)))
         self.trailing_edge = curve.points[0]
         arc = farthest_arc(curve, self.trailing_edge)
         self.leading_edge = curve.at(np.array([arc]))[0]
@@ -172,7 +172,7 @@ class Airfoil:
         from meshonet.geometry.shapes.airfoil.smooth import smooth_ring, smoothing_notes
 
         ring, most = smooth_ring(self._section, self.nose_radius, tolerance * self.chord)
-        body = Airfoil(ring, self.name, notes=self._given)
+        body = Airfoil(ring, self.name, notes=self._file_notes)
         body.notes += smoothing_notes(self, body, most)
         return body
 

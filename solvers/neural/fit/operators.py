@@ -1,7 +1,6 @@
 """Training of the paper's models: batches of geometries and of randomly drawn points."""
 
 from collections.abc import Mapping
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -25,9 +24,6 @@ from meshonet.solvers.neural.samples import Samples
 PLAN = Plan(epochs=15_000, points=(1000, 200))  # the authors' published settings
 
 HELD_OUT = 0  # datasets are small, as in the paper: all shapes outside the test split are trained on
-
-MACHINE = ("device", "compiled", "log_every", "validate_every", "checkpoint_every")
-"""Settings that a resumed run may change, because they do not affect the result."""
 
 
 class OperatorTask(ModelTask):
@@ -151,5 +147,4 @@ def run(
     else:
         task = OperatorTask(made, training, data.pick(apart), plan.points, plan.seed, team.device)
     task.samples = data
-    recipe = {key: value for key, value in asdict(plan).items() if key not in MACHINE}
-    return Run(task, {**recipe, "grids": len(rows)}, {**settings_of(made), "data": data.fingerprint()})
+    return Run(task, {**plan.recipe, "grids": len(rows)}, {**settings_of(made), "data": data.fingerprint()})

@@ -2,12 +2,14 @@
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from meshonet.geometry.errors import InputError
 
 Schedule = Literal["cosine", "step"]
 Device = Literal["auto", "cpu", "cuda"]
+MACHINE = ("device", "compiled", "log_every", "validate_every", "checkpoint_every")
+"""Settings that a resumed run may change, because they do not affect the result."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,11 @@ class Plan:
     def __post_init__(self) -> None:
         if not 0 < self.rate < 1:
             raise InputError(f"{self.rate:g} is no learning rate", "use 0 to 1, e.g. 0.001", parameter="rate")
+
+    @property
+    def recipe(self) -> dict[str, Any]:
+        """Settings that affect the result."""
+        return {key: value for key, value in vars(self).items() if key not in MACHINE}
 
     def kept(self, count: int, held_out: int, what: str) -> int:
         """Return how many of the `count` shapes, called `what` in messages, remain for training.

@@ -27,7 +27,7 @@ from meshonet.solvers.neural.quad.unrolled import TURN, rolled
 PLAN = Plan(
     epochs=24, batch=64, rate=3e-3, schedule="cosine", warm_up=200, weight_decay=1e-3, clip=1.0, device="cpu"
 )
-"""Default sizes of the network: those of the shipped model."""
+"""Default settings of the training: those of the shipped model."""
 
 HELD_OUT = 600  # domains, so that one folded grid is a fraction of 0.2 %
 

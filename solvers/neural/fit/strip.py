@@ -22,7 +22,7 @@ from meshonet.solvers.neural.strip.encoding import CHANNELS, SCALARS, decode, en
 PLAN = Plan(
     epochs=24, batch=32, rate=2e-3, schedule="cosine", warm_up=100, weight_decay=1e-4, clip=1.0, device="cpu"
 )
-"""Default sizes of the network: those of the shipped model."""
+"""Default settings of the training: those of the shipped model."""
 
 HELD_OUT = 300  # of the 6,000 shapes: 30 of them lie beyond the 90th percentile
 

@@ -28,7 +28,6 @@ from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.measure import folded_cells
 from meshonet.solvers.neural.fit.loop import Run, Task
 from meshonet.solvers.neural.fit.model_task import tensor, tensors
-from meshonet.solvers.neural.fit.operators import MACHINE
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.model_file import VOLUME, write_model
@@ -198,8 +197,7 @@ def run(
     if plan.points is None:
         raise InputError("{points} all of a volume", "give a number")
     task = VolumeTask(made, data, plan.points, plan.seed, team.device)
-    recipe = {key: value for key, value in asdict(plan).items() if key not in MACHINE}
-    return Run(task, {**recipe, "grids": len(data)}, {**asdict(made), "data": _fingerprint(data)})
+    return Run(task, {**plan.recipe, "grids": len(data)}, {**asdict(made), "data": _fingerprint(data)})
 
 
 def _fingerprint(volumes: Sequence[SixFaces]) -> str:
