@@ -29,7 +29,7 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.hyperbolic.march import hyperbolic
 from meshonet.solvers.pipeline.automatic import elliptic, fewer_on_quads
-from meshonet.solvers.pipeline.methods import method_named
+from meshonet.solvers.pipeline.named import method_named
 
 SEED = 20_000_003
 REPEAT = 3

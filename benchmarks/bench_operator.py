@@ -40,7 +40,7 @@ from meshonet.solvers.energy.variational import solve as variational
 from meshonet.solvers.pipeline.choose_method import Best
 from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.pipeline.fallback import guard
-from meshonet.solvers.pipeline.methods import method_named
+from meshonet.solvers.pipeline.named import method_named
 from meshonet.solvers.solution import Solution
 
 OURS = "**infer, default**"

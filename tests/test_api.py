@@ -17,7 +17,8 @@ from test_architecture import BLOCKED, HEAVY, ROOT, python
 import meshonet
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.solvers.pipeline.methods import METHODS, Each, method_named
+from meshonet.solvers.pipeline.methods import METHODS
+from meshonet.solvers.pipeline.named import Each, method_named
 
 if TYPE_CHECKING:
     from meshonet.geometry.blocks.grid import Grid

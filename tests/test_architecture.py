@@ -257,7 +257,8 @@ def test_choices_of_options_are_those_of_the_library() -> None:
     ("command", "column", "more"), [("tfi", "algebraic", []), ("solve-pde", "solves", ["auto"])]
 )
 def test_commands_offer_every_method_of_theirs(command: str, column: str, more: list[str]) -> None:
-    from meshonet.solvers.pipeline.methods import METHODS, method_named
+    from meshonet.solvers.pipeline.methods import METHODS
+    from meshonet.solvers.pipeline.named import method_named
     from meshonet_cli.app import application
 
     (option,) = (each for each in application().commands[command].params if each.name == "method")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from yardstick import networks
 from yardstick.files import read_boundaries, read_grids, read_plot3d, write_boundaries, write_grids
 from yardstick.judge import judge, summary
 from yardstick.networks import OPERATORS, PHYSICS, answered, trained
@@ -19,6 +20,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.measure import measure
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.neural.models.architectures import ARCHITECTURES
+from meshonet_cli.app import run
 
 FOLDER = Path(__file__).parents[1] / "benchmarks"
 PROGRAM = """
@@ -146,8 +148,23 @@ def test_every_network_that_has_entered_can_be_trained_and_has_its_rows() -> Non
     assert page.endswith(TAIL)
 
 
-def test_networks_are_trained_and_asked_for_the_shapes_of_a_file(tmp_path: Path) -> None:
+def in_this_process(*words: object, codes: tuple[int, ...] = (0,)) -> None:
+    """As `networks.meshonet`, without the start of Python and torch for each command."""
+    assert run([*map(str, words), "-q"]) in codes, words
+
+
+def test_a_command_that_fails_is_an_error_of_the_comparison(tmp_path: Path) -> None:
+    networks.meshonet("tfi", "naca:0012", "--res", "9x5", "-o", tmp_path / "grid.h5")
+    assert (tmp_path / "grid.h5").exists()
+    with pytest.raises(subprocess.CalledProcessError):
+        networks.meshonet("tfi", tmp_path / "missing.h5", "-o", tmp_path / "grid.h5", codes=(0, 3))
+
+
+def test_networks_are_trained_and_asked_for_the_shapes_of_a_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pytest.importorskip("torch")
+    monkeypatch.setattr(networks, "meshonet", in_this_process)
     drawn = list(shapes("wavy", 1, 2, 17, 17))
     write_boundaries(tmp_path / "wavy.h5", drawn)
     network = trained(tmp_path / "trained", "quad", "pod-deeponet", shapes=6, epochs=1)

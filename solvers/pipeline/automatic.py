@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.pipeline.methods import OneByOne, method_named, solved
+from meshonet.solvers.pipeline.methods import OneByOne
+from meshonet.solvers.pipeline.named import method_named, solved
 from meshonet.solvers.pipeline.wrapper import Wrapper
 from meshonet.solvers.solution import Solution
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.first_cell import check_height
-from meshonet.solvers.pipeline.methods import METHODS, method_named
+from meshonet.solvers.pipeline.methods import METHODS
 
 if TYPE_CHECKING:
     from meshonet.solvers.pipeline.request import GridRequest
@@ -18,6 +18,8 @@ LIMITS = {"tol": (0.0, 1.0, "1e-8")}
 def check_request(request: GridRequest) -> None:
     """Raise InputError for a value out of range, or for options that need or exclude each other."""
     if request.method not in ("best", "auto") and request.method.partition(":")[0] not in METHODS:
+        from meshonet.solvers.pipeline.named import method_named
+
         method_named(request.method)  # which says what there is
     _check_first_cells(request)
     if request.wall_angle is not None and request.method != "steger-sorenson":

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from meshonet.geometry.arrays import TOPOLOGIES
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.solvers.pipeline.methods import OneByOne, UnknownSettingError, method_named
+from meshonet.solvers.pipeline.methods import OneByOne
 from meshonet.solvers.pipeline.request import OneBlock
 from meshonet.solvers.solution import Solution
 
@@ -46,13 +46,17 @@ def _base(request: OneBlock) -> Method:
 
     A network is used only if it is requested by name or settings.
     """
-    if request.by_network or request.method == "best":
-        if ":" in request.method or set(NETWORK_SETTINGS).intersection(request.chosen):
-            return method_named(request.method if request.by_network else "operator", **request.settings)
-        for setting in request.settings:
-            if setting not in (*NETWORK_SETTINGS, "answer"):
-                raise UnknownSettingError("operator", setting)
+    best = request.by_network or request.method == "best"
+    asked = ":" in request.method or not set(NETWORK_SETTINGS).isdisjoint(request.chosen)
+    if best and not asked and {*NETWORK_SETTINGS, "answer"}.issuperset(request.settings):
         return Best()
+    from meshonet.solvers.pipeline.named import UnknownSettingError, method_named
+
+    if best and asked:
+        return method_named(request.method if request.by_network else "operator", **request.settings)
+    if best:
+        wrong = next(each for each in request.settings if each not in (*NETWORK_SETTINGS, "answer"))
+        raise UnknownSettingError("operator", wrong)
     if request.method == "auto":
         return method_named("winslow", **request.settings)
     if request.method == "hyperbolic":  # whose settings are the first cells
@@ -102,6 +106,7 @@ class Best(OneByOne):
         """Return the solution of a boundary; only the variational method uses an initial grid."""
         if boundary.topology != "o":
             from meshonet.solvers.pipeline.automatic import AroundWake, Fewer
+            from meshonet.solvers.pipeline.named import method_named
         if boundary.topology == "quad":
             return Fewer(method_named("variational")).solve_one(boundary, start)
         if boundary.topology == "c":

@@ -12,7 +12,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import NoValidGridError, SolverError
 from meshonet.geometry.quality.bad_cell import BadCell
 from meshonet.geometry.quality.measure import count_folded, worst_cells
-from meshonet.solvers.pipeline.methods import method_named
+from meshonet.solvers.pipeline.named import method_named
 from meshonet.solvers.solution import Outcome, Solution
 
 if TYPE_CHECKING:

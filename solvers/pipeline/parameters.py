@@ -6,7 +6,7 @@ from typing import Any
 from meshonet.geometry.errors import meant
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.choose_method import method_of
-from meshonet.solvers.pipeline.methods import UnknownSettingError
+from meshonet.solvers.pipeline.named import UnknownSettingError
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.uses import COUNTED, Counts, counted
 

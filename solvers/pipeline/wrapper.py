@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.solvers.pipeline.methods import OneByOne, solved
+from meshonet.solvers.pipeline.methods import OneByOne
+from meshonet.solvers.pipeline.named import solved
 from meshonet.solvers.solution import Solution
 
 if TYPE_CHECKING:

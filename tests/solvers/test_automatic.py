@@ -8,7 +8,7 @@ from solver_shapes import arch, folded, hole
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.pipeline.automatic import fewer_on_quads
-from meshonet.solvers.pipeline.methods import Each
+from meshonet.solvers.pipeline.named import Each
 from meshonet.solvers.solution import Solution
 
 

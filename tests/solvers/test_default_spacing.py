@@ -10,7 +10,7 @@ from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.hyperbolic.default_spacing import GROWTH, MOST, PART, first_cell, march_by_default
 from meshonet.solvers.pipeline.automatic import elliptic, fewer_on_quads
-from meshonet.solvers.pipeline.methods import method_named
+from meshonet.solvers.pipeline.named import method_named
 
 
 @pytest.mark.parametrize(("section", "te"), [("0012", "wedge"), ("4415", "wedge"), ("23012", "wedge")])

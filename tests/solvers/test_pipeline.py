@@ -10,7 +10,8 @@ from meshonet.solvers.algebraic.tfi import solve as interpolate
 from meshonet.solvers.pipeline.coarse import Coarse
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.pipeline.make_grid import make_grid, make_grids
-from meshonet.solvers.pipeline.methods import METHODS, Each, method_named
+from meshonet.solvers.pipeline.methods import METHODS
+from meshonet.solvers.pipeline.named import Each, method_named
 from meshonet.solvers.pipeline.parameters import grid_request
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.sequence import Sequenced

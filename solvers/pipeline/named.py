@@ -1,0 +1,100 @@
+"""Methods by their names, with settings: functions of one boundary, or classes of their own."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING, Any
+
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.pipeline.methods import METHODS, OneByOne
+
+if TYPE_CHECKING:
+    from meshonet.geometry.blocks.boundary import Boundary
+    from meshonet.geometry.blocks.grid import Grid
+    from meshonet.solvers.pipeline.methods import Method
+    from meshonet.solvers.solution import Solution
+
+
+def solved(method: Method, boundary: Boundary, start: Grid | None) -> Solution:
+    """Return the solution of one boundary by `method`."""
+    return method.solve([boundary], None if start is None else [start])[0]
+
+
+@dataclass(frozen=True)
+class Each(OneByOne):
+    """A method that is a function of one boundary.
+
+    Raises InputError: a setting that the function does not have.
+    """
+
+    name: str  # in `METHODS`
+    # a function of a boundary, its settings and perhaps ``initial``, a grid to start from; or ``module:name``
+    # of one, which is loaded when it is needed
+    target: str | Callable[..., Solution]
+    settings: Mapping[str, Any] = field(default_factory=dict)  # keywords of the function
+
+    def __post_init__(self) -> None:
+        if self.settings:
+            _check_settings(self.name, self.function, self.settings)
+
+    @property
+    def function(self) -> Callable[..., Solution]:
+        """The function."""
+        return resolve_name(self.target) if isinstance(self.target, str) else self.target
+
+    def takes(self, setting: str) -> bool:
+        """Return whether the function has this keyword."""
+        return setting in inspect.signature(self.function).parameters
+
+    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
+        """Return the function's solution of a boundary.
+
+        `start` is used if the function accepts an initial grid.
+        """
+        more = {"initial": start} if start is not None and self.takes("initial") else {}
+        return self.function(boundary, **self.settings, **more)
+
+    def having(self, **settings: Any) -> Each:
+        """Return the method with additional settings."""
+        return replace(self, settings={**self.settings, **settings})
+
+
+class UnknownSettingError(InputError):
+    """A setting that a method does not have."""
+
+    def __init__(self, method: str, setting: str) -> None:
+        super().__init__(f"method {method} has no {{{setting}}}", f"leave {{{setting}}} out")
+        self.setting = setting
+
+
+def _check_settings(name: str, function: Callable[..., Any], settings: Mapping[str, Any]) -> None:
+    """Raise InputError for a setting that is not a parameter of `function`, the method `name`."""
+    known = inspect.signature(function).parameters
+    for setting in settings:
+        if setting not in known:
+            raise UnknownSettingError(name, setting)
+
+
+def method_named(name: str, **settings: Any) -> Method:
+    """Return the method with the given name and settings.
+
+    Raises InputError: an unknown method; a setting that the method does not have.
+
+    >>> method_named("winslow", tol=1e-8).settings
+    {'tol': 1e-08}
+    """
+    base, _, model = name.partition(":")
+    if base not in METHODS or (model and base != "operator"):
+        known = "use one of " + ", ".join(METHODS)
+        raise InputError(f"method {name!r} is not known", known, parameter="method")
+    row = METHODS[base]
+    if not row.is_class:
+        return Each(base, row.target, settings)
+    target = resolve_name(row.target)
+    settings |= {"model": model} if model else {}
+    _check_settings(base, target, settings)
+    method: Method = target(**settings)
+    return method
