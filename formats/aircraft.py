@@ -41,7 +41,6 @@ from pathlib import Path
 
 import numpy as np
 
-from meshonet.formats.aircraft_surface import surface_body, surface_wing
 from meshonet.formats.fin_table import fin_of, fin_table
 from meshonet.formats.rows.points import point_blocks
 from meshonet.formats.source import Source, open_source, printable
@@ -71,6 +70,8 @@ def read_aircraft(data: Table, source: Source) -> Aircraft:
         raise bodies[1].error("name", "a second one of bodies", "give one body")
     axes, notes = FILE_AXES, tuple[str, ...]()
     if "surface" in bodies[0].data:
+        from meshonet.formats.aircraft_surface import surface_body  # which few aircraft need
+
         body, axes, notes = surface_body(bodies[0], folder)
     else:
         body = _body(bodies[0], folder)
@@ -130,6 +131,8 @@ def _wing(row: Table, folder: Path, body: Body, axes: AircraftAxes, fins: list[s
     if on != body.name:
         raise row.error("on", f"{printable(on)} is no body", f"use {body.name}")
     if "surface" in row.data:
+        from meshonet.formats.aircraft_surface import surface_wing
+
         return surface_wing(row, folder, axes)
     fin = "plane" in row.data
     if fin:

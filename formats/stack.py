@@ -30,17 +30,20 @@ With ``kind = "row"`` it is a row of blades (`meshonet.formats.rows.read`), with
 with wings (`meshonet.formats.aircraft`).
 """
 
-from pathlib import Path
+from __future__ import annotations
 
-from meshonet.formats.aircraft import read_aircraft
-from meshonet.formats.rows.read import read_row
+from pathlib import Path
+from typing import TYPE_CHECKING
+
 from meshonet.formats.source import Source, open_source
 from meshonet.formats.stack_table import stack_table
 from meshonet.formats.toml_table import toml_table
-from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.errors import in_source
-from meshonet.geometry.rows.row import Row
 from meshonet.geometry.sections.stack import KINDS, Stack
+
+if TYPE_CHECKING:
+    from meshonet.geometry.aircraft.aircraft import Aircraft
+    from meshonet.geometry.rows.row import Row
 
 
 def stack_of(text: str) -> Stack | Row | Aircraft:
@@ -58,8 +61,12 @@ def read_stack(source: Source) -> Stack | Row | Aircraft:
         data = toml_table(source)
         kind = data.word("kind", (*KINDS, "row", "aircraft"), "wing")
         if kind == "row":
+            from meshonet.formats.rows.read import read_row  # which wings do not need, nor aircraft
+
             return read_row(data, source)
         if kind == "aircraft":
+            from meshonet.formats.aircraft import read_aircraft
+
             return read_aircraft(data, source)
         for key, what in (("blades", "row"), ("bodies", "aircraft")):
             if "kind" not in data.data and key in data.data:

@@ -18,6 +18,7 @@ import pytest
 from command_pages import reference
 
 from meshonet import __version__
+from meshonet.geometry.blocks.grid import Grid
 from meshonet_cli.commands import COMMANDS
 from meshonet_cli.options.sampling import TopologyName
 
@@ -76,6 +77,35 @@ def test_the_main_job_does_not_grow(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     )
     assert len(found) <= 112
     assert sum(map(len, found.values())) <= 500
+
+
+WING = "".join(f'[[sections]]\nairfoil = "naca:0012"\nchord = 1\nz = {z}\n' for z in (0, 1))
+
+
+@pytest.mark.parametrize(
+    ("words", "others"),
+    [
+        (
+            "stack wing.toml --around 33 --span 7 --layers 12 -o wing.cgns",
+            "geometry.aircraft geometry.rows solvers.aircraft solvers.rows.row_grid solvers.sweeping.sweep "
+            "formats.aircraft formats.rows geometry.quality.gates",
+        ),
+        ("quality grid.vts", "geometry.quality.periodic"),
+        ("plot grid.vts -o grid.png", "geometry.quality.figures geometry.domain"),
+        ("infer naca:0012 --first-cell 1e-3 --res 61x41 -o a.cgns", "geometry.domain geometry.layout"),
+    ],
+    ids=["stack of a wing", "quality", "plot", "infer with layers"],
+)
+def test_a_command_loads_no_modules_of_other_shapes(tmp_path: Path, words: str, others: str) -> None:
+    (tmp_path / "wing.toml").write_text(WING)
+    Grid.from_nodes(np.stack(np.meshgrid(*[np.arange(4.0)] * 2, indexing="ij"), axis=-1)).write(
+        tmp_path / "grid.vts"
+    )
+    code = "import sys; from meshonet_cli.app import run; assert run(sys.argv[1:]) == 0; print(*sys.modules)"
+    done = python(code, *words.split(), cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    names = tuple(f"meshonet.{name}" for name in others.split())
+    assert not [name for name in done.stdout.split() if name.startswith(names)]
 
 
 def test_the_block_blocks() -> None:

@@ -11,7 +11,6 @@ from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, meant
 from meshonet.geometry.polygon.area import check_extent
-from meshonet.geometry.quality.figures import COUNTS, FIGURES
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import ALL_NAMES, FACE_NAMES, LINE_METRIC, metric_of
 
@@ -43,7 +42,7 @@ class Picture(View):
     metric: str | None = "max_angle"
 
     def __post_init__(self) -> None:
-        if self.metric in (*COUNTS, *FIGURES) and self.metric not in DRAWN:
+        if self.metric in _RELATED:
             remedy = f"draw {_RELATED[self.metric]}"
             raise InputError(f"{self.metric} is one figure of the whole grid", remedy, parameter="metric")
         if self.metric not in (*DRAWN, None):

@@ -1,13 +1,18 @@
 """Quadrilaterals and index directions of structured arrays of nodes."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, cross2, ring_of
-from meshonet.geometry.layout.layout import Layout
 from meshonet.kernels._native import smallest_corners
+
+if TYPE_CHECKING:
+    from meshonet.geometry.layout.layout import Layout
 
 
 def corner_jacobians(corners: Floats) -> Floats:

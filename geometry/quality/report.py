@@ -1,9 +1,11 @@
 """The quality report of a grid: metrics, walls, profiles, and the distance from a reference grid."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import spelled
@@ -14,12 +16,14 @@ from meshonet.geometry.quality.figures import Figure, Figures
 from meshonet.geometry.quality.gates import Gate, Judgement, beyond, parse_gate
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.measure import measure, worst_cells_of
-from meshonet.geometry.quality.periodic import periods
 from meshonet.geometry.quality.profiles import CheckResult, ProfileReport, profile_report
 from meshonet.geometry.quality.wall_skewness import skewness_at
 from meshonet.geometry.quality.wall_y_plus import Flow, YPlus, y_plus_at
 from meshonet.geometry.quality.walls import Spread, WallRow
 from meshonet.geometry.summary import Quality
+
+if TYPE_CHECKING:
+    from meshonet.geometry.quality.periodic import Period
 
 COMPARED = (
     "relative_l2", "near_wall", "max", "boundary", "folded_other", "max_angle_ratio", "mean_angle_ratio",
@@ -94,6 +98,15 @@ class QualityReport:
         """Skewness of the cells at each wall of a volume, by name."""
         return skewness_at(self.grid, self.figures.walls) if self.grid.form == "volume" else {}
 
+    @cached_property
+    def periods(self) -> tuple[Period, ...]:
+        """The different periods of the grid."""
+        if all(connection.transform is None for connection in self.grid.connections):
+            return ()
+        from meshonet.geometry.quality.periodic import periods
+
+        return periods(self.grid)
+
     def __repr__(self) -> str:
         angle = self.quality["max_angle"].max if "max_angle" in self.quality.metrics else None
         parts = [f"{self.quality.cells} cells", f"{self.quality.folded} folded"]
@@ -103,7 +116,7 @@ class QualityReport:
         )
         return f"<QualityReport: {', '.join(parts)}>"
 
-    def under(self, gates: Gates) -> "QualityReport":
+    def under(self, gates: Gates) -> QualityReport:
         """Return the report; where `gates` limit a metric, they replace the profile's limits on it."""
         return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
@@ -182,8 +195,8 @@ class QualityReport:
             "walls": [_wall(row) | self._at_wall(row.name) for row in self.figures.wall_rows],
         }
         along = {"xi": growth.xi, "eta": growth.eta} | growth.families()
-        if rows := periods(grid):
-            facts["periodic"] = [vars(row) for row in rows]
+        if self.periods:
+            facts["periodic"] = [vars(period) for period in self.periods]
         facts["growth"] = {name: extreme_dict(extreme) for name, extreme in along.items()}
         if self.profile:
             facts["profile"] = profile_dict(self.profile)

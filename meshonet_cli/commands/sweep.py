@@ -108,7 +108,7 @@ def sweep(
     from meshonet.geometry.blocks.revolve import revolution
     from meshonet.geometry.errors import InputError
     from meshonet.solvers.sweeping.sweep import Sweep
-    from meshonet_cli.tasks.volumes import write_sweeps
+    from meshonet_cli.tasks.sweeps import write_sweeps
 
     turn = revolution(revolve, planes, o.axis_of(axis))
     outlines, path = (names, turn) if turn else (names[:-1], names[-1])

@@ -1,8 +1,10 @@
 """Report of the quality of a grid."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.bad_cell import BadCell, centre_of
@@ -11,7 +13,6 @@ from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import Judgement, verdict_word
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.metrics import metrics_of
-from meshonet.geometry.quality.periodic import Period, periods
 from meshonet.geometry.quality.profiles import CheckResult, Limit, ProfileReport
 from meshonet.geometry.quality.report import Comparison, QualityReport
 from meshonet.geometry.quality.wall_y_plus import Flow, YPlus
@@ -20,6 +21,9 @@ from meshonet.geometry.summary import Quality, named
 from meshonet_cli.report.timed import Timed
 from meshonet_cli.terminal.summary import MemberRow, figures, gates_not_met
 from meshonet_cli.terminal.text import aligned, figure
+
+if TYPE_CHECKING:
+    from meshonet.geometry.quality.periodic import Period
 
 _PLACES = {2: "i, j", 3: "block, i, j", 4: "block, i, j, k"}
 """Names of indices, by their number."""
@@ -67,7 +71,7 @@ class Measured(Timed):
             rows.append(skewness_table(grid, report.wall_skewness))
         if report.flow and report.y_plus:
             rows.append(y_plus_table(report.flow, report.y_plus))
-        rows += [_period_line(row) for row in periods(grid)]
+        rows += [_period_line(row) for row in report.periods]
         if report.profile or not many:
             rows.append(growth_table(report.figures))
         if many:

@@ -10,7 +10,6 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import NoValidGridError, SolverError
-from meshonet.geometry.quality.bad_cell import BadCell
 from meshonet.geometry.quality.measure import count_folded, worst_cells
 from meshonet.solvers.pipeline.named import method_named
 from meshonet.solvers.solution import Outcome, Solution
@@ -90,6 +89,8 @@ def _open_corner(grid: Grid) -> NoValidGridError | None:
             at = grid.nodes[i, j]
             (ux, uy), (vx, vy) = grid.nodes[i + di, j] - at, grid.nodes[i, j + dj] - at
             if di * dj * (ux * vy - uy * vx) <= 0:
+                from meshonet.geometry.quality.bad_cell import BadCell
+
                 x, y = (float(value) for value in at)
                 problem = f"the boundary's corner at ({x:.6g}, {y:.6g}) opens by 180 degrees or more"
                 cell = BadCell(min(i, grid.ni - 2), min(j, grid.nj - 2), x, y)

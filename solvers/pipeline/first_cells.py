@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from meshonet.geometry.arrays import SIDES, Side
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.shapes.domain_shape import DomainShape, convex_corners, four_sided
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.first_cell import FirstCell, check_names
 from meshonet.solvers.layers.first_cells import Heights
@@ -126,6 +125,8 @@ def names_of_sides(shape: Shape) -> list[list[str]]:
     """Return the names along each of the four sides, if the shape is one block by default; else no names."""
     if isinstance(shape, Boundary):
         return [] if shape.around_body else [[p.name for p in shape.patches if p.side == s] for s in SIDES]
+    from meshonet.geometry.shapes.domain_shape import DomainShape, convex_corners, four_sided
+
     if not isinstance(shape, DomainShape) or shape.many or not four_sided(shape.domain):
         return []
     loop = shape.domain.loops[0]

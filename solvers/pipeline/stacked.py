@@ -1,22 +1,19 @@
 """Selects the kind of grid for sections: around a wing, a blade or an aircraft, in a duct or a blade row."""
 
-from typing import Any, TypeAlias
+from __future__ import annotations
 
-from meshonet.geometry.aircraft.aircraft import Aircraft
+from typing import TYPE_CHECKING, Any, TypeAlias
+
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.wall_surface import wall_surface
-from meshonet.geometry.rows.row import Row
 from meshonet.geometry.sections.stack import Stack, Tip
-from meshonet.solvers.aircraft.request import aircraft_request
 from meshonet.solvers.keywords import refuse_given
-from meshonet.solvers.pipeline.aircraft import make_aircraft
 from meshonet.solvers.pipeline.result import Result
-from meshonet.solvers.pipeline.rows import make_row
-from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
-from meshonet.solvers.rows.request import row_request
-from meshonet.solvers.stacking.request import stack_request
 
-Sections: TypeAlias = Stack | Row | Aircraft
+if TYPE_CHECKING:
+    from meshonet.geometry.aircraft.aircraft import Aircraft
+    from meshonet.geometry.rows.row import Row
+
+Sections: TypeAlias = "Stack | Row | Aircraft"
 """Inputs of `meshonet stack`."""
 
 
@@ -27,6 +24,8 @@ def with_tip(what: Sections, tip: Tip | None, *, surface: bool = False) -> Secti
     """
     if isinstance(what, Stack):
         return what.with_tip(tip)
+    from meshonet.geometry.rows.row import Row
+
     name = "a row" if isinstance(what, Row) else "an aircraft"
     refuse_given(name, {"tip": tip, "surface": surface and isinstance(what, Row)})
     return what
@@ -40,7 +39,14 @@ def stacked_surface(what: Stack | Aircraft, **parameters: Any) -> tuple[Grid, tu
     Raises InputError: see `stack_surface` and `make_aircraft`. Raises NoValidGridError: see `make_aircraft`.
     """
     if isinstance(what, Stack):
+        from meshonet.solvers.pipeline.stacks import stack_surface
+        from meshonet.solvers.stacking.request import stack_request
+
         return stack_surface(what, stack_request(**parameters))
+    from meshonet.geometry.blocks.wall_surface import wall_surface
+    from meshonet.solvers.aircraft.request import aircraft_request
+    from meshonet.solvers.pipeline.aircraft import make_aircraft
+
     solution = make_aircraft(what, aircraft_request(**parameters)).solution
     return wall_surface(solution.grid), solution.notes
 
@@ -53,8 +59,19 @@ def make_stacked(what: Sections, **parameters: Any) -> Result:
     Raises InputError: a parameter that the request does not have; see also `make_stack`, `make_row` and
     `make_aircraft`. Raises NoValidGridError: see these functions.
     """
-    if isinstance(what, Aircraft):
-        return make_aircraft(what, aircraft_request(**parameters))
+    if isinstance(what, Stack):
+        from meshonet.solvers.pipeline.stacks import make_stack
+        from meshonet.solvers.stacking.request import stack_request
+
+        return make_stack(what, stack_request(**parameters))
+    from meshonet.geometry.rows.row import Row
+
     if isinstance(what, Row):
+        from meshonet.solvers.pipeline.rows import make_row
+        from meshonet.solvers.rows.request import row_request
+
         return make_row(what, row_request(**parameters))
-    return make_stack(what, stack_request(**parameters))
+    from meshonet.solvers.aircraft.request import aircraft_request
+    from meshonet.solvers.pipeline.aircraft import make_aircraft
+
+    return make_aircraft(what, aircraft_request(**parameters))
