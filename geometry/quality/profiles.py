@@ -85,7 +85,7 @@ class CheckResult:
         return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":
-        """Return the outcome with limits replaced by those of `gates` on the same figure, if any."""
+        """Return the outcome; if any `gates` limit the same figure, their limits replace its limits."""
         compare = self.check.limits[0].compare
         own = [gate for gate in gates if gate.replaces(self.check.figure, compare)]
         limits = tuple(Limit("fail", gate.compare, gate.limit) for gate in own)
@@ -112,7 +112,7 @@ class ProfileReport:
         return all(result.verdict != "fail" for result in self.results)
 
     def under(self, gates: Sequence[Gate]) -> "ProfileReport":
-        """Return the report with limits replaced by those of `gates` on the same figures."""
+        """Return the report; the limits of `gates` replace the profiles' limits on the same figures."""
         return replace(self, results=_once(result.under(gates) for result in self.results))
 
     def replaced(self) -> list[str]:

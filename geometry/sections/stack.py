@@ -144,7 +144,7 @@ class Stack:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the points and files of the sections, and on the thickness of steep panels."""
+        """Notes on the points and files of the sections, and on panels that are thin because steep."""
         notes = [note for section in self.sections for note in section.shape.notes]
         return tuple(dict.fromkeys([*notes, *filter(None, [self.steep])]))
 

@@ -61,7 +61,7 @@ class _Edge(NamedTuple):
 
 
 def with_bases(patches: Sequence[Floats]) -> tuple[list[Floats], list[int], tuple[str, ...]]:
-    """Return the patches and the bases that close open trailing edges, a patch index for each, and notes.
+    """Return the patches and bases for open trailing edges, the patch index of each of them, and notes.
 
     `patches` are (ni, nj, 3). The index of a base is that of the patch on its upper side.
 

@@ -47,9 +47,9 @@ def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
 def rings(quads: Indices, twin: Indices, nodes: int) -> tuple[Indices, Indices]:
     """Return the neighbours (n, w) of each node in order around it, padded with -1, and their number (n,).
 
-    All quadrilaterals must be oriented alike. Inside the surface the neighbours form a closed ring. At a node
-    on an open edge they begin and end with the neighbours along open edges: there is one more than there are
-    quadrilaterals.
+    All quadrilaterals must have the same orientation. Inside the surface the neighbours form a closed ring.
+    At a node on an open edge they begin and end with the neighbours along open edges: there is one more than
+    there are quadrilaterals.
     """
     first, last = ends_of(quads)
     edges = np.arange(len(first))

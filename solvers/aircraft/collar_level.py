@@ -124,7 +124,7 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> tuple[CollarPlan, list[CollarLevel]]:
-    """Return the plan for the collars of a wing on some levels, and the collars.
+    """Return the plan for the collars of a wing on some levels, and the collars themselves.
 
     `holes` are its sections on these levels, beginning at the root. At first, the plan has only few cells
     above and below the collars.

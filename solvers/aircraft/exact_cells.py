@@ -36,7 +36,7 @@ def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Flo
 
 
 def between_walls(walls: tuple[Floats, Floats], beside: Floats, first: float) -> Floats:
-    """Return the points (n, 3) at the distance `first` from the points of both `walls`, (n, 3) each.
+    """Return points (n, 3) at the distance `first` from the corresponding points (n, 3) of two `walls`.
 
     Of all such points, those nearest to `beside` (n, 3) are returned. The two points on the walls must be at
     most twice `first` apart.

@@ -131,7 +131,7 @@ class _HighModes:
         return np.concatenate([k, -k]), modes
 
     def bands(self, depth: Floats) -> Iterator[tuple[slice, Complexes, Complexes]]:
-        """Yield slices of `depth`, from the wall outwards, each with its modes (levels, m) not negligible."""
+        """Yield slices of `depth`, from the wall outwards, and the modes (levels, m) that are felt there."""
         start = 0
         for count, some in self.felt(depth):
             if count > start:
@@ -142,9 +142,9 @@ class _HighModes:
                 start = count
 
     def felt(self, depth: Floats) -> list[tuple[int, int]]:
-        """Return, for each octave of modes, on how many levels it is not negligible, and its last mode.
+        """Return, for each octave of modes, on how many levels it is felt, and the end of its range of modes.
 
-        The highest octave comes first. `depth` ascends; an octave is negligible on all deeper levels.
+        The highest octave comes first. `depth` ascends; an octave is negligible, not felt, on deeper levels.
         """
         octaves: list[tuple[int, int]] = []
         strength = modulus(self.ahead) + modulus(self.behind[::-1])

@@ -17,7 +17,7 @@ _NOTHING = 1.0, 0.05, 0.1
 
 @dataclass(frozen=True)
 class PlaneMeasures:
-    """Folded cells, and the measures that must not become worse; a smaller score is better."""
+    """The number of folded cells, and measures that must not become worse; a smaller `score` is better."""
 
     folded: int
     angle: float

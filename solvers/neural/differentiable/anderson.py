@@ -63,7 +63,7 @@ class _Past:
         return few
 
     def after(self, x: Tensor, change: Tensor) -> Tensor:
-        """Return the values after `x`: those at which a linear model of the steps predicts the least step.
+        """Return the values after `x`: those from which a linear model predicts the smallest step.
 
         `change` is the plain step from `x`. The linear model is fitted to the most recent steps.
         """

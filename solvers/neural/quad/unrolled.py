@@ -72,7 +72,7 @@ def even(strips: Any, n: int, xp: Any = np) -> Any:
 
 
 def factors(strips: Any, xp: Any = np) -> Any:
-    """Return the factor (batch,) by which half a period of each strip (batch, m + 1, n) gets the area 1."""
+    """Return the factors (batch,) that scale half a period of each strip (batch, m + 1, n) to the area 1."""
     heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
     return 1.0 / xp.sqrt(0.5 * TURN * heights)
 
