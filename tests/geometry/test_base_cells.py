@@ -81,6 +81,7 @@ def test_a_wide_base_has_enough_cells_of_the_size_of_its_neighbours() -> None:
             "half of a base of 61 nodes has 30 cells, and refine needs a multiple of 4; use 57 or 65",
         ),
         ("0012", Sampling(41, base_nodes=43), "43 of 41 nodes on the base .*; use at most 37"),
+        ("0012", Sampling(9, spacing="curvature", refined=8), "17 of 9 nodes on .*; use a finer res"),
     ],
 )
 def test_bases_that_cannot_be_had_are_refused(name: str, sampling: Sampling, told: str) -> None:

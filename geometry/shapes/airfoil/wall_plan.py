@@ -159,6 +159,9 @@ def _plan(body: Airfoil, cells: int, sampling: Sampling) -> WallCells:
             nodes = sampling.base_nodes
             half_cells = half_of_base(cells, nodes, sampling) if nodes else 0
             half, step = _whole_base(body.half_base, step, half_cells, half, sampling.corner_steps(cells))
+            if cells < 2 * half + 4:
+                problem = f"{2 * half + 1} of {cells + 1} nodes on the base leave too few for the sides"
+                raise InputError(problem, "use a finer {res}")
         if body.base_is_round and not wanted_te and half < min(_ROUND_CELLS, cells // 16):
             half = min(_ROUND_CELLS, cells // 16)
             step = body.half_base / half
