@@ -134,7 +134,9 @@ def check_names(names: Iterable[str], known: Iterable[str], parameter: str) -> N
     known = tuple(known)
     for name in names:
         if name not in known:
-            raise InputError(f"there is no wall {name!r}", "use " + ", ".join(known), parameter=parameter)
+            only = "; a curve that is alone in its file is the wall body" if "body" in known else ""
+            remedy = f"use {', '.join(known)}{only}"
+            raise InputError(f"there is no wall {name!r}", remedy, parameter=parameter)
 
 
 def check_height(height: float, parameter: str) -> None:

@@ -46,7 +46,8 @@ def stack(
     )] = None,
     span: Annotated[int | None, _sampling(
         "--span", metavar="N",
-        help="Number of nodes along z, from the first to the last section. [default: 49]",
+        help="Number of nodes along z, from the first to the last section. [default: 49; in ducts and "
+        "blades as many more as unevenly spaced sections need]",
     )] = None,
     base: Annotated[float | None, _sampling(
         "--base", metavar="H",
@@ -87,12 +88,14 @@ def stack(
     layers: o.Layers = None,
     first_cell: Annotated[float | None, _layer(
         "--first-cell", "--wall-spacing", metavar="H",
-        help="Height of the first cell at every wall node, in units of the longest chord. [default: 0.001]",
+        help="Height of the first cell at every wall node, in units of the longest chord; in ducts "
+        "in the unit of the file. [default: 0.001; in ducts about that of cells in the middle]",
     )] = None,
     y_plus: o.YPlus = None,
     reynolds: Annotated[float | None, _layer(
         "--reynolds", metavar="RE",
-        help="Reynolds number for --y-plus, based on the longest chord or on --length.",
+        help="Reynolds number for --y-plus, based on the longest chord (in ducts the widest "
+        "section) or on --length.",
     )] = None,
     length: o.Length = None,
     growth: Annotated[float | None, _layer(

@@ -5,10 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from meshonet.geometry.arrays import complex_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import may_be_wall
 from meshonet.geometry.blocks.vertices import vertices
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.elementary import angle
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.quality.lines import lines
 from meshonet.geometry.quality.walls import wall_rows
@@ -58,9 +60,12 @@ def sharp_edge_notes(layout: Layout) -> list[str]:
         if has_sharp_edge(loop):
             x, y = edge = loop.at(loop.corner_arcs[:1])[0]
             node = int(np.argmin(np.hypot(*(mesh.nodes - edge).T)))
-            angle = loop.corner_angles[0] / (mesh.quads == node).sum()
-            if angle > WIDEST:
+            there = mesh.quads[(mesh.quads == node).any(axis=1)]
+            if loop.corner_angles[0] / len(there) > WIDEST:
+                z = complex_of(mesh.nodes[there])
+                angles = angle((np.roll(z, 1, axis=1) - z) / (np.roll(z, -1, axis=1) - z))
                 at = f"the sharp edge of {loop.names[0]}, ({x:.6g}, {y:.6g}),"
-                has = f"have angles of {angle:.0f} degrees"
-                notes.append(f"cells at {at} {has}: {BLUNT} makes it blunt")
+                has = f"have angles of {np.degrees(angles.max()):.1f} degrees"
+                check = "checkMesh of OpenFOAM can find them skew"
+                notes.append(f"cells at {at} {has}, and {check}: {BLUNT} makes it blunt")
     return notes

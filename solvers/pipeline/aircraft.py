@@ -28,6 +28,7 @@ def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) ->
     """
     request = request or aircraft_request()
     seconds: dict[str, float] = {}
+    request.check_far_field()
     sizes = aircraft_dimensions(aircraft, request.height(), request.far_field)
     _refuse_thick_cells(aircraft, sizes.first_cell)
     _refuse_far_tip(aircraft, sizes.far_field)

@@ -26,14 +26,17 @@ from meshonet.geometry.spacing.growth import cells_for_growth
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.pipeline.wall_facts import wall_facts
+from meshonet.solvers.stacking.axis_heights import axis_heights
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.section_nodes import around, unit_nodes
-from meshonet.solvers.stacking.span_heights import span_heights
 from meshonet.solvers.sweeping import butterfly
 
 _FADE = 4.0
 """Distance from a blade, in chords, at which its twist and scaling are reduced to one third."""
 _CENTRE = np.array([0.5, 0.0])  # of the far field of a section of unit chord
+_HIGHEST = 0.1
+"""Largest height of first cells in a duct, in widths of the narrowest section."""
 GROWTH = 1.2  # of layers where none is given, as of volumes that are marched
 
 
@@ -62,10 +65,11 @@ def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, 
     planes = [
         plane.with_nodes(each) for plane, each in zip(planes, _alike_far_away(nodes_of, weight), strict=True)
     ]
-    grid = _lofted(stack, planes, request.surface.span, (("hub", "wall"), ("shroud", "wall")), weight.ravel())
+    ends: tuple[End, End] = (("hub", "wall"), ("shroud", "wall"))
+    grid, along = _lofted(stack, planes, request.span, ends, weight.ravel())
     named = [replace(p, name="blade", kind="wall") if p.name == "wall" else p for p in grid.patches]
     changes = dict.fromkeys(note for note in notes if note)
-    return replace(grid, patches=tuple(named)), (*stack.notes, *changes)
+    return replace(grid, patches=tuple(named)), (*stack.notes, *changes, *along)
 
 
 def blade_rows(request: StackRequest) -> int:
@@ -103,13 +107,15 @@ def duct_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, .
         if isinstance(section.shape, Airfoil):
             problem = "an airfoil is no section of a duct"
             raise InputError(problem, "give a closed curve without a trailing edge", place=f"sections[{k}]")
-    chosen = request.first_cell is not None or request.y_plus is not None
-    first = request.height() * stack.chord if chosen else None
+    first = request.height(stack.chord) if request.at_walls else None
+    if first is not None and first > _HIGHEST * (width := float(stack.chords.min())):
+        problem = f"first cells are {first:g} high in a section that is {width:g} wide"
+        raise InputError(problem, f"use at most {_HIGHEST:g} of it", parameter="first_cell")
     single = all(section.shape.topology == "quad" for section in stack.sections)  # type: ignore[union-attr]
     planes = _four_sided(stack, request, first) if single else _five_blocks(stack, request, first)
-    return _lofted(
-        stack, planes, request.surface.span, (("inlet", "inlet"), ("outlet", "outlet"))
-    ), stack.notes
+    grid, notes = _lofted(stack, planes, request.span, (("inlet", "inlet"), ("outlet", "outlet")))
+    facts = wall_facts(grid) if request.at_walls else ()
+    return grid, (*stack.notes, *notes, *facts)
 
 
 def _four_sided(stack: Stack, request: StackRequest, first: float | None) -> list[Grid]:
@@ -160,14 +166,17 @@ def _unit(plane: Grid, section: Section) -> Grid:
 
 
 def _lofted(
-    stack: Stack, planes: list[Grid], span: int, ends: tuple[End, End], weight: Floats | None = None
-) -> Grid:
-    """Return the volume between planar grids of the sections, which have unit chord and equal topology."""
-    z = span_heights(stack.z, span, None, stack.panel_cells)
+    stack: Stack, planes: list[Grid], span: int | None, ends: tuple[End, End], weight: Floats | None = None
+) -> tuple[Grid, tuple[str, ...]]:
+    """Return the volume between planar grids of the sections, and notes on the nodes along the axis.
+
+    The grids of the sections have unit chord and equal topology.
+    """
+    z, notes = axis_heights(stack.z, span, stack.panel_cells)
     nodes = []
     for k, block in enumerate(planes[0].blocks):
         ni, nj = block.counts
         unit = np.stack([plane.blocks[k].nodes.reshape(-1, 2) for plane in planes])
         made = stack.lofted(unit, z, weight).reshape(len(z), ni, nj, 3)
         nodes.append(as_planar(made.transpose(1, 2, 0, 3)))
-    return replace(thickened(planes[0], nodes, ends), name=stack.name)
+    return replace(thickened(planes[0], nodes, ends), name=stack.name), notes

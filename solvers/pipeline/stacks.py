@@ -53,6 +53,8 @@ def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
     does not allow that.
     """
     request = _with_panels(stack, request)
+    if stack.kind != "duct":
+        request.check_far_field()
     seconds: dict[str, float] = {}
     with limited_to(request.threads):
         counted, notes = _counted(stack, request)
@@ -139,9 +141,12 @@ def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
         if request.turn is not None:
             blocks = bent([block.nodes for block in grid.blocks], request.turn)
             grid = replace(grid, blocks=tuple(map(Block, blocks)))
-    layered = stack.kind == "blade" or request.first_cell is not None or request.y_plus is not None
+    layered = stack.kind == "blade" or request.at_walls
     limit = request.growth or (math.inf if request.layers or not layered else GROWTH)
-    note = request.height_note(f"on a chord of {stack.chord:.6g}", scale=stack.chord)
+    if stack.kind == "duct":
+        note = request.height_note(f"on a width of {stack.chord:.6g}", stack.chord)
+    else:
+        note = request.height_note(f"on a chord of {stack.chord:.6g}", scale=stack.chord)
     return Solution(grid, "loft", notes=(*notes, note) if note else notes, growth=limit)
 
 

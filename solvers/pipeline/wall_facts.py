@@ -36,13 +36,21 @@ def growth_note(grid: Grid, limit: float, run: Lines | None = None) -> tuple[str
     largest = most_of(ratios.families().values())
     if largest is None or largest.max <= limit * (1.0 + _SAME):
         return ()
-    where = f"along {largest.along} at {named(largest.at)}, above the limit of {limit:g}"
+    where = f"along {largest.along} at {_place(grid, largest)}, above the limit of {limit:g}"
     beside = ""
     if leaving and leaving.max < largest.max:
         beside = f"; along grid lines from walls it is {leaving.max:.3f}"
         if leaving.max > limit * (1.0 + _SAME):
-            beside += f", at {named(leaving.at)}"
+            beside += f", at {_place(grid, leaving)}"
     return (f"the largest growth ratio is {largest.max:.3f}, {where}{beside}",)
+
+
+def _place(grid: Grid, largest: Extreme) -> str:
+    """Return the node of the greatest value, by its indices and coordinates."""
+    block, *node = largest.at if len(largest.at) > 2 else (0, *largest.at)
+    point = grid.blocks[block].nodes[tuple(node)]
+    tiny = np.abs(point) < _SAME * np.abs(point).max()
+    return f"{named(largest.at)} ({', '.join(map('{:.4g}'.format, np.where(tiny, 0.0, point)))})"
 
 
 def jump_note(grid: Grid, most: float) -> tuple[str, ...]:

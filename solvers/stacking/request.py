@@ -23,7 +23,7 @@ DEFAULT_FIRST_CELL, DEFAULT_FAR_FIELD = 1e-3, 15.0  # chords
 class StackRequest(FirstCell):
     """Options of the surface or volume grid of a stack, checked on construction.
 
-    The unit of lengths is the longest chord.
+    The unit of lengths is the longest chord; in a duct it is that of its sections' positions.
 
     Parameters
     ----------
@@ -31,7 +31,8 @@ class StackRequest(FirstCell):
         Number of nodes around a section, an odd number; the first node is counted again as the last. None:
         129.
     span : int, optional
-        Number of nodes from the first section to the last. None: 49.
+        Number of nodes from the first section to the last. None: 49; along ducts and blades with unevenly
+        spaced sections as many more as make cells change gradually.
     cells : int, optional
         Approximate number of cells of the volume around a wing or blade, instead of `around`, `span` or both.
     base : float, optional
@@ -41,7 +42,7 @@ class StackRequest(FirstCell):
         First-cell height at every wall node; None: 1e-3.
     y_plus, reynolds, chord_fraction : float, optional
         First-cell height as y+, instead of `first_cell`. The conversion assumes a turbulent flat plate; the
-        Reynolds number is based on the longest chord.
+        Reynolds number is based on the longest chord, the width of the widest section of a duct.
     layers : int, optional
         Number of nodes along each grid line away from the wall, including the wall node; None: as many as
         `growth` needs.
@@ -86,9 +87,8 @@ class StackRequest(FirstCell):
         if not 1.0 < self.far_field <= 1e6:
             problem = f"{self.far_field:g} chords"
             raise InputError(problem, "use more than 1 and at most 1e6", parameter="far_field")
-        if not 1e-12 <= self.height() < 0.5 * self.far_field:
-            problem = f"{self.height():g} chords"
-            raise InputError(problem, "use 1e-12 to half of {far_field}", parameter="first_cell")
+        if not self.height() >= 1e-12:
+            raise InputError(f"{self.height():g}", "use 1e-12 or more", parameter="first_cell")
         if self.layers is not None and not 3 <= self.layers <= 100_000:
             raise InputError(f"{self.layers} nodes", "use 3 to 100000", parameter="layers")
         check_growth(self.growth)
@@ -102,6 +102,12 @@ class StackRequest(FirstCell):
             raise InputError(f"{self.cells} cells", remedy, parameter="cells")
         if self.threads is not None and self.threads < 1:
             raise InputError(f"{self.threads} threads", "use 1 or more", parameter="threads")
+
+    def check_far_field(self) -> None:
+        """Raise InputError for a first cell that is high beside the distance of the far field."""
+        if not self.height() < 0.5 * self.far_field:
+            problem = f"{self.height():g} chords"
+            raise InputError(problem, "use less than half of {far_field}", parameter="first_cell")
 
     @property
     def turn(self) -> Revolution | None:

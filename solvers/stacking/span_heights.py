@@ -40,12 +40,12 @@ def span_heights(
         return heights
     free = [k for k, each in enumerate(panels) if each is None]
     split = _cells(np.diff([0, *inner, cells]), panels, free)
-    best, growth = _by_panel(sections, split, last), np.inf
+    best, growth = by_panel(sections, split, last), np.inf
     while len(free) > 1:  # cells move to where neighbours differ most
         moved = [_moved(split, a, b) for a in free for b in free if a != b and split[a] > 1]
-        made = [(_growth(heights := _by_panel(sections, each, last)), each, heights) for each in moved]
+        made = [(largest_growth(heights := by_panel(sections, each, last)), each, heights) for each in moved]
         least = min(made, key=lambda each: each[0], default=(np.inf, split, best))
-        if not least[0] < (1.0 - _EVEN) * min(growth, _growth(best)):
+        if not least[0] < (1.0 - _EVEN) * min(growth, largest_growth(best)):
             break
         growth, split, best = least
     return best
@@ -58,7 +58,7 @@ def _moved(cells: list[int], source: int, target: int) -> list[int]:
     return out
 
 
-def _growth(heights: Floats) -> float:
+def largest_growth(heights: Floats) -> float:
     """Return the largest ratio of neighbouring cells."""
     steps = np.diff(heights)
     ratio = steps[1:] / steps[:-1]
@@ -81,7 +81,7 @@ def _cells(own: Indices, panels: Sequence[int | None], free: Sequence[int]) -> l
     return out
 
 
-def _by_panel(sections: Floats, cells: Sequence[int], last: float | None) -> Floats:
+def by_panel(sections: Floats, cells: Sequence[int], last: float | None) -> Floats:
     """Return heights with numbers of `cells` between sections; lengths of cells change smoothly at these."""
     lengths = np.diff(sections)
     means = lengths / np.array(cells)

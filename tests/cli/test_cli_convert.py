@@ -43,6 +43,15 @@ def test_coarsen_keeps_every_kth_node(meshonet: Meshonet, duct_h5: Path) -> None
     assert [part.name for part in coarse.patches] == [part.name for part in fine.patches]
 
 
+def test_a_coarse_level_beyond_a_limit_of_checkmesh_is_told(meshonet: Meshonet) -> None:
+    made = ("--topology", "o", "--first-cell", "2e-6", "--res", "129x97")
+    meshonet("infer", "naca:0012", *made, "-o", "fine.cgns")
+    told = meshonet("convert", "fine.cgns", "coarse.cgns", "--coarsen", "4")
+    assert "beyond the limits of OpenFOAM's checkMesh: non_orthogonality " in told.err
+    assert " > 70; growth ratios are those of the fine grid to the power 4" in told.err
+    assert "checkMesh" not in meshonet("convert", "fine.cgns", "same.vts").err
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [

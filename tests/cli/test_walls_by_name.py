@@ -1,5 +1,6 @@
 """Layers at walls of four-sided domains: those named, or those that may be walls by their names."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -175,3 +176,11 @@ def test_names_of_parts_of_a_side_stay_in_place_beside_layers(meshonet: Meshonet
     (step,) = (p for p in grid.patches if p.name == "step")
     east = grid.nodes[-1, :, 1]
     assert abs(east[step.stop] - 0.5) <= 0.5 * np.diff(east)[step.stop - 1 : step.stop + 1].max()
+
+
+def test_an_unknown_wall_beside_a_lone_curve_is_told_how_that_is_named(meshonet: Meshonet) -> None:
+    turn = [math.pi * k / 40.0 for k in range(80)]
+    Path("rim.csv").write_text("# wall\n" + "".join(f"{math.cos(t)} {math.sin(t)}\n" for t in turn))
+    done = meshonet("infer", "rim.csv", "--first-cell", "1e-2", "--walls", "wall", "-o", "rim.cgns")
+    assert done.code == 2
+    assert "use farfield, body; a curve that is alone in its file is the wall body" in done.err

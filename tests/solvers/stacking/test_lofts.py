@@ -12,6 +12,8 @@ from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.circle import Circle
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.solvers.pipeline.lofts import blade_volume, duct_volume
+from meshonet.solvers.pipeline.stacks import make_stack
+from meshonet.solvers.stacking.axis_heights import axis_heights
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.section_nodes import around, unit_nodes
 
@@ -108,7 +110,7 @@ def test_boxes_are_one_block_with_walls_all_around():
     assert volume(grid) == pytest.approx(3.0 / 3.0 * (a + np.sqrt(a * b) + b), rel=1e-9)
     nodes = grid.blocks[0].nodes
     for first in (nodes[1] - nodes[0], nodes[:, 1] - nodes[:, 0]):
-        assert np.linalg.norm(first, axis=-1)[:, [0, -1]] == pytest.approx(0.004, rel=1e-3)
+        assert np.linalg.norm(first, axis=-1)[:, [0, -1]] == pytest.approx(0.002, rel=1e-3)
     assert {(p.name, p.kind) for p in grid.patches} == {
         ("wall", "wall"), ("inlet", "inlet"), ("outlet", "outlet"),
     }  # fmt: skip
@@ -133,3 +135,37 @@ def test_what_is_no_duct_is_refused(stack, request_, problem):
     with pytest.raises(InputError) as refusal:
         duct_volume(stack, request_)
     assert problem in str(refusal.value)
+
+
+def test_first_cells_of_a_duct_are_in_the_unit_of_its_file_and_reported():
+    pipe = duct(Circle(0.5), Circle(0.5), chords=(20.0, 20.0))
+    made = make_stack(pipe, StackRequest(around=65, span=9, first_cell=0.1))
+    wall = made.grid.blocks[1].nodes
+    assert np.linalg.norm(wall[:, 1] - wall[:, 0], axis=-1) == pytest.approx(0.1, rel=1e-9)
+    assert any(note.startswith("wall: first cells 0.1, growth up to 1.") for note in made.notes)
+
+
+def test_first_cells_that_nearly_fill_a_duct_are_refused():
+    with pytest.raises(InputError, match=r"0\.5 high in a section that is 2 wide; use at most"):
+        duct_volume(duct(Circle(0.5), Circle(0.5), chords=(2.0, 3.0)), StackRequest(first_cell=0.5))
+
+
+UNEVEN = np.array([0.0, 0.5, 1.0, 1.5, *1.5 + 2.0 / 30.0 * np.arange(1, 31), 4.0, 4.5, 5.0, 5.5])
+
+
+@pytest.mark.parametrize(("nodes", "most"), [(None, 1.2), (65, 1.25)])
+def test_cells_along_a_duct_change_gradually_where_sections_are_unevenly_spaced(nodes, most):
+    z, notes = axis_heights(UNEVEN, nodes, (None,) * (len(UNEVEN) - 1))
+    assert set(UNEVEN.tolist()) <= set(z.tolist())
+    assert nodes is None or len(z) == nodes
+    steps = np.diff(z)
+    assert np.maximum(steps[1:] / steps[:-1], steps[:-1] / steps[1:]).max() < most
+    assert len(notes) == 1
+
+
+def test_sections_that_leave_no_gradual_cells_are_told_with_the_place():
+    z, (note,) = axis_heights(np.array([0.0, 1.0, 1.02, 3.0]), 13, (None,) * 3)
+    assert len(z) == 13
+    assert "differ by a factor of" in note
+    assert "at z=1" in note
+    assert "space them evenly, or give more nodes by {span}" in note
