@@ -58,6 +58,7 @@ class Cascade:
     centre : point inside the blade from which axial distances are measured; the default is the point farthest
         from its surface.
     marched : the layers around the blade, if they are already known.
+    share : fraction of the thickness that layers would have otherwise.
     factors : (n,) factors by which the first-cell height is multiplied at the points of the blade; the
         default is 1.
     """
@@ -72,6 +73,7 @@ class Cascade:
     centre: complex | None = None
     marched: Ring | None = None
     factors: Floats | None = None
+    share: float = 1.0
 
     def ending(self, near: tuple[float, float], centre: complex) -> Cascade:
         """Return the cascade with another `near` and `centre`; the layers do not depend on these."""
@@ -124,7 +126,12 @@ class Cascade:
         """Thickness of the layers where the gap permits it."""
         arcs = np.linspace(0.0, self.blade.length, _SAMPLES, endpoint=False)
         gap = float(wall_gaps(self.blades, self.blade, arcs).min())
-        return min(THICKNESS * self.blade.length, GAP_PART * gap)
+        return self.share * min(THICKNESS * self.blade.length, GAP_PART * gap)
+
+    @property
+    def kept(self) -> float:
+        """Part of `thickness` that layers have at the most: they are made thinner until no cell is folded."""
+        return min(float(self.ring.thickness.max()) / self.thickness, 1.0)
 
     @cached_property
     def layers(self) -> LayerSettings:

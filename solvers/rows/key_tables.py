@@ -7,9 +7,11 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
+from itertools import combinations
 
 import numpy as np
 
+from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.rows.frame import UNITS
@@ -27,6 +29,7 @@ KEYS = 9
 """Number of sections that are computed as plane cascades."""
 _PART = 0.6  # of the least room before or behind the blade that is left to blocks
 _HALVINGS = 3
+_SAME = 0.98  # ratio of thicknesses of layers from which on they are the same
 _SOME_MORE = 1.05  # than is missing, since m' is a length over the radius, which changes
 LEAN = 12.0
 """Largest angle, in degrees, by which lines along the span lean at the outlet if they follow the wakes of all
@@ -76,8 +79,8 @@ def _planes(row: Row, first: float, growth: float) -> tuple[list[SectionPlane], 
     room: it is begun with these while the other sections are not known.
     """
 
-    def plane_at(height: float) -> SectionPlane:
-        plane = SectionPlane.of(row, height, first, growth)
+    def plane_at(height: float, share: float = 1.0) -> SectionPlane:
+        plane = SectionPlane.of(row, height, first, growth, share)
         with _of_section(height):
             _ = plane.cascade.reach, plane.across  # marches the layers
         return plane
@@ -94,11 +97,32 @@ def _planes(row: Row, first: float, growth: float) -> tuple[list[SectionPlane], 
     others = [partial(plane_at, height) for k, height in enumerate(heights) if k != half]
     (plane, coarse), *made = run_in_threads([partial(begun, heights[half]), *others])
     planes = [*made[:half], plane, *made[half:]]
+    thinner = _even_shares(planes)
+    again = run_in_threads([partial(plane_at, planes[k].height, share) for k, share in thinner.items()])
+    for k, own in zip(thinner, again, strict=True):
+        planes[k] = own
+    if half in thinner:
+        plane, coarse = planes[half].ending((NEAR, NEAR), planes[half].thickest), None
+        planes[half] = plane
     _check_room(row, planes)
     near = tuple(min(NEAR, _PART * min(plane.room[k] for plane in planes)) for k in (0, 1))
     if near != plane.cascade.near:
         planes[half], coarse = plane.ending(near, plane.thickest), None
     return planes, coarse
+
+
+def _even_shares(planes: Sequence[SectionPlane]) -> dict[int, float]:
+    """Return shares of the thickness of layers for sections, by number, that are to be thinner.
+
+    Layers that fold are made thinner section by section, in large steps. Polynomials through sections would
+    overshoot next to these: logarithms of the shares of all sections become a convex function of the height.
+    """
+    kept = np.array([plane.cascade.kept for plane in planes])
+    x, logs = np.array([plane.height for plane in planes]), log(kept)
+    ends = (list(pair) for pair in combinations(range(len(x)), 2))
+    below = [np.interp(x, x[pair], logs[pair], left=np.inf, right=np.inf) for pair in ends]
+    shares = exp(np.min(below, axis=0))
+    return {int(k): float(shares[k]) for k in np.flatnonzero(shares < _SAME * kept)}
 
 
 def _check_room(row: Row, planes: Sequence[SectionPlane]) -> None:

@@ -59,10 +59,11 @@ class SectionPlane:
     places: Floats
 
     @classmethod
-    def of(cls, row: Row, height: float, first: float, growth: float) -> SectionPlane:
+    def of(cls, row: Row, height: float, first: float, growth: float, share: float = 1.0) -> SectionPlane:
         """Return the section of a row at a height.
 
         First cells of its layers have the height `first` in space.
+        `share` is that of `Cascade`.
         """
         u, lines = _lines(row.surface)
         s, theta = row.surface.crossings(lines, np.full(len(u), height)).T
@@ -83,6 +84,7 @@ class SectionPlane:
             settings,
             row.name,
             factors=radii.max() / radii,
+            share=share,
         )
         return cls(height, to, cascade, u)
 

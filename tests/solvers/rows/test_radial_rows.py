@@ -163,6 +163,13 @@ def test_checkmesh_takes_first_cells_next_to_a_narrow_gap_off_blades_that_lean_f
     assert blade_row.off_walls(grid, "blade") == pytest.approx(FIRST * row.chord, rel=1e-9)
 
 
+@pytest.mark.parametrize("seed", [2, 410])
+def test_layers_that_would_fold_in_some_sections_get_thinner_gradually_along_the_span(seed: int) -> None:
+    row = radial_rows.radial_row(seed)
+    grid = make_row(row, RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
+    assert grid.quality().folded == 0
+
+
 def test_first_cells_at_the_shroud_are_exact_where_the_channel_narrows() -> None:
     row = radial_rows.radial_row(108)
     grid = make_row(row, RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
