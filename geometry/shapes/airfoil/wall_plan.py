@@ -87,7 +87,7 @@ def planned_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
             steps=(plan.te, plan.le),
             exact=(sampling.te_spacing is not None or plan.half > 0, sampling.le_spacing is not None),
             hurried=sampling.te_spacing is not None,
-            based=plan.half > 0,
+            based=plan.half > 0 and plan.base is None,  # cells of a rounded base vary slowly
         )
     else:
         q = np.arange(1, math.ceil(plan.cells)) / plan.cells
