@@ -50,16 +50,17 @@ method see [marching from surfaces](../guide/marching-surfaces.md).
 - *folded*: number of cells in which a corner Jacobian, or a Bezier coefficient of the Jacobian, is not
   positive.
 - *first cell*: largest relative error of the first-cell height over all wall nodes.
-- *quality*: smallest ratio of the minimum to the maximum Jacobian at the eight corners of a cell, as
-  printed by pyHyp. *SJ*: minimum scaled Jacobian at the corners.
+- *quality*: the ratio of the smallest to the largest Jacobian at the eight corners of a cell, in the worst
+  cell; pyHyp prints this value. *SJ*: minimum scaled Jacobian at the corners.
 - *off the normal*: angle in degrees between grid lines and the normals of the node layers, mean / 99th
   percentile / maximum.
-- *growth*: prescribed relative growth of the layer height from layer to layer; then the largest relative
-  change of edge length along a grid line, as marched / after nodes are redistributed along the lines.
-- *CPU*: CPU time in seconds from patches in memory to tested blocks, best of 3; then in microseconds per
-  node of the volume; *process*: CPU time of the whole command for surfaces from files, including the
-  written volume.
-  One thread of {machine}, while other programs used the machine.
+- *growth*: three numbers. The first is the prescribed growth ratio minus 1. The others are the largest growth
+  ratio minus 1 along a grid line: the second as marched, the third after nodes are redistributed along the
+  lines.
+- *CPU*: CPU time in seconds, from patches in memory to tested blocks, best of 3. *us a node*: the same time
+  in microseconds per node of the volume. *process*: CPU time of the whole command, including writing the
+  volume; only for surfaces that are read from files. One thread of {machine}, while other programs used the
+  machine.
 
 """
 COLUMNS = (

@@ -86,7 +86,7 @@ def kept_of(parts: Sequence[Part], split: str) -> Sequence[int]:
 
 
 def rows_of(kept: Sequence[int], source: Source) -> Sequence[int]:
-    """Return the samples of `kept` that the rows of the source select; raise InputError if there are none."""
+    """Return the sample numbers in `kept` that `source.rows` selects; raise InputError if there are none."""
     if not kept:
         remedy = "mark samples where they are made, by {family} and {split}"
         raise InputError(f"no sample is marked {source.split!r}", remedy)

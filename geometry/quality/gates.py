@@ -109,7 +109,7 @@ class Judgement:
     beyond : tuple of str
         The same as short texts, including the warnings of profiles: ``max_angle 178.2 > 170``.
     replaced : tuple of str
-        Limits of gates that replace limits of profiles: ``box_ratio > 4000``.
+        The limits set by gates that override a limit of a profile, for example ``box_ratio > 4000``.
     profile : ProfileReport, optional
         The outcome of every check of the profiles.
     """

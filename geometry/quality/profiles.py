@@ -116,7 +116,7 @@ class ProfileReport:
         return replace(self, results=_once(result.under(gates) for result in self.results))
 
     def replaced(self) -> list[str]:
-        """Return the limits of gates that replace limits of a profile: ``box_ratio > 4000``."""
+        """Return the limits set by gates that override a limit of the profile: ``box_ratio > 4000``."""
         return [
             f"{result.check.figure} {limit.compare} {limit.value:g}"
             for result in self.results

@@ -74,9 +74,9 @@ def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | No
     """Return 1 if consistently oriented `quads` (m, 4) face outwards, -1 if they face inwards.
 
     Planes normal to the axes `flat` close the surface at open edges that lie in them. The result is None if
-    the surface does not enclose a volume because too much of its area faces one way. It is also None if
-    planes normal to two axes are needed to close it: like the corner of a box, the surface would then be
-    closed on both of its sides.
+    the surface encloses no volume; the criterion is the vector sum of its area. The result is also None if
+    planes normal to two axes are needed to close the surface. Such a surface, for example the corner of a
+    box, can be closed on either side, so that outwards is not defined.
     """
     if len(flat) > 1:
         return None

@@ -57,8 +57,10 @@ def walls(boundary: Boundary) -> StripWalls:
 def is_rough(body: StripWalls) -> bool:
     """Return whether the strip hardly resolves the uneven wall spacing, so that cells may fold.
 
-    The unresolved part is at most 0.013 for airfoils, at most 0.06 for airfoils with evenly spaced nodes
-    around the leading edge, at least 0.02 for polygons, and at least 0.01 for a square far field.
+    The measure is the sum, in radians, of the amplitudes of Fourier modes beyond `MODES` / 2. `SHARPEST` and
+    `ROUGHEST` are its limits. Measured values are up to 0.013 for airfoils, up to 0.06 for airfoils with
+    evenly spaced nodes around the leading edge, 0.02 or more for polygons, and 0.01 or more for a square far
+    field.
 
     Raises InputError: the strip does not resolve the wall.
     """

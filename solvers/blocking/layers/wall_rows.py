@@ -47,7 +47,7 @@ class WallRows:
     back: Bools
 
     def of_chords(self, chords: Chords) -> Indices:
-        """Return, for each chord, the index (chords,) of the row that its edges cross; -1 if none."""
+        """Return (chords,): the index of the wall row whose thickness the edges of a chord span, or -1."""
         row = np.full(chords.count, -1, dtype=np.intp)
         row[chords.chord[chords.sides[:, 2]]] = self.across[:, 0]
         row[chords.chord[chords.sides[:, 0]]] = self.across[:, 1]

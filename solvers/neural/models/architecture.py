@@ -49,7 +49,7 @@ class Architecture:
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
         """Return constant arrays, by name, computed from the training set and not trained.
 
-        `targets` (n, ni, nj, 2) are the training grids minus the base.
+        `targets` (n, ni, nj, 2) are the differences between the training grids and their base grids (`base`).
         """
         return {}
 

@@ -51,7 +51,10 @@ class Triangulation:
 
     @cached_property
     def fans(self) -> tuple[Indices, Indices]:
-        """Corners of triangles (3 t,), sorted by vertex, and the index (n + 1,) where each vertex begins."""
+        """Offsets (n + 1,) and the triangle corners (3 t,) around the vertices, vertex by vertex.
+
+        Those of vertex v begin at offsets[v] and end before offsets[v + 1].
+        """
         start, corners, reached = surface_fans(self.arrays, self.size)
         if reached != len(corners):
             raise SolverError("triangles that meet in a point only")
