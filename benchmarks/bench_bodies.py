@@ -187,9 +187,9 @@ bodies. For the method see [neural operators](../theory/operators.md).
   is larger than in Winslow's grid.
 - *angle*: largest included angle of each cell, in degrees. The tables give the maximum and the mean over
   the cells, averaged over the bodies.
-- *gain*: how much smaller the angle is than in Winslow's grid, divided by how much smaller it is in the full
-  variational grid. *all*: both differences are summed over the bodies before the division. *median*: the
-  ratio is computed for each body, and the median of the ratios is given.
+- *gain*: two reductions of the angle relative to Winslow's grid are compared. The reduction in this grid is
+  divided by the reduction in the full variational grid. *all*: both reductions are summed over the bodies
+  before the division. *median*: the ratio is computed for each body, and the median of the ratios is given.
 - Bodies for which Winslow's iteration does not converge, a few in a hundred, are left out.
 - *CPU ms*: CPU time of one thread, while other programs used the machine.
 """

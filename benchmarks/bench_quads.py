@@ -252,9 +252,9 @@ four-sided domains. For the method see [neural operators](../theory/operators.md
   is larger than in Winslow's grid.
 - *angle*: largest included angle of each cell, in degrees. The tables give the maximum and the mean over
   the cells, averaged over the domains.
-- *gain*: how much smaller the angle is than in Winslow's grid, divided by how much smaller it is in the full
-  variational grid. *all*: both differences are summed over the domains before the division. *median*: the
-  ratio is computed for each domain, and the median of the ratios is given.
+- *gain*: two reductions of the angle relative to Winslow's grid are compared. The reduction in this grid is
+  divided by the reduction in the full variational grid. *all*: both reductions are summed over the domains
+  before the division. *median*: the ratio is computed for each domain, and the median of the ratios is given.
 - *CPU ms*: CPU time of one thread, while other programs used the machine.
 """
 TAIL = """

@@ -224,9 +224,10 @@ to see what `--coarse N` saves and costs. The methods are described in [elliptic
   corner of the boundary (arch 147.5, hexagon 135).
 - *deviation at walls*: mean deviation from 90 degrees of the angle between the four sides and the grid
   lines that leave them.
-- *distance to full solve*: relative L2 distance to the first grid of the same method in the table, which is
-  the full solution; on 3200 x 3200 nodes it is that of `variational --coarse 33`. The neural operator is
-  compared with the variational method.
+- *distance to full solve*: relative L2 distance to the full solution of the same method, which is its first
+  row in the table. The neural operator is compared with the full solution of the variational method. On 3200
+  x 3200 nodes there is no such solution; there, variational grids are compared with `variational --coarse
+  33`.
 - *folded*: number of folded cells in the solution, before repair.
 - *worse than Winslow's*: number of grids whose maximum or mean angle is larger than that of Winslow's grid of
   the same domain.
