@@ -40,8 +40,11 @@ Use this page to find CPU time, convergence and memory of `solve-pde` with the m
 
 Times are CPU times of one thread on {processor}, in float64, while other programs used the machine.
 
-- *default*: the iteration stops when its error is below the discretisation error.
-- *rate*: factor by which one multigrid cycle reduces the residual, averaged down to a residual of 1e-8.
+- *default*: time if the iteration stops when its error is below the discretisation error. *to 1e-8*: time
+  until the residual is 1e-8 times the initial residual. *cycles*, after each time: the number of multigrid
+  cycles.
+- *rate*: residual after a multigrid cycle divided by the residual before it, geometric mean of the cycles
+  of *to 1e-8*.
 - *doubles per node*: peak memory of the solver, including the grid, in float64 numbers per node.
 - *folded*: number of folded cells in the solution, before repair.
 - *repair*: stages of the repair, their time, and the number of folded cells that remain.

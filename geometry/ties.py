@@ -1,7 +1,7 @@
 """Choices that do not depend on rounding: the first of the candidates that are equal within `EQUAL`.
 
-Symmetric shapes have many equally good candidates. Which of two is better by rounding alone depends on how a
-shape is turned or moved, or on a library; their order does not.
+Symmetric shapes have many equally good candidates. If two candidates differ only by rounding, which of them
+is better depends on how the shape is turned or moved, or on a library; their order does not.
 """
 
 from collections.abc import Callable, Iterable

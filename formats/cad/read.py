@@ -64,9 +64,9 @@ def _model(source: Source, read: Callable[[str], tuple[Any, ...]], kind: str) ->
 
 
 def _is_readable(path: Path, kind: str) -> bool:
-    """Return whether Open Cascade reads a file, tried in a process of its own.
+    """Return whether Open Cascade can read a file. The file is read in a process of its own.
 
-    Of damaged files it may never return, or end the process.
+    With a damaged file, Open Cascade may never return, or may end the process.
     """
     command = [sys.executable, "-m", __name__, kind, str(path)]
     seconds = SECONDS + path.stat().st_size / _BYTES_PER_SECOND

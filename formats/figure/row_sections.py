@@ -197,8 +197,9 @@ def _together(cuts: list[Cut]) -> Cut:
 def _between_lines(distance: Floats, plane: Floats, values: Floats | None) -> Cut | None:
     """Return the quadrilaterals between the points where the lines along k of a block cross a surface.
 
-    None where a line does not, or more than once. Polygons of cells would have another edge wherever the
-    surface passes from one layer of cells to the next.
+    The result is None if a line does not cross the surface, or crosses it more than once. Cells that are cut
+    to polygons, in contrast, would have another edge wherever the surface passes from one layer of cells to
+    the next.
     """
     if distance[..., 0].mean() > distance[..., -1].mean():
         distance = -distance

@@ -106,8 +106,9 @@ def _open_sides(patches: Sequence[Floats], nodes: Floats, lattices: tuple[Indice
 def _trailing_edges(nodes: Floats, sides: list[_OpenSide]) -> list[_Edge]:
     """Return the open trailing edges between sides.
 
-    Upper and lower side of a wing at a plane of symmetry look like one. In a plane at an end of the surface
-    the edge must be thin, and thinner than the sides in planes across another axis.
+    The edges of the upper and the lower side of a wing at a plane of symmetry look like a trailing edge. An
+    edge in a plane at an end of the surface must therefore be thin, and thinner than such pairs of sides in
+    planes normal to another axis.
     """
     size = extent_of(nodes)
     pairs = [
@@ -129,7 +130,7 @@ def _trailing_edges(nodes: Floats, sides: list[_OpenSide]) -> list[_Edge]:
 
 
 def _alike(nodes: Floats, one: _OpenSide, other: _OpenSide, size: float) -> bool:
-    """Return whether two sides of as many nodes lie close together and their patches go the same way."""
+    """Return whether two sides have equal node counts, and are close, with patches in one direction."""
     if len(one.line) != len(other.line):
         return False
     gap = norms(nodes[one.line] - nodes[other.line])

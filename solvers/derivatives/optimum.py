@@ -137,9 +137,9 @@ class OptimumDerivative:
         return self._system.solve(right, transposed=transposed)
 
     def _aspect_term(self, nodes: Floats) -> Floats:
-        """Return the derivative of the equations with respect to a.
+        """Return the derivative of the equations with respect to the aspect ratio a.
 
-        Store that of a with respect to the nodes.
+        The derivative of a with respect to the nodes is stored in an attribute.
         """
         self._aspect_slope = np.zeros(nodes.size)
         if self._method == "winslow":

@@ -162,7 +162,7 @@ class Chords:
         return along
 
     def cut_off(self) -> Floats:
-        """Return the absolute area (e,) between each edge's wall and the straight sides of its cells."""
+        """Return the area (e,), not negative, between the wall and the straight cell sides of each edge."""
         lost = np.zeros(len(self.edges))
         part = np.linspace(0.0, 1.0, 5)
         for edge, loop, arcs in self._walls():

@@ -12,9 +12,10 @@ from meshonet.solvers.sparse import SparsePattern
 class HarmonicMoves:
     """Displacements of the nodes of a mesh: some are prescribed, the others are harmonic.
 
-    The object serves all meshes with the same quads and the same prescribed nodes. Harmonic means: each
-    displacement is the mean of those of the neighbours, weighted by their inverse square distances, so that
-    small cells keep their form. Nodes with a periodic partner move as the partner does.
+    The object serves all meshes with the same quads and the same prescribed nodes. Harmonic means: the
+    displacement of a node is the mean of the displacements of its neighbours, weighted by their inverse
+    square distances, so that small cells keep their form. Nodes with a periodic partner move as the partner
+    does.
 
     Parameters
     ----------

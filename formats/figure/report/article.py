@@ -204,7 +204,7 @@ def histogram_svg(values: Floats, scale: Scale, limits: Sequence[float] = ()) ->
 def _shown_part(value: float, scale: Scale) -> float:
     """Return the position of a value on the scale, 0 to 1.
 
-    Outside of this range for values beyond the ends.
+    For values beyond the ends of the scale the position is outside of this range.
     """
     if scale.log and value <= 0:
         return -1.0

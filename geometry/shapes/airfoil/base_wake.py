@@ -281,7 +281,8 @@ def _lines(
 ) -> tuple[Floats, Floats]:
     """Return the lower and the upper wake line (cells + 1, 2), from the base to the outlet.
 
-    Between them are `across` cells, which rise behind the base as those beside the lines do.
+    There are `across` cells between the two lines. Behind the base, their height increases like that of the
+    cells beside the lines.
     """
     normal = np.array([-axis[1], axis[0]])
     corners = wall[0], wall[-1]

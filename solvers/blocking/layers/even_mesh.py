@@ -234,7 +234,10 @@ class _Patch:
         return placed
 
     def _alike(self, nodes: Indices, derivatives: Complexes) -> Complexes:
-        """Return derivatives (k, 3) by `nodes` (k, 3): those by nodes that move with another are at that."""
+        """Return the derivatives (k, 3) with respect to `nodes` (k, 3), added up where nodes move together.
+
+        If two nodes of a row move together, the sum is at the first of them, and 0 at the other.
+        """
         leader = np.arange(len(self.part))
         leader[self.pairs[:, 1]] = self.pairs[:, 0]
         for i, j in ((0, 1), (0, 2), (1, 2)):

@@ -178,7 +178,10 @@ def _lines(columns: Floats, beyond: Floats, opened: Floats, settings: LayerSetti
 
 
 def _by_one_ratio(length: Floats, first: Floats, rows: int) -> Floats:
-    """Return places (k, rows + 1) up to a `length` (k,) of cells from the `first` (k,) on, at one ratio."""
+    """Return places (k, rows + 1) from 0 to `length` (k,) of cells that grow by a constant ratio.
+
+    `first` (k,) are the lengths of the first cells.
+    """
     low, high = np.zeros(len(length)), np.full(len(length), 2.0)
     powers = np.arange(float(rows))
     for _ in range(_STEPS):

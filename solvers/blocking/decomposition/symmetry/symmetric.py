@@ -138,9 +138,10 @@ def _trial(way: Way, mirrors: Sequence[Mirror], optimised: Optimised) -> BaseCom
 
 
 def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Images]:
-    """Return the mesh with its nodes symmetric, and their images; raises SolverError: its quads are not.
+    """Return the mesh with nodes symmetric about the mirrors, and the mirror images of the nodes.
 
-    With two mirrors they are symmetric to all others of the domain too, if the quads are.
+    With two mirrors, nodes are made symmetric about all mirrors of the domain if the quads are symmetric
+    about them. Raises SolverError: the quads are not symmetric.
     """
     images = images_of(mesh, mirrors)
     if len(images) < len(mirrors) or not agree(images):
