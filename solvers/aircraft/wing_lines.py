@@ -35,12 +35,14 @@ _ROUNDS = 6
 class EvenAround(Around):
     """Distribution of nodes around sections, with the smallest growth ratio possible for their number."""
 
-    def law(self, height: float, length: float) -> Callable[[Floats], Floats]:
+    follows_nose = False  # cells at the nose are a fraction of the mean cell
+
+    def law(self, height: float, length: float, nose: float | None = None) -> Callable[[Floats], Floats]:
         """Return the node distribution on one side of a section, from its base (trailing edge) to the nose.
 
-        The `height` of the base and the `length` of the side are in chords.
+        The `height` of the base, the `length` of the side and the cell at the `nose` are in chords.
         """
-        ends = self.ends(height, length)
+        ends = self.ends(height, length, nose)
         for growth in _TRIED:
             if spaced_cells(1.0, ends, growth, 1.0, 4) <= self.cells:
                 break

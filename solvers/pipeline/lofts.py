@@ -29,7 +29,7 @@ from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.wall_facts import wall_facts
 from meshonet.solvers.stacking.axis_heights import axis_heights
 from meshonet.solvers.stacking.request import StackRequest
-from meshonet.solvers.stacking.section_nodes import around, unit_nodes
+from meshonet.solvers.stacking.section_nodes import around, nose_notes, unit_nodes
 from meshonet.solvers.sweeping import butterfly
 
 _FADE = 4.0
@@ -69,7 +69,8 @@ def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, 
     grid, along = _lofted(stack, planes, request.span, ends, weight.ravel())
     named = [replace(p, name="blade", kind="wall") if p.name == "wall" else p for p in grid.patches]
     changes = dict.fromkeys(note for note in notes if note)
-    return replace(grid, patches=tuple(named)), (*stack.notes, *changes, *along)
+    said = *stack.notes, *changes, *along, *nose_notes(stack.sections, plan)
+    return replace(grid, patches=tuple(named)), said
 
 
 def blade_rows(request: StackRequest) -> int:

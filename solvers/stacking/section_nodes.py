@@ -11,8 +11,9 @@ A section whose base is lower than `gap` is opened to this height. Its thickness
 the distance from the nose.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -27,11 +28,11 @@ from meshonet.geometry.shapes.airfoil.section_curve import farthest_arc
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.spacing.tanh_law import TanhLaw
+from meshonet.solvers.stacking.nose_cells import MOST, nose_cell, nose_note
 
 BASE_CELLS = 8  # across a base
 GAP = 0.005
 """Smallest height of a base in chords."""
-NOSE_CELL = 0.35  # of the mean cell of a side
 _EDGE_CELL = 1.2  # of the mean cell of a base
 LEAST_AROUND, MOST_AROUND = 33, 10_001  # nodes
 
@@ -46,10 +47,11 @@ class Around:
     base : number of cells on the base (blunt trailing edge), an even number.
     gap : smallest height of the base in chords.
     edge, nose : lengths of the cells next to the base and at the nose, in chords. If None: for `edge` 1.2
-        times the length of the cells on the base, for `nose` 0.35 times the mean length of the cells on a
-        side.
+        times the length of the cells on the base, for `nose` a length that follows the curvature there
+        (see `nose_cell`).
     """
 
+    follows_nose: ClassVar[bool] = True
     cells: int
     base: int
     gap: float
@@ -61,19 +63,22 @@ class Around:
         """Number of nodes around, including the repeated first one."""
         return 2 * self.cells + self.base + 1
 
-    def law(self, height: float, length: float) -> Callable[[Floats], Floats]:
+    def law(self, height: float, length: float, nose: float | None = None) -> Callable[[Floats], Floats]:
         """Return the node distribution from base to nose on a side; `length` and base `height` are in chords.
 
         Raises InputError: cell lengths that are impossible with this number of nodes.
         """
-        return TanhLaw.fitted(self.cells, *self.ends(height, length))
+        return TanhLaw.fitted(self.cells, *self.ends(height, length, nose))
 
-    def ends(self, height: float, length: float) -> tuple[float, float]:
-        """Return the lengths of the cells next to the base and at the nose, relative to the side's length."""
+    def ends(self, height: float, length: float, nose: float | None = None) -> tuple[float, float]:
+        """Return the lengths of the cells next to the base and at the nose, relative to the side's length.
+
+        `nose` is the latter in chords, if it is not prescribed. None: 0.35 mean cells.
+        """
         edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
         first = edge if self.edge is None else self.edge / length
-        last = NOSE_CELL / self.cells if self.nose is None else self.nose / length
-        return first, last
+        nose = self.nose or nose
+        return first, MOST / self.cells if nose is None else nose / length
 
 
 def around(
@@ -124,13 +129,21 @@ def unit_nodes(section: Section, plan: Around) -> tuple[Floats, str]:
     return nodes, note
 
 
+def nose_notes(sections: Sequence[Section], plan: Around) -> tuple[str, ...]:
+    """Return notes on sections around whose noses cells are too long."""
+    shapes = (section.shape for section in sections)
+    notes = (nose_note(shape, plan.cells, plan.nose) for shape in shapes if isinstance(shape, Airfoil))
+    return tuple(dict.fromkeys(filter(None, notes)))
+
+
 def _airfoil_sides(shape: Airfoil, plan: Around) -> tuple[Floats, Floats]:
     """Return nodes (cells + 1, 2) of the upper and of the lower side, from the base to the nose."""
     q = np.linspace(0.0, 1.0, plan.cells + 1)
     height = shape.gap / shape.unit if shape.blunt else 0.0
     below, above = shape.nose_arc - shape.half_base, shape.upper_end - shape.nose_arc
-    lower = shape.half_base + below * plan.law(height, below / shape.unit)(q)
-    upper = shape.upper_end - above * plan.law(height, above / shape.unit)(q)
+    nose = nose_cell(shape, plan.cells) if plan.follows_nose else None
+    lower = shape.half_base + below * plan.law(height, below / shape.unit, nose)(q)
+    upper = shape.upper_end - above * plan.law(height, above / shape.unit, nose)(q)
     nodes = shape.curve.at(np.concatenate([upper, lower]))
     sides = nodes[: len(q)], nodes[len(q) :]
     sides[0][-1] = sides[1][-1]

@@ -20,7 +20,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, norms, rolled
 from meshonet.geometry.blocks.connection import Connection
-from meshonet.geometry.elementary import cos, product, sin
+from meshonet.geometry.elementary import cos, power, product, sin
 from meshonet.solvers.sweeping.ring_steps import ring_steps
 
 CORE = 0.5
@@ -33,6 +33,10 @@ _SWEEPS = 50  # of smoothing around the ring
 _FINE = 65  # places on each line of the ring by which its length is measured
 _ENDS = tuple(0.5 + 0.1 * k for k in range(10))
 """Factors on the distances of the core from nose and trailing edge that are tried."""
+_CELL = 1.5  # length of the cells of the core at the nose, in cells of its short side there
+_SHORTER = 0.4  # and in those of the section at the least: where nodes are few, angles would be larger
+_REACH = 4.0  # fewest cells over which they become as long as the cells of the section
+_HALVINGS = 40  # of the range of this number
 _CLEAR = 1.3  # by which the core stays farther from nose and edge than the nodes that face its ends
 _NOSE, _EDGE = 0.35, 0.3  # and at least so many thicknesses of the section there
 
@@ -159,8 +163,10 @@ class Cap:
         thick = 2.0 * np.hypot(*half.T) / length
         first = nose_factor * _CLEAR * max(front, _NOSE * thick[-1 - m])
         last = 1.0 - edge_factor * max(_CLEAR * (1.0 - back), _EDGE * thick[m])
-        places = first + (last - first) * (along[m : len(along) - m] - front) / (back - front)
         rising = along[::-1]
+        cell = _CELL * CORE / (2 * m) * float(np.interp(first, rising, thick[::-1]))
+        places = _shifted(rising[m : len(rising) - m], first, cell)
+        places = last - (last - first) * ((back - places) / (back - first))[::-1]
 
         def at(values: Floats) -> Floats:
             return np.stack([np.interp(places, rising, column[::-1]) for column in values.T], axis=1)
@@ -188,6 +194,29 @@ class Cap:
             for own, side, donor, way in parts
         )
         return seam, *joined
+
+
+def _shifted(places: Floats, first: float, cell: float) -> Floats:
+    """Return increasing `places` (k,) that begin at `first`, with a first step of about `cell`.
+
+    Steps are shorter than those of `places`, by a factor that decays over as many steps as make up for the
+    later beginning: from there on, places are kept.
+    """
+    steps = np.diff(places)
+    off, ratio = first - places[0], min(max(cell / steps[0], _SHORTER), 1.0)
+    if off <= 0.0 or ratio == 1.0:
+        return np.asarray(first + (places[-1] - first) * (places - places[0]) / (places[-1] - places[0]))
+    number = np.arange(len(steps))
+    low, high = 0.0, 0.5 * len(steps)
+    for _ in range(_HALVINGS):
+        reach = 0.5 * (low + high)
+        gained = (steps * (1.0 - power(ratio, np.clip(1.0 - number / reach, 0.0, None)))).sum()
+        low, high = (reach, high) if gained < off else (low, reach)
+    reach = max(low, _REACH)
+    made = steps * power(ratio, np.clip(1.0 - number / reach, 0.0, None))
+    weight = steps * np.clip(number / reach, 0.0, 1.0)
+    made += (steps.sum() - off - made.sum()) * weight / weight.sum()
+    return first + np.concatenate([[0.0], np.cumsum(made)])
 
 
 def least_sine(nodes: Floats) -> float:

@@ -13,7 +13,7 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.elementary import cos, power, product, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.stack import STEEP, Stack
-from meshonet.solvers.stacking.section_nodes import BASE_CELLS, GAP, around, unit_nodes
+from meshonet.solvers.stacking.section_nodes import BASE_CELLS, GAP, around, nose_notes, unit_nodes
 from meshonet.solvers.stacking.span_heights import span_heights
 from meshonet.solvers.stacking.tip import Cap
 
@@ -81,7 +81,8 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
         connections += cap.connections(n, 1, 2)
     zones = {"zones": ("wing", "tip", "tip")[: len(blocks)]}
     grid = Grid(tuple(blocks), tuple(patches), tuple(connections), stack.name, zones)
-    return grid, (*stack.notes, *dict.fromkeys(note for note in notes if note))
+    changes = dict.fromkeys(note for note in notes if note)
+    return grid, (*stack.notes, *changes, *nose_notes(stack.sections, plan))
 
 
 def refuse_crossing(stack: Stack, unit: Floats) -> None:

@@ -7,6 +7,7 @@ import pytest
 
 from meshonet.geometry.blocks.across import across
 from meshonet.geometry.errors import InputError, NoValidGridError
+from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.quality.growth import ratios
 from meshonet.geometry.quality.report import quality_report
 from meshonet.geometry.sections.section import Section
@@ -38,6 +39,33 @@ def test_cells_across_the_sides_of_blocks_are_alike_and_at_the_edge_of_the_tip_n
         own, donor = across(made.grid, each, 2)
         growth = ratios(np.stack([own[1], own[0], donor[1]]))[0][1:-1].max()
         assert growth <= (3.0 if {each.block, each.donor} == {0, 1} else 1.2)
+
+
+def thin() -> Stack:
+    """Return a swept wing with thin sections."""
+    return Stack((Section(naca("0006"), 1.0, 0.0), Section(naca("0005"), 0.4, 1.2, x=0.9)))
+
+
+def test_cells_turn_by_20_degrees_at_most_around_the_noses_of_a_thin_wing():
+    main = wing_surface(thin())[0].blocks[0].nodes
+    for section in (main[:, 0, :2], main[:, -1, :2]):
+        assert np.degrees(np.abs(turning(section[60:69]))).max() <= 20.0
+
+
+def test_the_report_says_which_spacing_a_nose_needs_that_is_a_wedge():
+    stack = Stack(thin().sections, le_spacing=0.01)
+    (note,) = (each for each in wing_surface(stack)[1] if "nose of NACA 0005" in each)
+    assert note.startswith("neighbouring cells at the nose of NACA 0005 turn by up to ")
+    helps = float(note.split("le_spacing = ")[1].split()[0])
+    mended = Stack(thin().sections, le_spacing=helps)
+    assert not any("nose" in note for note in wing_surface(mended)[1])
+    assert not any("nose" in note for note in wing_surface(thin())[1])
+
+
+def test_cells_on_the_tip_of_a_thin_wing_grow_by_a_factor_of_2_5_at_most():
+    grid = wing_surface(thin())[0]
+    for block in grid.blocks[1:]:
+        assert max(ratios(block.nodes).max(), ratios(block.nodes.swapaxes(0, 1)).max()) <= 2.5
 
 
 def winglet(cant=0.0, **values) -> Stack:
@@ -92,8 +120,10 @@ def test_the_report_says_first_cells_and_growth_at_wing_and_tip(made):
     assert notes[0].startswith("wing: first cells 0.001, growth up to 1.")
     assert notes[1].startswith("tip: first cells 0.001, growth up to 1.")
     (beyond,) = (note for note in made.notes if note.startswith("the largest growth ratio is"))
-    ring = ratios(made.grid.blocks[1].nodes[:, :, 0])
-    assert beyond.startswith(f"the largest growth ratio is {ring.max():.3f}, along xi at block=1, i=")
+    (edge,) = (each for each in made.grid.connections if (each.block, each.donor) == (0, 1))
+    own, donor = across(made.grid, edge, 2)
+    most = ratios(np.stack([own[1], own[0], donor[1]])).max()
+    assert beyond.startswith(f"the largest growth ratio is {most:.3f}, along eta at block=0, i=")
     assert beyond.endswith("above the limit of 1.2; along grid lines from walls it is 1.200")
 
 

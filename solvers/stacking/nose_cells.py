@@ -1,0 +1,61 @@
+"""Cells at the nose of a section: so short that the outline turns little from each of them to the next."""
+
+import math
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import geomspace
+from meshonet.geometry.polygon.corners import angle_between
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+
+TURN = math.radians(15.0)
+"""Angle between neighbouring cells at a nose, as far as the following two bounds allow it."""
+MOST = 0.35
+"""Length of the longest cells at a nose, in mean cells of a side."""
+_LEAST = 90.0
+"""Length of the shortest, in mean cells of a side, times the square of their number: with few
+cells, those around the section would grow too much.
+"""
+_ROUND = math.radians(25.0)
+"""Angle between neighbouring cells at a nose above which a note says what makes it smaller."""
+_SHORTEST = 1.0 / 64.0
+"""Ratio of the shortest spacing that a note recommends to that of the shortest cells."""
+_TRIED = 33  # lengths that are tried
+_BESIDE = 4  # cells on each side of the nose whose angles count
+
+
+def nose_cell(shape: Airfoil, cells: int) -> float:
+    """Return the length of cells at the nose of a section with `cells` cells on a side, in chords."""
+    return float(np.interp(TURN, *_turns(shape, cells, 1.0)))
+
+
+def nose_note(shape: Airfoil, cells: int, nose: float | None) -> str:
+    """Return a note if cells turn much at the nose of a section and shorter ones turn less, else nothing.
+
+    `cells` is the number of cells on a side, `nose` the length of cells at the nose in chords, if it is
+    prescribed.
+    """
+    turns, lengths = _turns(shape, cells, _SHORTEST)
+    turn = float(np.interp(nose or nose_cell(shape, cells), lengths, turns))
+    if turn <= _ROUND or turns[0] > TURN:
+        return ""
+    helps = float(np.interp(TURN, turns, lengths))
+    return (
+        f"neighbouring cells at the nose of {shape.name or 'a section'} turn by up to "
+        f"{math.degrees(turn):.0f} degrees; le_spacing = {helps:.1g} makes this about "
+        f"{math.degrees(TURN):.0f}, with more nodes {{around}} cells there grow less"
+    )
+
+
+def _turns(shape: Airfoil, cells: int, part: float) -> tuple[Floats, Floats]:
+    """Return the largest angles (k,) between neighbouring cells at the nose and their lengths (k,) in chords.
+
+    The shortest is `part` of the shortest default one. Angles increase with the length.
+    """
+    mean = 0.5 * (shape.upper_end - shape.half_base) / (cells * shape.unit)
+    lengths = geomspace(part * min(_LEAST / cells**2, MOST) * mean, MOST * mean, _TRIED)
+    places = shape.nose_arc + shape.unit * lengths[:, None] * np.arange(-_BESIDE, _BESIDE + 1)
+    steps = np.diff(shape.curve.at(places.ravel()).reshape(*places.shape, 2), axis=1)
+    turns = np.abs(angle_between(steps[:, :-1], steps[:, 1:])).max(axis=1)
+    return np.maximum.accumulate(turns), lengths
