@@ -166,7 +166,9 @@ class WallLayers:
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
         for loop, wake in (wakes or {}).items():
             parts.append(self.sizes[loop].wake_metric(wake, scale, self.settings))
-        metric = SizeMetric.joined([*parts, *self._at_rings(scale)])
+        if self.rings:
+            parts.append(SizeMetric.joined(self._at_rings(scale)))  # one part: the nearest ring counts
+        metric = SizeMetric.joined(parts)
         if size:
             along = metric.along * max(size / metric.along.max(), 1.0) ** 0.5
             return replace(metric, along=np.minimum(along, size), largest=size)
