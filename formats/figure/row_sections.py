@@ -224,7 +224,8 @@ def _nearest(points: Floats, cloud: Floats) -> Floats:
 def _ruled(points: Floats, hub: Floats, shroud: Floats) -> tuple[Floats, Floats]:
     """Return where points (n, 2) are on the straight lines between equal parts of hub and shroud.
 
-    The parts (n,) of the way along their line, and the part of the curves' lengths at which it is.
+    The results (n,) are the fraction of the way along the line, and the fraction of the lengths of hub and
+    shroud at which the line begins and ends.
     """
     lines = np.concatenate([hub, shroud - hub], axis=1)
     slopes = (len(lines) - 1) * np.diff(lines, axis=0)

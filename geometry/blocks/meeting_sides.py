@@ -93,7 +93,7 @@ class _SideCells:
 
     @property
     def flat(self) -> Floats:
-        """(n, 2 or 4, 2 or 3) corners."""
+        """(n, 2 or 4, 2 or 3) corners of the sides: 2 of lines and 4 of faces, in the plane or in space."""
         return self.corners.reshape(len(self.block), -1, self.corners.shape[-1])
 
     def reach(self, tolerance: float) -> Floats:

@@ -34,7 +34,7 @@ class Timed:
         return ""
 
     def row(self) -> MemberRow | None:
-        """Return its row in a table, if it was judged."""
+        """Return the row of this result in the table of verdicts; None if it was not judged."""
         return None
 
     @property

@@ -104,7 +104,7 @@ def planned(
 
 
 def _cells_between(space: BodyMap, sides: Sequence[Side], others: Sequence[Side]) -> int:
-    """Return the cells from one column to the next, by all lines on some levels."""
+    """Return the number of cells from one column to the next, judged by all lines on some levels."""
     (begin, first), (end, last) = (
         tuple(np.concatenate(each) for each in zip(*some, strict=True)) for some in (sides, others)
     )

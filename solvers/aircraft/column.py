@@ -181,7 +181,7 @@ class ColumnLevel:
 
     @property
     def _gap(self) -> tuple[float, float]:
-        """Theta where the wing's rectangle ends and where that of the fin begins."""
+        """Theta at which the wing's rectangle ends, and theta at which the fin's rectangle begins."""
         wing, fin = (each.hole for each in self.levels)
         return wing.box.high / float(wing.scale[1]), fin.box.low / float(fin.scale[1])
 

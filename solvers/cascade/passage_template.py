@@ -1,7 +1,7 @@
 r"""Blocks of a cascade's passage: a ring around the blade, the channel, and rows to inlet and outlet.
 
-In the plane G of a `PassageFlow`, where the blade is a slit, all blocks except the ring are rectangles, here
-with those above the cut where they are before they are moved down by the period::
+In the plane G of a `PassageFlow`, where the blade is a slit, all blocks except the ring are rectangles. In
+the drawing, the blocks above the cut are not yet moved down by the period::
 
     iπ - e  +----------+=====================+----------+     = the ring's outer side
             |          |       channel       |          |
@@ -87,9 +87,9 @@ def _tie(places: Places, potential: Complexes) -> None:
 
 
 def _pieces(flow: PassageFlow, passage: Passage) -> tuple[list[Complexes], list[Floats]]:
-    """Return the twelve blocks in the plane G, those of the ring last, and the angles of these as `_ring`.
+    """Return the twelve blocks in the plane G, and the angles (n,) that `_ring` returns.
 
-    Blocks above the cut are below the blade, a period further down.
+    The blocks of the ring come last. Blocks above the cut are placed below the blade, a period further down.
     """
     x = flow.half + AHEAD
     to_axis = np.pi / abs(passage.period)

@@ -147,7 +147,7 @@ class Follow:
 
 
 def _near(moved: Floats, fixed: Floats) -> float:
-    """Return the distance inside which the nearest sources dominate, by `moved` and `fixed` nodes (n, d)."""
+    """Return the distance within which the nearest of the `moved` and `fixed` nodes (n, d) dominate."""
     extent = NEAR * extent_of(moved)
     if not len(fixed):
         return extent

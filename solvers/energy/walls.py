@@ -90,7 +90,7 @@ def _once_around(arc: Floats, edges: Indices, length: Floats, following: Indices
 
 
 def _chains(edges: Indices, following: Indices, starts: Indices, ends: Bools) -> list[list[int]]:
-    """Return the edges in chains that start at nodes `starts`, then at others, and end at nodes in `ends`."""
+    """Return chains of edges, which end at nodes in `ends`; those that start at nodes `starts` come first."""
     seen, chains = np.zeros(len(edges), dtype=bool), []
     for start in [*starts.tolist(), *edges[:, 0].tolist()]:
         k, chain = int(following[start]), []

@@ -209,7 +209,7 @@ def _evened(
 ) -> Floats | None:
     """Return the nodes of a march whose steps are corrected so that cells grow by at most `growth`.
 
-    They may still grow faster where more rows of cells are better.
+    They may still grow faster at concave corners and beside narrow bases, if only more rows would help there.
     """
     nodes, steps = _marched(front, cells, first, settings, constant, edge=None if growth else front.edge)
     for _ in range(EVENINGS):

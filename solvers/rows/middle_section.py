@@ -83,9 +83,9 @@ def _made(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, floa
 
 
 def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
-    """Return the blocks beyond the layers where the functional is least, for sizes if given.
+    """Return the blocks beyond the layers with the nodes at which the functional is least.
 
-    Nodes in which the cut ends are held.
+    `metric` prescribes the cell sizes; None: none are prescribed. Nodes at which the cut ends do not move.
     """
     mesh = layout.mesh
     optimum = optimise(

@@ -252,7 +252,10 @@ def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> CleanS
 
 
 def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> CleanSection:
-    """Return the section with its corners; a sharp leading edge is one, a coarsely given round one is not."""
+    """Return the section with its corners.
+
+    A sharp leading edge is a corner; a round leading edge that is given by few points is not.
+    """
     edge = 0.5 * (ring[0] + ring[-1]) if blunt else ring[0]
     distance = norms(ring - edge)
     nose = int(np.argmax(distance))

@@ -252,7 +252,10 @@ def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tu
     from meshonet.geometry.spacing.tanh_law import TanhLaw
 
     def growth(half: int, step: float) -> float:
-        """Return the logarithm at the corner, where it is largest, as cell sizes vary like sech²."""
+        """Return the logarithm of the largest growth ratio, which occurs at the corner of the base.
+
+        The reason is that cell sizes vary like sech².
+        """
         d = TanhLaw(2 * half * 0.5 * step / half_base, 2 * half * 0.5 * step / half_base).stretch
         return d / half * math.tanh(0.5 * d)
 

@@ -147,7 +147,7 @@ def _too_many(domain: Domain) -> str:
 def _blocks(
     mesh: QuadMesh, price: float, timings: Timings, sizes: SizeMetric | None, spans: Sequence[Span]
 ) -> BaseComplex:
-    """Return the blocks of a quad mesh as it comes, its nodes anywhere."""
+    """Return the blocks of a quad mesh, after optimising its nodes, whose positions may be bad at first."""
     loops, spans = loops_to_pad(mesh), spans_to_pad(mesh, spans)
     with stage("first optimum", timings):
         mesh = _optimised(mesh, BEFORE_PADDING if loops or spans else FIRST_ITERATIONS, sizes)

@@ -113,7 +113,8 @@ def _tangents(mesh: QuadMesh, sliding: Bools) -> Complexes:
 def _near(mesh: QuadMesh, lines: GrowthLines, growth: Floats) -> Bools:
     """Return which nodes (n,) are near the middle ones of lines whose growth (k,) exceeds the limit.
 
-    That is within `AROUND` cells, and `REACH` more for each cell that it takes to grow so much.
+    Near means within `AROUND` cells. To these, `REACH` cells are added for each multiple of the limit by
+    which the growth exceeds it.
     """
     uneven = np.abs(growth) > lines.limit
     near = np.zeros(len(mesh.nodes), dtype=bool)

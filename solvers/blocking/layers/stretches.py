@@ -105,7 +105,7 @@ def _onward(loop: Loop, walls: Sequence[bool]) -> dict[int, tuple[int, int]]:
 
 
 def _stretches(loop: Loop, number: int, on: list[bool]) -> list[Stretch]:
-    """Return the stretches of a loop of which the parts `on` (corners,) have layers."""
+    """Return the stretches of a loop; `on` (corners,) says which parts between corners have layers."""
     count, convex = len(on), loop.corner_cells == 1
     for k in range(count):
         if on[k] != on[k - 1] and not convex[k]:

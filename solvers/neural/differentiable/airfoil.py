@@ -139,7 +139,11 @@ class _Correction:
         self._scale = operator.scale
 
     def __call__(self, wall: Tensor, far: Tensor, hand: Tensor) -> Tensor:
-        """Return the residual of bodies; where `hand` is negative, the mirror image's, mirrored back."""
+        """Return the residual of bodies.
+
+        Where `hand` is negative, the residual of the mirror image is computed and mirrored back; where it is
+        0, the mean of both.
+        """
         flip, even = (hand < 0)[:, None], hand == 0
         answer = self._answer(*(torch.where(flip, side.conj(), side) for side in (wall, far)))
         answer = torch.where(flip[..., None], answer.conj(), answer)

@@ -68,7 +68,7 @@ def torch_walls(z: Tensor, far: Tensor) -> TorchWalls:
 def _straightened(
     z: Tensor, zeta: Tensor, sharp: bool, base: list[int]
 ) -> tuple[Tensor, list[Corner], Tensor]:
-    """Return zeta with its trailing corners removed, their removals, and the pole inside."""
+    """Return zeta without its trailing corners, the maps that remove them, and the pole inside the body."""
     turn = torch.angle((torch.roll(z, -1) - z) / (z - torch.roll(z, 1)))
     ends = [(i, 1.0 + turn[i] / np.pi) for i in base]
     if sharp:

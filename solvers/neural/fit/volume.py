@@ -83,7 +83,7 @@ class VolumeTask(Task):
         return torch.cat([0.5 * torch.exp(-self.spread) * both, 0.5 * self.spread.sum()[None]])
 
     def differentiate(self, parts: Tensor, team: Team) -> None:
-        """Set the gradients of the parameters, those of conflicting parts projected."""
+        """Set the gradients of the parameters; if those of two parts of the loss conflict, project them."""
         if not self.model.projected:
             super().differentiate(parts, team)
             return

@@ -149,7 +149,7 @@ def _along_rays(stations: list[list[tuple[float, int, int, int]]], traced: _Trac
 
 
 def _not_joined(graph: MotorcycleGraph, rays: int) -> int:
-    """Return the first wall that has no node or does not hang together with the first wall, or -1."""
+    """Return the first wall that has no node or is not connected with the first wall; -1 if there is none."""
     walls = len(graph.stations) - rays
     pairs = [
         (walls + station[1], trail - rays if trail >= rays else walls + stations[0][1])

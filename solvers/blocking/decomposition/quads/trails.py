@@ -53,7 +53,7 @@ class Trails:
 
     @cached_property
     def _vertices(self) -> dict[int, int]:
-        """Piece that starts at each wall's vertex."""
+        """For each vertex on a wall, the number of the piece that starts there."""
         return {vertex: piece for piece, vertex in enumerate(self.vertex.tolist())}
 
     def total(self, trail: int) -> float:
