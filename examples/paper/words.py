@@ -31,10 +31,10 @@ The column *max angle against TFI / PDE* says whether MeshONet's angle is below,
 of TFI, and of the PDE solver. The column *claimed* translates the words of the paper: "better" means below,
 "slightly worse" means above. A dash means that the paper makes no claim.
 
-As in the paper, the boundary nodes of the network's output are replaced by the true ones (*boundary pasted*).
-This folds cells if the error of the network at the boundary exceeds the height of the first row of cells.
-`meshonet-hard` matches the boundary exactly. *Repaired* grids are the output of `infer` with its default
-options, which repair folded cells.
+As in the paper, the boundary nodes of the network's output are replaced by the given nodes (*boundary
+pasted*). This folds cells if the error of the network at the boundary exceeds the height of the first row of
+cells. `meshonet-hard` matches the boundary exactly. *Repaired* grids are the output of `infer` with its
+default options, which repair folded cells.
 """
 
 SPEED = """
@@ -50,7 +50,7 @@ Each case has 36 shapes of 101 x 101 nodes: 30 for training and 6 for tests, as 
 tests the middle of the parameter range and trains on both ends. *Extrapolation* tests one end of the range.
 *Random* tests random parameters. All values are for test grids. *Relative L2* is the distance from the
 converged Winslow solution. *Boundary error* is the largest distance of a boundary node of the network from
-the true one. Angles are in degrees.
+the given node. Angles are in degrees.
 
 The rows *PDE* are the grids from which the models learn. For the wrench, Winslow's equations fold 4 to 18
 cells of each grid at the two corners of 270 degrees; these cells are repaired. `meshonet-hard` has a trained
@@ -121,10 +121,10 @@ The maps show the first test shape of each case.
 SETTINGS = """
 ## Training
 
-The optimiser is Adam with a learning rate of 0.001, which is multiplied by 0.9 after each fifteenth of the epochs.
-`meshonet-hard` on wrenches uses 0.003 with a cosine schedule. A step uses 30 shapes, with 1000 random points inside and
-200 on the boundary (a quarter of these for `meshonet-hard` with modes). The loss of `meshonet` has the weights 900 and
-1000. The table gives the epochs and times of each run.
+The optimiser is Adam with a learning rate of 0.001, which is multiplied by 0.9 after each fifteenth of the
+epochs. `meshonet-hard` on wrenches uses 0.003 with a cosine schedule. A step uses 30 shapes, with 1000 random
+points inside and 200 on the boundary (a quarter of these for `meshonet-hard` with the setting `modes`). The
+loss of `meshonet` has the weights 900 and 1000. The table gives the epochs and times of each run.
 """
 
 SECONDS = {
