@@ -17,6 +17,8 @@ _LEAST = 90.0
 """Length of the shortest, in mean cells of a side, times the square of their number: with few
 cells, those around the section would grow too much.
 """
+_FEWEST = 24
+"""Fewest cells on a side with which those at the nose follow its curvature: volumes of fewer could fold."""
 _ROUND = math.radians(25.0)
 """Angle between neighbouring cells at a nose above which a note says what makes it smaller."""
 _SHORTEST = 1.0 / 64.0
@@ -25,9 +27,12 @@ _TRIED = 33  # lengths that are tried
 _BESIDE = 4  # cells on each side of the nose whose angles count
 
 
-def nose_cell(shape: Airfoil, cells: int) -> float:
-    """Return the length of cells at the nose of a section with `cells` cells on a side, in chords."""
-    return float(np.interp(TURN, *_turns(shape, cells, 1.0)))
+def nose_cell(shape: Airfoil, cells: int) -> float | None:
+    """Return the length of cells at the nose of a section with `cells` cells on a side, in chords.
+
+    None: cells are too few for a length that follows the curvature.
+    """
+    return float(np.interp(TURN, *_turns(shape, cells, 1.0))) if cells >= _FEWEST else None
 
 
 def nose_note(shape: Airfoil, cells: int, nose: float | None) -> str:
@@ -37,7 +42,7 @@ def nose_note(shape: Airfoil, cells: int, nose: float | None) -> str:
     prescribed.
     """
     turns, lengths = _turns(shape, cells, _SHORTEST)
-    turn = float(np.interp(nose or nose_cell(shape, cells), lengths, turns))
+    turn = float(np.interp(nose or nose_cell(shape, cells) or lengths[-1], lengths, turns))
     if turn <= _ROUND or turns[0] > TURN:
         return ""
     helps = float(np.interp(TURN, turns, lengths))

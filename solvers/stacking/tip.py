@@ -36,6 +36,7 @@ _ENDS = tuple(0.5 + 0.1 * k for k in range(10))
 _CELL = 1.5  # length of the cells of the core at the nose, in cells of its short side there
 _SHORTER = 0.4  # and in those of the section at the least: where nodes are few, angles would be larger
 _REACH = 4.0  # fewest cells over which they become as long as the cells of the section
+_MANY = 17  # nodes along the core above which cells at the nose are shorter
 _HALVINGS = 40  # of the range of this number
 _CLEAR = 1.3  # by which the core stays farther from nose and edge than the nodes that face its ends
 _NOSE, _EDGE = 0.35, 0.3  # and at least so many thicknesses of the section there
@@ -164,9 +165,11 @@ class Cap:
         first = nose_factor * _CLEAR * max(front, _NOSE * thick[-1 - m])
         last = 1.0 - edge_factor * max(_CLEAR * (1.0 - back), _EDGE * thick[m])
         rising = along[::-1]
-        cell = _CELL * CORE / (2 * m) * float(np.interp(first, rising, thick[::-1]))
-        places = _shifted(rising[m : len(rising) - m], first, cell)
-        places = last - (last - first) * ((back - places) / (back - first))[::-1]
+        places = first + (last - first) * (along[m : len(along) - m] - front) / (back - front)
+        if len(places) > _MANY:
+            cell = _CELL * CORE / (2 * m) * float(np.interp(first, rising, thick[::-1]))
+            shifted = _shifted(rising[m : len(rising) - m], first, cell)
+            places = last - (last - first) * ((back - shifted) / (back - first))[::-1]
 
         def at(values: Floats) -> Floats:
             return np.stack([np.interp(places, rising, column[::-1]) for column in values.T], axis=1)
