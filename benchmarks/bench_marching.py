@@ -59,8 +59,9 @@ method see [marching from surfaces](../guide/marching-surfaces.md).
   lines.
 - *CPU*: CPU time in seconds, from patches in memory to tested blocks, best of 3. *us a node*: the same time
   in microseconds per node of the volume. *process*: CPU time of the whole command, including writing the
-  volume; only for surfaces that are read from files. One thread of {machine}, while other programs used the
-  machine.
+  volume; only for surfaces that are read from files.
+  One thread of {machine}, while other programs
+  used the machine.
 
 """
 COLUMNS = (

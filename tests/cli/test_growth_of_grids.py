@@ -17,7 +17,7 @@ KINDS = {  # what is made, the growth that it is to keep, and whether it does al
     "C grid": ("infer naca:0012-sharp --topology c --first-cell 1e-4 --growth 1.2", 1.2, True),
     "C-H grid": ("infer naca:0012 --topology c --first-cell 1e-4 --growth 1.2", 1.2, True),
     "four sides": ("solve-pde duct.csv --res 33x41 --first-cell 5e-3 --growth 1.2", 1.2, True),
-    "blocks": ("solve-pde squares.wkt --first-cell 1e-2 --growth 1.02 --cells 3000", 1.02, False),
+    "blocks": ("solve-pde squares.wkt --first-cell 1e-2 --growth 1.08 --cells 3000", 1.08, False),
     "cascade": ("infer naca:0012 --pitch 0,0.9 --first-cell 1e-3 --growth 1.08 --cells 4000", 1.08, False),
     "wing": ("stack wing.toml --around 33 --span 9 --first-cell 1e-2 --far-field 5", 1.2, False),
     "blade": ("stack blade.toml --around 33 --span 5 --first-cell 1e-2 --far-field 5", 1.2, False),
