@@ -200,6 +200,10 @@ class MemberWork:
                     outcome = None, report
                 elif self.destination is not None:
                     try:
+                        if self.destination.format.name == "openfoam":
+                            from meshonet.geometry.quality.checkmesh_notes import with_checkmesh_notes
+
+                            report.notes = with_checkmesh_notes(report.notes, what)
                         if self.destination.is_dataset:
                             from meshonet_cli.batch.keys import Keys
 

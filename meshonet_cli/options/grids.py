@@ -48,9 +48,9 @@ class GridOptions(RunOptions, GateOptions, FileOptions):
 Refine = Annotated[int, option_of(METHOD)(
     "--refine", metavar="K", min=0, max=8,
     help="Number of refinements: solve at --res, then halve all cells and solve again, K times. The result "
-    "is the finest of K + 1 nested grids; convert --coarsen extracts the others. --res, --cells and "
-    "--cell-size refer to the coarsest grid, --first-cell, --growth and --base-nodes to the finest. If the "
-    "grid is marched, only the finest grid is made.",
+    "is the finest of K + 1 nested grids; convert --coarsen extracts the others. --res, --wake-nodes, "
+    "--cells and --cell-size refer to the coarsest grid, --first-cell, --growth and --base-nodes to the "
+    "finest. If the grid is marched, only the finest grid is made.",
 )]
 # fmt: on
 

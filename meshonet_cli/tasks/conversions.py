@@ -7,11 +7,11 @@ from functools import partial
 from meshonet.formats.convert import Conversion, plot3d_variant, unused_iblank
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.checkmesh_notes import checkmesh_notes
 from meshonet.geometry.quality.measure import count_folded_in
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import Batch, BatchTask, each
 from meshonet_cli.report.delivered import Delivered, delivered, part_names
-from meshonet_cli.report.openfoam import checkmesh_notes
 from meshonet_cli.terminal.session import Session
 
 
@@ -22,14 +22,13 @@ def convert_files(batch: Batch, conversion: Conversion, plot3d: str | None = Non
     boundaries = conversion.of_boundaries(batch.inputs.first(), files.output, from_format, to_format)
     put = None if boundaries else conversion.extruder(files.output, to_format)
     read = partial(conversion.read, fmt=from_format, boundaries=boundaries)
-    judged = conversion.coarsen > 1 or to_format == "openfoam" or files.output.endswith(".foam")
-    make = each(_converted, conversion=conversion, warn=batch.session.warn, judged=judged)
+    make = each(_converted, conversion=conversion, warn=batch.session.warn)
     task = BatchTask(read, make, "boundaries" if boundaries else "grids", put)
     return replace(batch, files=replace(files, to_format=to_format)).run(task)
 
 
 def _converted(
-    item: Item[Grid | Boundary], conversion: Conversion, warn: Callable[[str], None], *, judged: bool
+    item: Item[Grid | Boundary], conversion: Conversion, warn: Callable[[str], None]
 ) -> tuple[Grid | Boundary, Delivered]:
     what = conversion(item.what)
     note = unused_iblank(item.what)
@@ -38,7 +37,9 @@ def _converted(
     folded = count_folded_in(what) if isinstance(what, Grid) else 0
     if folded:
         warn(f"{item.label}: the grid has {folded} folded cells; they are written as they are")
-    notes = checkmesh_notes(what, conversion.coarsen) if judged and isinstance(what, Grid) else ()
+    notes: tuple[str, ...] = ()
+    if conversion.coarsen > 1 and isinstance(what, Grid):
+        notes = checkmesh_notes(what, conversion.coarsen)
     return what, delivered(item, what, part_names(what), notes=notes)
 
 

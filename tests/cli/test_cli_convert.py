@@ -52,6 +52,17 @@ def test_a_coarse_level_beyond_a_limit_of_checkmesh_is_told(meshonet: Meshonet) 
     assert "checkMesh" not in meshonet("convert", "fine.cgns", "same.vts").err
 
 
+@pytest.mark.parametrize("command", ["infer naca:0012-sharp {} -o", "convert a.cgns"])
+def test_a_case_of_openfoam_beyond_a_limit_of_checkmesh_is_told_once(
+    meshonet: Meshonet, command: str
+) -> None:
+    made = "--topology o --first-cell 1e-5 --res 129x65"
+    meshonet("infer", "naca:0012-sharp", *made.split(), "-o", "a.cgns")
+    told = meshonet(*command.format(made).split(), "case/case.foam")
+    assert told.code == 0
+    assert told.err.count("beyond the limits of OpenFOAM's checkMesh: face_skewness ") == 1
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
