@@ -5,13 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import complex_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import may_be_wall
 from meshonet.geometry.blocks.vertices import vertices
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.elementary import angle
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.quality.lines import lines
 from meshonet.geometry.quality.walls import wall_rows
 from meshonet.geometry.spacing.y_plus import first_cell_note
@@ -62,8 +61,9 @@ def sharp_edge_notes(layout: Layout) -> list[str]:
             node = int(np.argmin(np.hypot(*(mesh.nodes - edge).T)))
             there = mesh.quads[(mesh.quads == node).any(axis=1)]
             if loop.corner_angles[0] / len(there) > WIDEST:
-                z = complex_of(mesh.nodes[there])
-                angles = angle((np.roll(z, 1, axis=1) - z) / (np.roll(z, -1, axis=1) - z))
+                corners = mesh.nodes[there]
+                after, before = (np.roll(corners, k, axis=1) - corners for k in (-1, 1))
+                angles = angle_between(after, before)
                 at = f"the sharp edge of {loop.names[0]}, ({x:.6g}, {y:.6g}),"
                 has = f"have angles of {np.degrees(angles.max()):.1f} degrees"
                 check = "checkMesh of OpenFOAM can find them skew"

@@ -47,12 +47,12 @@ def _base(request: OneBlock) -> Method:
     A network is used only if it is requested by name or settings.
     """
     best = request.by_network or request.method == "best"
-    asked = ":" in request.method or not set(NETWORK_SETTINGS).isdisjoint(request.chosen)
-    if best and not asked and {*NETWORK_SETTINGS, "answer"}.issuperset(request.settings):
+    chosen = ":" in request.method or not set(NETWORK_SETTINGS).isdisjoint(request.chosen)
+    if best and not chosen and {*NETWORK_SETTINGS, "answer"}.issuperset(request.settings):
         return Best()
     from meshonet.solvers.pipeline.named import UnknownSettingError, method_named
 
-    if best and asked:
+    if best and chosen:
         return method_named(request.method if request.by_network else "operator", **request.settings)
     if best:
         wrong = next(each for each in request.settings if each not in (*NETWORK_SETTINGS, "answer"))

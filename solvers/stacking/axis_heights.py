@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices
-from meshonet.solvers.stacking.span_heights import by_panel, largest_growth, span_heights
+from meshonet.solvers.stacking.span_heights import by_panel, growth_at, largest_growth, span_heights
 from meshonet.solvers.stacking.wing_surface import DEFAULT_SPAN
 
 GROWTH = 1.2
@@ -56,14 +56,14 @@ def _counted(heights: Floats, nodes: int | None) -> list[str]:
 
 def _uneven(heights: Floats) -> list[str]:
     """Return a note on the largest ratio of neighbouring cells along the axis, if it is high."""
-    most = largest_growth(heights)
-    if most <= GROWTH:
+    growth = growth_at(heights)
+    most = int(growth.argmax())
+    if growth[most] <= GROWTH:
         return []
-    steps = np.diff(heights)
-    ratios = np.maximum(steps[1:] / steps[:-1], steps[:-1] / steps[1:])
-    z = float(heights[1 + int(ratios.argmax())])
-    what = f"cells along z differ by a factor of {most:.3g} at z={z:g}, where sections are unevenly spaced"
-    return [f"{what}: space them evenly, or give more nodes by {{span}}"]
+    z = float(heights[1 + most])
+    differ = f"cells along z differ by a factor of {growth[most]:.3g} at z={z:g}"
+    remedy = "space them evenly, or give more nodes by {span}"
+    return [f"{differ}, where sections are unevenly spaced: {remedy}"]
 
 
 def _gradual(sections: Floats, cells: int) -> Floats:

@@ -58,11 +58,16 @@ def _moved(cells: list[int], source: int, target: int) -> list[int]:
     return out
 
 
-def largest_growth(heights: Floats) -> float:
-    """Return the largest ratio of neighbouring cells."""
+def growth_at(heights: Floats) -> Floats:
+    """Return the ratio (n - 2,), at least 1, of the two cells at each inner node of `heights` (n,)."""
     steps = np.diff(heights)
     ratio = steps[1:] / steps[:-1]
-    return float(np.maximum(ratio, 1.0 / ratio).max())
+    return np.maximum(ratio, 1.0 / ratio)
+
+
+def largest_growth(heights: Floats) -> float:
+    """Return the largest ratio of neighbouring cells."""
+    return float(growth_at(heights).max())
 
 
 def _cells(own: Indices, panels: Sequence[int | None], free: Sequence[int]) -> list[int]:

@@ -43,24 +43,24 @@ def test_coarsen_keeps_every_kth_node(meshonet: Meshonet, duct_h5: Path) -> None
     assert [part.name for part in coarse.patches] == [part.name for part in fine.patches]
 
 
-def test_a_coarse_level_beyond_a_limit_of_checkmesh_is_told(meshonet: Meshonet) -> None:
+def test_a_coarse_level_beyond_a_limit_of_checkmesh_has_a_note(meshonet: Meshonet) -> None:
     made = ("--topology", "o", "--first-cell", "2e-6", "--res", "129x97")
     meshonet("infer", "naca:0012", *made, "-o", "fine.cgns")
-    told = meshonet("convert", "fine.cgns", "coarse.cgns", "--coarsen", "4")
-    assert "beyond the limits of OpenFOAM's checkMesh: non_orthogonality " in told.err
-    assert " > 70; growth ratios are those of the fine grid to the power 4" in told.err
+    done = meshonet("convert", "fine.cgns", "coarse.cgns", "--coarsen", "4")
+    assert "beyond the limits of OpenFOAM's checkMesh: non_orthogonality " in done.err
+    assert " > 70; growth ratios are those of the fine grid to the power 4" in done.err
     assert "checkMesh" not in meshonet("convert", "fine.cgns", "same.vts").err
 
 
 @pytest.mark.parametrize("command", ["infer naca:0012-sharp {} -o", "convert a.cgns"])
-def test_a_case_of_openfoam_beyond_a_limit_of_checkmesh_is_told_once(
+def test_a_case_of_openfoam_beyond_a_limit_of_checkmesh_has_one_note(
     meshonet: Meshonet, command: str
 ) -> None:
     made = "--topology o --first-cell 1e-5 --res 129x65"
     meshonet("infer", "naca:0012-sharp", *made.split(), "-o", "a.cgns")
-    told = meshonet(*command.format(made).split(), "case/case.foam")
-    assert told.code == 0
-    assert told.err.count("beyond the limits of OpenFOAM's checkMesh: face_skewness ") == 1
+    done = meshonet(*command.format(made).split(), "case/case.foam")
+    assert done.code == 0
+    assert done.err.count("beyond the limits of OpenFOAM's checkMesh: face_skewness ") == 1
 
 
 @pytest.mark.parametrize(

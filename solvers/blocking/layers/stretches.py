@@ -92,16 +92,16 @@ def _onward(loop: Loop, walls: Sequence[bool]) -> dict[int, tuple[int, int]]:
 
     With each are the part that it continues, and the corner between both.
     """
-    count, found = len(loop.corners), dict[int, tuple[int, int]]()
+    count, onward = len(loop.corners), dict[int, tuple[int, int]]()
     lines = [k for k, name in enumerate(loop.names) if not may_be_wall(name) and kind_of(name) in _LINES]
     for _ in lines:  # a line may continue another one
         for part in lines:
             after = (part + 1) % count
             for other, corner in (((part - 1) % count, part), (after, after)):
-                goes_on = (walls[other] or other in found) and loop.corner_cells[corner] == 2
+                goes_on = (walls[other] or other in onward) and loop.corner_cells[corner] == 2
                 if goes_on and not walls[part]:
-                    found.setdefault(part, (other, corner))
-    return found
+                    onward.setdefault(part, (other, corner))
+    return onward
 
 
 def _stretches(loop: Loop, number: int, on: list[bool]) -> list[Stretch]:

@@ -111,10 +111,10 @@ def _continued(mesh: QuadMesh, quad: int, image: int, corner: int) -> Indices | 
 
     Quads turn round: their corner i becomes number `first` - i of the image. None where quads do not fit.
     """
-    found = quad_images(mesh.twin, quad, image, corner)
-    if found is None:
+    images_and_corners = quad_images(mesh.twin, quad, image, corner)
+    if images_and_corners is None:
         return None
-    images, first = found
+    images, first = images_and_corners
     sides = np.arange(4)
     to = np.zeros(len(mesh.nodes), dtype=np.intp)
     turned = mesh.quads[images[:, None], (first[:, None] - sides) % 4]
