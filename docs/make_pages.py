@@ -119,9 +119,9 @@ FAMILIES_HEAD = """# The six test families
 <!-- made by python docs/make_pages.py -->
 
 Use these families of shapes to train and compare neural operators. They are the test cases of the MeshONet
-paper. The shapes of a family depend on one parameter. `sample-boundary --family NAME --count N` makes N
-shapes with parameters in the given range, `--range A:B` selects another range, and `solve-pde` generates the
-grids.
+paper ([results](../benchmarks/paper/index.md)). The shapes of a family depend on one parameter.
+`sample-boundary --family NAME --count N` makes N shapes with parameters from the range below, or from
+another range with `--range A:B`; `solve-pde` makes their grids.
 """
 
 
@@ -263,7 +263,7 @@ def families_page() -> str:
         lines += [
             f"## {name}\n",
             f"The parameter is the {member.parameter}, from {member.low:g} to {member.high:g}. "
-            f"The topology is {member.topology}.\n",
+            f"The topology is {member.topology if member.topology == 'quad' else member.topology.upper()}.\n",
             f"![{name}](../img/{name}.png)\n",
         ]
     return "\n".join(lines)
