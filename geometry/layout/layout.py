@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from meshonet.geometry.arrays import Indices, distinct
+from meshonet.geometry.arrays import Bools, Indices, distinct
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 
@@ -31,12 +31,10 @@ class Layout:
     blocks : tuple of array
         Right-handed arrays (ni, nj) of node indices; each quad of the mesh is in exactly one block.
     layers : dict, optional
-        For blocks with layers: a dict from the index of a block to the number of its rows of cells, counted
-        from its south side, that are layers at a wall. The heights of these rows are prescribed, so that the
-        optimisation does not move them.
+        By index of a block, the number of its rows from the south side that are layers at a wall. No
+        optimisation moves them.
     fronts : tuple of int, optional
-        Indices of the loops that are not walls but the outer sides of layers. The cells of these layers are
-        added later.
+        Indices of the loops that are outer sides of layers; the cells of these layers are added later.
     """
 
     mesh: QuadMesh
@@ -49,6 +47,11 @@ class Layout:
         """(v,) numbers of the nodes at corners of blocks, ascending."""
         corners = [block[[0, -1, -1, 0], [0, 0, -1, -1]] for block in self.blocks]
         return np.asarray(distinct(np.concatenate(corners)))
+
+    def beside(self, on: Bools) -> list[Indices]:
+        """Return the node tables (k, m) of blocks from each side in the mask `on` (n,) of nodes inwards."""
+        tables = [t for block in self.blocks for t in (block, block[:, ::-1], block.T, block.T[:, ::-1])]
+        return [table for table in tables if on[table[:, 0]].all()]
 
     @property
     def cells(self) -> int:

@@ -1,7 +1,4 @@
-"""Quadrilaterals over one table of nodes: the mesh that block decompositions work on.
-
-Unlike blocks, quads share their nodes: a node of an interface or a singular vertex is one unknown.
-"""
+"""Quadrilaterals that share nodes: the mesh that block decompositions work on."""
 
 from __future__ import annotations
 
@@ -13,6 +10,8 @@ from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.domain.domain import Domain
 from meshonet.kernels._native import connect_quads
+
+_PROJECTIONS = 3  # onto tangents of a loop, which converge quadratically
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,9 +25,7 @@ class Places:
     cells: Indices
     """Number of cells that should meet at a corner, which does not move; 0 for nodes that are no corners."""
     partner: Indices
-    """Number of the partner: this node is the partner, moved by the period of the domain; -1 without a
-    partner.
-    """
+    """Index of the partner, which is this node before it is moved by the period; -1 without a partner."""
 
     @classmethod
     def inside(cls, count: int) -> Places:
@@ -96,10 +93,7 @@ class QuadMesh:
 
     @property
     def twin(self) -> Indices:
-        """(m, 4) for each edge of each quad, the quad on its other side; -1 on the boundary.
-
-        The entry is 4 q + k if the edge is edge k of quad q.
-        """
+        """(m, 4) for each edge of each quad: 4 q + k if it is edge k of another quad q, else -1."""
         return self._sides[1]
 
     @property
@@ -137,8 +131,7 @@ class QuadMesh:
     def aspects(self, lengths: Floats) -> Floats:
         """Return the aspect ratios (m,) of the quads, for edges of `lengths` (e,).
 
-        The ratio is the geometric mean length of the sides 1-2 and 3-0, divided by that of the sides 0-1 and
-        2-3.
+        It is the geometric mean length of the sides 1-2 and 3-0, divided by that of the sides 0-1 and 2-3.
         """
         sides = lengths[self.edge_of]
         return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))
@@ -169,6 +162,19 @@ class QuadMesh:
         """Return the same quads with nodes (n, 2) and, if given, boundary arc lengths (n,) replaced."""
         places = self.places if arc is None else replace(self.places, arc=arc)
         return self.with_places(nodes, places)
+
+    def on_loops(self, which: Bools) -> QuadMesh:
+        """Return the mesh with nodes in the mask `which` (n,) moved to the nearest points of their loops."""
+        nodes, arc = self.nodes.copy(), self.places.arc.copy()
+        for number, loop in enumerate(self.domain.loops):
+            on = np.flatnonzero(which & (self.places.loop == number))
+            if not on.size:
+                continue
+            for _ in range(_PROJECTIONS):
+                arc[on] += ((nodes[on] - loop.at(arc[on])) * loop.tangent(arc[on])).sum(axis=1)
+            arc[on] = np.mod(arc[on], loop.length)
+            nodes[on] = loop.at(arc[on])
+        return self.with_nodes(nodes, arc)
 
     def with_places(self, nodes: Floats, places: Places) -> QuadMesh:
         """Return the same quads with nodes (n, 2) and their places on the boundary replaced."""

@@ -36,11 +36,9 @@ def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
     is the fraction of the edge's length, so that the spacing of the edges continues into the interior. The
     edges of the grid equal those of `boundary` bitwise. Raises InputError: the blending is unknown.
     """
-    nodes = planar_nodes(boundary.ni, boundary.nj)
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
-    interpolate(nodes[..., 0], nodes[..., 1], edges, parameters(edges, blending))
     facts = {"method": "tfi", "blending": blending}
-    return boundary.grid(nodes, facts)
+    return boundary.grid(between(edges, blending), facts)
 
 
 @timed
@@ -48,6 +46,13 @@ def solve(boundary: Boundary, *, blending: Blending = "arclength") -> Solution:
     """Return the transfinite interpolation of `boundary` as a solution (`tfi`)."""
     grid = tfi(boundary, blending)
     return Solution(grid, "tfi")
+
+
+def between(edges: Four, blending: Blending = "arclength") -> Floats:
+    """Return nodes (ni, nj, 2) between `edges` (n, 2): south, north, west, east; see `tfi`."""
+    nodes = planar_nodes(len(edges[0]), len(edges[2]))
+    interpolate(nodes[..., 0], nodes[..., 1], edges, parameters(edges, blending))
+    return nodes
 
 
 def parameters(edges: Four, blending: Blending) -> Four:

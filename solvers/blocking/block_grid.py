@@ -20,24 +20,17 @@ from meshonet.solvers.refinement.refine import multiplied, refine
 from meshonet.solvers.stages import Timings, stage
 
 OPTIMISED = 6000
-"""Largest number of cells that are optimised directly; finer grids are splines through half as many in
-each direction.
-"""
-ITERATIONS = 150  # of the optimum, at the most; it usually ends before by its gain
+"""Largest number of cells that are optimised; finer grids are splines through the nodes of a coarser one."""
+ITERATIONS = 150  # of the optimisation at the most; it usually ends earlier, when its gain is small
 CUT_OFF = 7e-4
 """Fraction of the area that cells may cut off along walls before the walls get more cells."""
 ROUNDS, STEP, MORE = 7, 1.12, 1.19
-"""Largest number of refinements at walls, their factor, and the largest multiple of the requested number of
-cells.
-"""
+"""Largest number of refinements at walls, their factor, and the largest ratio of cells to requested cells."""
 MOST_CUT_OFF = 9.5e-4
-"""Fraction of the area, cut off less added, up to which the largest number of cells is accepted; above it,
-wall nodes are placed closer at bends.
-"""
+"""Fraction of the area, cut off less added, above which wall nodes are placed closer at bends."""
 MOST_HALVED = 8
 """Largest number of times that cells are halved without an optimisation in between."""
-RECOUNTS = 4
-"""Number of iterations for the total number of cells if numbers along some sides are prescribed."""
+RECOUNTS = 4  # iterations for the total number of cells if numbers along some sides are prescribed
 HELD_BACK = 0.6
 """Factor by which the largest turn of a wall along one edge is reduced in each round."""
 
@@ -107,10 +100,7 @@ def fine_layout(
 
 
 def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, halvings: int) -> Indices:
-    """Return counts (chords,) that suit the sides of a domain, for a grid that is halved some times later.
-
-    That has cells of a size, or else `wanted` cells.
-    """
+    """Return counts (chords,) for a grid with cells of a size, or `wanted` cells, after `halvings`."""
     cells = wanted = wanted / 4**halvings
     size = size and size * 2**halvings
     for _ in range(RECOUNTS):
@@ -124,17 +114,17 @@ def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, h
 
 
 def cut_off(fine: Layout, area: float = 0.0) -> float:
-    """Return the fraction of `area` that is lost because cells along curved walls have straight edges.
+    """Return the fraction of `area` that the straight edges of cells along curved walls cut off.
 
-    It is negative if the cells cover more than `area`, which is by default the area inside the polygons
-    through the points of the domain.
+    It is negative if the cells cover more than `area`. The default is the area inside the polygons through
+    the points of the domain.
     """
     (x, y), area = fine.mesh.nodes[fine.mesh.quads].transpose(2, 0, 1), area or fine.mesh.domain.area
     return 1.0 - 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum()) / area
 
 
 def _held_back(fine: Chords, turning: float) -> float:
-    """Return by how many radians walls may turn along an edge: less than now, where most is cut off."""
+    """Return the largest turn (radians) of walls along an edge: less than now where most is cut off."""
     return HELD_BACK * min(turning, fine.bend(int(np.argmax(fine.cut_off()))))
 
 
@@ -151,7 +141,7 @@ def _optimised(chords: Chords, counts: Indices, times: int, turning: float, timi
 
 
 def _optimum(mesh: QuadMesh, turning: float) -> QuadOptimum:
-    """Return the optimum of a mesh, its nodes symmetric to mirrors of the domain to which its quads are."""
+    """Return the optimum of a mesh; its nodes are symmetric about the mirrors of its quads."""
     images = images_of(mesh)
     if images:
         optimum = optimise(made_symmetric(mesh, images), iterations=ITERATIONS, turning=turning)
@@ -162,12 +152,10 @@ def _optimum(mesh: QuadMesh, turning: float) -> QuadOptimum:
 
 
 def _more_along_walls(fine: Chords, finer: float, times: int) -> Indices:
-    """Return counts (chords,) of which cells cut less off along walls, if that is over `CUT_OFF` of the area.
+    """Return counts (chords,), larger along walls if more than `CUT_OFF` of the area is cut off.
 
-    They are those of a layout `times` as coarse each way.
-
-    It goes with the square of the counts; chords that cut off more than their part, by the length of walls,
-    get up to `STEP` times as many. `finer` is how many times less is cut off after refinement.
+    The area that a chord cuts off is proportional to 1 / count². Counts are those of a layout with `times`
+    fewer cells in each direction; refinement later divides the area that is cut off by `finer`.
     """
     lost = np.bincount(fine.chord, fine.cut_off(), fine.count) / finer
     if lost.sum() <= CUT_OFF * fine.layout.mesh.domain.area:

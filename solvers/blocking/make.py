@@ -192,8 +192,8 @@ def _outside_layers(domain: Domain, request: BlockRequest, height: AtWalls, layo
     loops, stretches = layered_walls(domain, request.layered)
     walls = WallLayers.of(domain, loops, settings_of(request, height), stretches)
     if layout is None:
-        return found_outside(walls.rest, walls.fronts)
-    return taken_outside(layout, walls.rest, walls.fronts)
+        return found_outside(walls.rest, walls.rings)
+    return taken_outside(layout, walls.rest, walls.rings)
 
 
 def _checked(domain: Domain, request: BlockRequest) -> Domain:
@@ -240,7 +240,7 @@ def _fewer_cells(request: BlockRequest) -> str:
 
 
 def _more_cells(made: int, request: BlockRequest) -> str:
-    """Return a note if layers, which have rows enough to keep the growth, need more cells than requested."""
+    """Return a note if layers need many more cells than requested."""
     wanted = (request.cells or 0) * 4**request.refine
     if not wanted or not request.at_walls or made <= MORE * wanted:
         return ""
@@ -258,6 +258,5 @@ def _folded_coarser(grid: Grid, halvings: int) -> list[str]:
 
 
 def _stages(timings: Timings, spent: float) -> dict[str, float]:
-    """Return the seconds of the decomposition and of the grid."""
     layout = sum(part for name, part in timings.items() if name not in ("refine", "optimum", "layers"))
     return {"layout": layout, "grid": max(spent - layout, 0.0)}

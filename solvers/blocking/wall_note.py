@@ -15,7 +15,7 @@ from meshonet.geometry.quality.lines import lines
 from meshonet.geometry.quality.walls import wall_rows
 from meshonet.geometry.spacing.y_plus import first_cell_note
 from meshonet.solvers.blocking.layers.marched import BLUNT
-from meshonet.solvers.blocking.layers.sheet import has_sharp_edge
+from meshonet.solvers.blocking.layers.wall_rows import has_sharp_edge
 
 WIDEST = 150.0
 """Angle in degrees of a cell at a sharp edge above which a note says how to avoid it."""

@@ -6,8 +6,9 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.cad.model import CadEdge, CadFace, CadModel, Curve, EdgeUse
-from meshonet.geometry.elementary import arctan2, product, sin
+from meshonet.geometry.elementary import product, sin
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import angle_between
 
 TURN_DEG = 12.0
 """Largest angle by which a curve turns along a cell, with spacing by curvature."""
@@ -62,8 +63,8 @@ def edge_laws(model: CadModel, size: float, spacing: str) -> list[EdgeLaw]:
     """Return the distribution of nodes along each edge, for cells of at most `size`.
 
     `spacing` is ``uniform``, ``cosine`` or ``curvature``, also called ``auto``. With ``curvature``, cells are
-    smaller where edges bend, and next to vertices at which a short edge ends. An edge that is a single point
-    (a pole) gets the distribution of the line through the middle of its face.
+    smaller where edges bend, and next to short edges. An edge that is a single point (a pole) gets the
+    distribution of the line through the middle of its face.
 
     Raises InputError: `spacing` is none of these.
     """
@@ -130,11 +131,6 @@ def _by_turning(points: Floats, arcs: Floats) -> Floats:
     length = 0.5 * (arcs[2:] - arcs[:-2])
     inner = TURN_DEG * length / np.maximum(turn, 1e-9)
     return np.concatenate([inner[:1], inner, inner[-1:]])
-
-
-def angle_between(first: Floats, second: Floats) -> Floats:
-    """Return the angles (n,) between vectors (n, 3), in radians."""
-    return np.asarray(arctan2(norms(np.cross(first, second)), (first * second).sum(axis=-1)))
 
 
 def corner_turns(model: CadModel, uses: tuple[EdgeUse, ...]) -> Floats:

@@ -11,13 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, arc_parts, norms, ring_of
+from meshonet.geometry.arrays import Floats, norms, ring_of
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.cad.model import CadFace, CadModel
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.cad.edges import EdgeNodes, edge_laws, place_on
+from meshonet.solvers.algebraic.tfi import between
+from meshonet.solvers.cad.edges import edge_laws, place_on
 from meshonet.solvers.cad.sides import FacePlan, cell_counts, planned
 from meshonet.solvers.solution import Solution, timed
 
@@ -47,8 +48,7 @@ def patches_on(model: CadModel, sampling: Sampling) -> Solution:
     """Return the patches on all faces of a CAD file, as a grid of blocks (ni, nj, 3).
 
     Two fields of `sampling` apply: `ni` is the number of cells along the longest extent (None: 40), and
-    `spacing` is ``uniform``, ``cosine``, or ``curvature`` (also ``auto``) with smaller cells where edges
-    bend.
+    `spacing` is as in `edge_laws`.
 
     Raises InputError: a face cannot become patches (with its number, sides and place); cells are folded;
     other fields of `sampling` are set.
@@ -64,7 +64,8 @@ def patches_on(model: CadModel, sampling: Sampling) -> Solution:
     blocks: list[Block] = []
     notes, off = list(model.notes), 0.0
     for number, (face, plan) in enumerate(zip(model.faces, plans, strict=True), 1):
-        sides = [_joined([_line(nodes[face.uses[k].edge], face, k) for k in side]) for side in plan.sides]
+        lines = [_FaceLine(*nodes[use.edge].along(use)) for use in face.uses]
+        sides = [_joined([lines[k] for k in side]) for side in plan.sides]
         off = max(off, *(float(norms(face.points(side.places) - side.points).max()) for side in sides))
         made = _disc(face, sides[0]) if plan.kind == "disc" else [_quad(face, _four(plan, sides))]
         if plan.kind == "disc":
@@ -89,10 +90,6 @@ def _check_sampling(sampling: Sampling) -> None:
         raise InputError(problem, "give one number, of cells along the longest extent", parameter="res")
 
 
-def _line(nodes: EdgeNodes, face: CadFace, k: int) -> _FaceLine:
-    return _FaceLine(*nodes.along(face.uses[k]))
-
-
 def _joined(lines: list[_FaceLine]) -> _FaceLine:
     return _FaceLine(
         *(np.concatenate([lines[0][at], *(line[at][1:] for line in lines[1:])]) for at in (0, 1))
@@ -100,7 +97,7 @@ def _joined(lines: list[_FaceLine]) -> _FaceLine:
 
 
 def _four(plan: FacePlan, sides: list[_FaceLine]) -> list[_FaceLine]:
-    """Return the four sides of a face, counter-clockwise; nose and base have as many cells across."""
+    """Return the four sides of a face, counter-clockwise; nose and base have equally many cells."""
     if plan.kind == "quad":
         return sides
     base, rest = sides
@@ -112,7 +109,7 @@ def _four(plan: FacePlan, sides: list[_FaceLine]) -> list[_FaceLine]:
 def _quad(face: CadFace, sides: list[_FaceLine]) -> Floats:
     """Return the nodes (ni, nj, 3) of a patch between four sides, counter-clockwise."""
     south, east, north, west = sides[0], sides[1], sides[2].reversed(), sides[3].reversed()
-    places = blended(south.places, north.places, west.places, east.places)
+    places = between((south.places, north.places, west.places, east.places))
     patch = face.points(places.reshape(-1, 2)).reshape(*places.shape[:2], 3)
     patch[:, 0], patch[:, -1], patch[0], patch[-1] = south.points, north.points, west.points, east.points
     return patch
@@ -146,22 +143,6 @@ def _disc(face: CadFace, loop: _FaceLine) -> list[Floats]:
         for k, arc in enumerate(arcs)
     ]
     return [_quad(face, inner), *ring]
-
-
-def blended(south: Floats, north: Floats, west: Floats, east: Floats) -> Floats:
-    """Return coordinates (ni, nj, 2) between four sides, (ni, 2) or (nj, 2), by transfinite interpolation.
-
-    For the weights, each node of a side is placed on the corresponding side of the unit square, at its
-    fraction of the side's length. Straight lines join nodes of equal index on opposite sides. The weights of
-    an inner node are the coordinates of the point at which its two lines cross (Soni 1985).
-    """
-    a, b, c, d = (arc_parts(line) for line in (south, north, west, east))
-    a, b, c, d = a[:, None], b[:, None], c[None], d[None]
-    across = 1.0 - (b - a) * (d - c)
-    xi, eta = ((a + (b - a) * c) / across)[..., None], ((c + (d - c) * a) / across)[..., None]
-    lines = (1.0 - eta) * south[:, None] + eta * north[:, None] + (1.0 - xi) * west + xi * east
-    ends = (1.0 - xi) * ((1.0 - eta) * south[0] + eta * north[0])
-    return np.asarray(lines - ends - xi * ((1.0 - eta) * south[-1] + eta * north[-1]))
 
 
 def _check(patch: Floats, number: int) -> None:

@@ -24,20 +24,16 @@ from meshonet.solvers.whole_numbers import Row, difference, whole_numbers
 
 _REFUSED = 5  # faces named in an error
 _ACROSS = 8
-"""Smallest number of cells across a base, and across the nose opposite to it, where they turn by about 90
-degrees.
-"""
+"""Smallest number of cells across a base, and across the nose opposite to it."""
 _BASE = 0.7
 """Largest ratio of the base to the opposite side."""
 
 
 @dataclass(frozen=True)
 class FacePlan:
-    """Division of a face into patches.
+    """Division of a face into patches; a side lists consecutive edges by their positions in the face's loop.
 
-    A side is a sequence of consecutive edges, given by their positions in the loop of the face. `sides`
-    starts at the first corner. A ``quad`` has four sides, a ``nose`` a short one and a long one, a ``disc`` a
-    single side with all edges.
+    A ``quad`` has four sides, a ``nose`` a short one and a long one, a ``disc`` a single one with all edges.
     """
 
     kind: Literal["quad", "nose", "disc"]
@@ -66,7 +62,7 @@ def planned(model: CadModel) -> tuple[FacePlan, ...]:
 
 
 def _plan(model: CadModel, face: CadFace) -> FacePlan | str:
-    """Return the plan of a face, or what it has that none can do with."""
+    """Return the plan of a face, or as text the property that prevents one."""
     if face.holes:
         return "a hole" if face.holes == 1 else f"{face.holes} holes"
     turns = corner_turns(model, face.uses)
@@ -89,7 +85,7 @@ def _plan(model: CadModel, face: CadFace) -> FacePlan | str:
 
 
 def _runs(corners: Indices, count: int) -> tuple[tuple[int, ...], ...]:
-    """Return the places of edges in a loop from each corner to the next."""
+    """Return the positions of edges in a loop from each corner to the next."""
     ends = [*corners.tolist(), int(corners[0]) + count]
     return tuple(tuple(k % count for k in range(a, b)) for a, b in pairwise(ends))
 

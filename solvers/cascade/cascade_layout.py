@@ -19,19 +19,12 @@ from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.elementary import log
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
+from meshonet.solvers.blocking.chord_cells import WantedCounts
 from meshonet.solvers.blocking.layers.attach import Rows
 from meshonet.solvers.blocking.layers.finished import evened
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
-from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
 from meshonet.solvers.cascade.cascade import COARSEST, Cascade, scaled
-from meshonet.solvers.cascade.passage import (
-    BLADE,
-    INLET,
-    OUTLET,
-    Passage,
-    extended,
-    turned_round,
-)
+from meshonet.solvers.cascade.passage import BLADE, INLET, OUTLET, Passage, extended, turned_round
 from meshonet.solvers.cascade.passage_template import cut_of, template
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.energy.quads import optimise
@@ -49,9 +42,7 @@ LEAST = 4
 """Smallest number of cells along the side of an optimised block."""
 FIRST, ITERATIONS, PASSES = 150, 120, 2  # iterations of the template and of each sized optimum; their number
 WEIGHTS = 0.95, 1e-3
-"""Weights w and β of the functional. A smaller β improves angles, but lets rounding errors move nodes by 1
-%.
-"""
+"""Weights w and β of the functional; with a smaller β rounding errors move nodes by 1 %."""
 ROW_GROWTH = 1.1
 """Growth ratio of cells towards inlet and outlet."""
 _BISECTIONS = 14  # of a range of 400 to 1: the scale to 0.04 %
@@ -63,9 +54,9 @@ def cascade_layout(
 ) -> Layout:  # fmt: skip
     """Return a fine layout of a passage with about `cells` cells, or `cell_size` away from the blade.
 
-    Its outer loop consists of periodic1, outlet, periodic2 and inlet; each node of periodic2 is a node of
-    periodic1 displaced by the pitch. Raises InputError: too little room for layers, inlet or outlet; far more
-    cells needed than requested; NoValidGridError: folded cells.
+    Its outer loop consists of periodic1, outlet, periodic2 (periodic1 moved by the pitch) and inlet. Raises
+    InputError: too little room for layers, inlet or outlet; far more cells needed than requested;
+    NoValidGridError: folded cells.
     """
     timings = {} if timings is None else timings
     cascade.check_reach(cells, cell_size)
@@ -94,7 +85,7 @@ def _outside(
     cascade: Cascade, passage: Passage, corners: str, cells: int | None, cell_size: float | None,
     timings: Timings,
 ) -> tuple[Layout, int, SizeMetric]:  # fmt: skip
-    """Return the coarse layout outside the layers, how much finer it is to be, and sizes of cells."""
+    """Return the coarse layout outside the layers, the factor to the final counts, and target cell sizes."""
     if corners == "nowhere":
         front = passage.front
         passage = replace(passage, front=replace(front, corners=(), names=front.names[:1]))
@@ -116,10 +107,9 @@ def _outside(
 def passage_optimum(
     layout: Layout, iterations: int, metric: SizeMetric | None, held: Bools | None = None
 ) -> Layout:
-    """Return the layout of a passage with its nodes moved to minimise the functional of grid quality.
+    """Return the layout of a passage with optimised nodes; `metric` has target cell sizes.
 
-    If `metric` is given, its cell sizes are targets. The two end nodes of the cut, and the nodes in the mask
-    `held` (n,), do not move.
+    The two end nodes of the cut, and the nodes in the mask `held` (n,), do not move.
     """
     mesh = layout.mesh
     ends = (mesh.places.loop >= 0) & mesh.tied
@@ -197,12 +187,9 @@ def attached_cells(
     cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric, layers: int | None = None,
     longest: Mapping[int, float] | None = None,
 ) -> int:  # fmt: skip
-    """Return the number of cells in the layers and in the rows to inlet and outlet.
+    """Return the number of cells in the layers and in the rows to inlet and outlet, for `counts` (chords,).
 
-    `counts` (chords,) are the numbers of cells of the chords.
-
-    `layers`, if given, replaces the number of layers of the cascade. `longest`, if given, replaces the
-    lengths of the rows; its keys are the indices of their loops.
+    `layers` replaces the number of layers; `longest` are smallest lengths of the rows, by their loops.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

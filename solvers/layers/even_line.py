@@ -178,14 +178,11 @@ def evened_loops(
 
 
 def _spread(layout: Layout, loop: int, shift: Floats) -> Floats:
-    """Return what nodes (n, 2) move by, when those on a loop do by `shift` (n, 2)."""
+    """Return displacements (n, 2) that decrease from those of nodes on a loop, `shift` (n, 2), inwards."""
     moved = np.zeros_like(shift)
-    on = layout.mesh.places.loop == loop
-    for block in layout.blocks:
-        for lines in (block, block[:, ::-1], block.T, block.T[:, ::-1]):
-            if on[lines[:, 0]].all():
-                left = np.linspace(1.0, 0.0, lines.shape[1]) ** 2
-                moved[lines] = left[None, :, None] * shift[lines[:, 0]][:, None]
+    for lines in layout.beside(layout.mesh.places.loop == loop):
+        left = np.linspace(1.0, 0.0, lines.shape[1]) ** 2
+        moved[lines] = left[None, :, None] * shift[lines[:, 0]][:, None]
     return moved
 
 

@@ -11,7 +11,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.solvers.blocking.layers.growth_lines import consecutive_edges, growth_along
+from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.energy.quad_problem import Problem, smallest_jacobian, unknowns_of
 from meshonet.solvers.energy.quads import SIZED, minimise, optimise
 from meshonet.solvers.energy.walls import turned, walls_of
@@ -120,7 +120,7 @@ def test_growth_beyond_the_limit_is_made_less_along_lines_and_around_irregular_n
 
 def largest_growth(mesh: QuadMesh) -> float:
     z = mesh.nodes @ np.array([1.0, 1j])
-    return float(np.exp(np.abs(growth_along(z, consecutive_edges(mesh))).max()))
+    return float(np.exp(np.abs(GrowthLines.of(mesh, 0.0).growth(z)).max()))
 
 
 def test_a_rectangle_becomes_squares() -> None:

@@ -1,7 +1,5 @@
 """Decomposes any planar domain into four-sided blocks.
 
-Runs all stages, if necessary on another triangulation.
-
 ::
 
     domain -> triangulation -> cross field -> seamless map -> quad mesh -> ring of quads along smooth loops
@@ -33,20 +31,16 @@ from meshonet.solvers.blocking.decomposition.quads.padding import (
 )
 from meshonet.solvers.blocking.decomposition.quads.quad_mesh import quad_mesh
 from meshonet.solvers.blocking.decomposition.side_counts import check_sides, lacking_side
+from meshonet.solvers.blocking.decomposition.symmetry.parts import DomainPart, spans_between
 from meshonet.solvers.blocking.decomposition.symmetry.symmetric import symmetric_blocks
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.refinement.size_metric import SizeMetric
 from meshonet.solvers.stages import Timings, stage
 
 ATTEMPTS = 5
-"""Number of triangulations that are tried, each finer than the one before and with another seed.
-
-Of 201 domains, two needed a second triangulation, and none a third.
-"""
+"""Number of triangulations that are tried, each finer; of 201 domains, two needed a second one."""
 HELD_ITERATIONS, FIRST_ITERATIONS, BEFORE_PADDING = 10, 60, 25
-"""Iterations with fixed wall nodes, which untangle; with free wall nodes; with free ones before rows are
-inserted.
-"""
+"""Iterations: to untangle, with fixed wall nodes; with free ones; with free ones before rows are inserted."""
 CELLS = 900
 """Number of cells of the quad mesh from which blocks are derived."""
 MOST = 9_000
@@ -90,9 +84,10 @@ def decompose(
     if not symmetric or domain.periodic:
         return blocks.layout
 
-    def of_part(part: Domain, parts: int, rows: Sequence[Span]) -> QuadMesh:
+    def of_part(part: DomainPart) -> QuadMesh:
+        parts, rows = len(part.copies), spans_between(part.domain.loops[0])
         shares = cells // parts, count // parts
-        return _found(part, *shares, parts * price, timings, sizes, rows).mesh
+        return _found(part.domain, *shares, parts * price, timings, sizes, rows).mesh
 
     def optimised(mesh: QuadMesh) -> QuadMesh:
         with stage("first optimum", timings):
@@ -111,7 +106,7 @@ def _found(
     domain: Domain, cells: int, count: int, price: float, timings: Timings, sizes: SizeMetric | None,
     spans: Sequence[Span],
 ) -> BaseComplex:  # fmt: skip
-    """Return the blocks of a domain by the first attempt that comes to any."""
+    """Return the blocks of a domain by the first attempt that succeeds."""
     problem: SolverError | None = None
     for attempt in range(ATTEMPTS):
         finer_count, finer_cells = int(count * (1.0 + 0.3 * attempt)), int(cells * (1.0 + 0.5 * attempt))
@@ -133,7 +128,7 @@ def _found(
 
 
 def _too_many(domain: Domain) -> str:
-    """Return what is wrong with a domain that takes too many blocks: most likely its corners."""
+    """Return a message for a domain with too many blocks, which names the loop with most corners."""
     number = int(np.argmax([len(loop.corners) for loop in domain.loops]))
     loop = domain.loops[number]
     at = loop.curve.points[loop.corners[0] if loop.corners else 0]
@@ -147,7 +142,7 @@ def _too_many(domain: Domain) -> str:
 def _blocks(
     mesh: QuadMesh, price: float, timings: Timings, sizes: SizeMetric | None, spans: Sequence[Span]
 ) -> BaseComplex:
-    """Return the blocks of a quad mesh, after optimising its nodes, whose positions may be bad at first."""
+    """Return the blocks of a quad mesh after optimising its nodes."""
     loops, spans = loops_to_pad(mesh), spans_to_pad(mesh, spans)
     with stage("first optimum", timings):
         mesh = _optimised(mesh, BEFORE_PADDING if loops or spans else FIRST_ITERATIONS, sizes)
@@ -176,9 +171,9 @@ def _with_corner_rows(mesh: QuadMesh) -> QuadMesh:
 
 
 def _optimised(mesh: QuadMesh, iterations: int, sizes: SizeMetric | None) -> QuadMesh:
-    """Return the mesh with its nodes optimised, wall nodes where they are to begin with.
+    """Return the mesh with its nodes optimised, first with fixed wall nodes.
 
-    A folded mesh would else be unfolded by sliding most of it along smooth walls into a small part of them.
+    Otherwise the nodes of a folded mesh would slide along smooth walls into a small part of them.
     """
     wall, targets = mesh.places.loop >= 0, sizes.edges(mesh) if sizes else None
     held = optimise(mesh, iterations=HELD_ITERATIONS, held=wall, targets=targets)
@@ -189,10 +184,7 @@ def _optimised(mesh: QuadMesh, iterations: int, sizes: SizeMetric | None) -> Qua
 
 
 def most_folded(mesh: QuadMesh) -> str:
-    """Return a description of where the most folded corner of a mesh is, for a message.
-
-    A corner whose Jacobian is not a number counts as the most folded one.
-    """
+    """Return the place of the most folded corner of a mesh as text; NaN counts as most folded."""
     jacobian = np.nan_to_num(corner_jacobians(mesh.nodes[mesh.quads]), nan=-np.inf)
     x, y = mesh.nodes[mesh.quads.ravel()[int(np.argmin(jacobian))]]
     return f"at ({x:.6g}, {y:.6g})"

@@ -1,10 +1,8 @@
 """Transfers a layout to another domain of the same kind, for families of shapes with one topology.
 
-Loops are matched by their names, else by their order; corners are matched in order around each loop. Loops
-without corners are matched by their position relative to the bounding box. Nodes on a loop keep their
-fraction of arc length between corners. Interior nodes are moved by the affine map that best fits the nodes on
-loops, then by a harmonic displacement that removes the rest (Helenbrook, Int. J. Numer. Meth. Engng 56 (2003)
-1007-1021, the first of two).
+Nodes on a loop keep their fraction of arc length between corners. Interior nodes are moved by the affine map
+that best fits the nodes on loops, then by a harmonic displacement (Helenbrook, Int. J. Numer. Meth. Engng 56
+(2003) 1007-1021).
 """
 
 from dataclasses import replace
@@ -46,7 +44,7 @@ def carried_over(layout: Layout, domain: Domain) -> Layout:
 
 
 def _pairs(old: tuple[Loop, ...], new: tuple[Loop, ...]) -> dict[int, int]:
-    """Return which of the new loops belongs to each of the old ones; the outer ones stay first."""
+    """Return the new loop of each old one: holes by their names if these are unique, else by their order."""
     if len(old) != len(new):
         counts = [f"{len(loops) - 1} hole{'' if len(loops) == 2 else 's'}" for loops in (old, new)]
         problem = f"the layout is of a domain with {counts[0]}, this one has {counts[1]}"
@@ -72,10 +70,7 @@ def _by_name(holes: tuple[Loop, ...]) -> dict[tuple[str, ...], int]:
 
 
 def _carried(old: Loop, new: Loop, arc: Floats) -> Floats:
-    """Return the arc lengths (n,) on the new loop of those on the old one, `arc` (n,).
-
-    Corners correspond to corners, of loops without them the places where they begin.
-    """
+    """Return the arc lengths (n,) on the new loop that correspond to `arc` (n,) on the old one."""
     if old.corners:
         begins = old.corner_arcs, _around(new.corner_arcs, _corner_shift(old, new), new.length)
     else:
@@ -89,7 +84,7 @@ def _carried(old: Loop, new: Loop, arc: Floats) -> Floats:
 
 
 def _around(arcs: Floats, shift: int, length: float) -> Floats:
-    """Return the arc lengths of one turn, in ascending order, from index `shift` on."""
+    """Return arc lengths around a loop in ascending order, starting at index `shift`."""
     turned = np.roll(arcs, -shift)
     return turned + np.where(turned < turned[0], length, 0.0)
 
@@ -97,8 +92,7 @@ def _around(arcs: Floats, shift: int, length: float) -> Floats:
 def _corner_shift(old: Loop, new: Loop) -> int:
     """Return the index of the new corner that corresponds to the first corner of the old loop.
 
-    Corners of stretches with the same name correspond first of all. Otherwise two corners correspond if their
-    angles and their places in the bounding boxes agree best.
+    The names of stretches should agree, then the angles of corners and their places in the bounding boxes.
     """
     ours, theirs = (_in_box(loop.curve.points[list(loop.corners)], loop) for loop in (old, new))
     our_names, their_names = (np.array(loop.names) for loop in (old, new))
@@ -113,7 +107,7 @@ def _corner_shift(old: Loop, new: Loop) -> int:
 
 
 def _begin(old: Loop, new: Loop) -> float:
-    """Return the arc length on the new loop that corresponds to the first point of the old loop."""
+    """Return the arc length on the new loop that corresponds to the first point of the old loop, by boxes."""
     steps = np.linspace(0.0, 1.0, OFFSETS, endpoint=False)
     ours, theirs = (_in_box(loop.at(steps * loop.length), loop) for loop in (old, new))
     costs = [float(((np.roll(theirs, -k, axis=0) - ours) ** 2).sum()) for k in range(OFFSETS)]
@@ -128,7 +122,7 @@ def _in_box(points: Floats, loop: Loop) -> Floats:
 
 
 def _moved_along(mesh: QuadMesh, nodes: Floats, fixed: Bools) -> Floats:
-    """Return where the nodes go that are not `fixed` (n,), when those are moved to `nodes` (n, 2)."""
+    """Return the new positions of nodes that are not `fixed` (n,), if the others move to `nodes` (n, 2)."""
     old = np.column_stack([mesh.nodes, np.ones(len(mesh.nodes))])
     base = product(old, least_squares(old[fixed], nodes[fixed]))
     moved = _harmonic(mesh, np.where(fixed[:, None], nodes - base, 0.0), fixed)
@@ -136,7 +130,7 @@ def _moved_along(mesh: QuadMesh, nodes: Floats, fixed: Bools) -> Floats:
 
 
 def _harmonic(mesh: QuadMesh, values: Floats, fixed: Bools) -> Floats:
-    """Return `values` (n, 2), where not `fixed` the mean of those at the other ends of its edges."""
+    """Return `values` (n, 2); values that are not `fixed` become the mean over the ends of their edges."""
     number, free = np.cumsum(~fixed) - 1, np.flatnonzero(~fixed)
     inner = ~fixed[mesh.edges]
     first, second = number[mesh.edges[inner.all(axis=1)]].T

@@ -69,9 +69,8 @@ def suited(
     """Return the admissible cell counts (chords,), at least `least`, that are nearest to `counts`.
 
     Admissible counts are multiples of `multiple`, agree along the two sides of each periodic pair and, if
-    `named`, add up to the counts given for named sides, which must be multiples of `multiple` too. `fixed`
-    prescribes the counts of some chords. If each cell is divided into `finer` > 1 cells later, counts are
-    adjusted again then; the sums may therefore differ from the given counts by less than one.
+    `named`, add up to `multiple` times the counts given for named sides. `fixed` prescribes the counts of
+    some chords. If each cell is divided into `finer` > 1 cells later, sums may differ by less than one.
 
     Raises InputError: given counts that contradict each other, or that are too small; SolverError: no counts
     are equal along periodic sides.
@@ -165,15 +164,12 @@ def alike_along_sides(chords: Chords, counts: Indices) -> bool:
 
 
 def _alike(chords: Chords) -> list[Row]:
-    """Return coefficients of chords whose sums are to be zero, for pairs of sides that may differ."""
+    """Return the conditions that both sides of each periodic pair have equally many cells."""
     return [(row, 0.0, 0.0) for row in _differences(chords) if row]
 
 
 def lacking_side(layout: Layout) -> Indices | None:
-    """Return the nodes along a periodic side that always has fewer cells than its partner, else None.
-
-    Always means: whatever the numbers of cells of the chords are.
-    """
+    """Return the nodes along a periodic side that has fewer cells than its partner for all counts, if any."""
     if not layout.mesh.domain.periodic:
         return None
     for row, (_, first, second) in zip(_differences(Chords.of(layout)), sides_of(layout.mesh), strict=True):
@@ -184,7 +180,7 @@ def lacking_side(layout: Layout) -> Indices | None:
 
 
 def _differences(chords: Chords) -> list[dict[int, float]]:
-    """Return for each pair of sides how much oftener a chord ends on the first than on the second."""
+    """Return, for each pair of sides, the ends of each chord on the first minus those on the second."""
     mesh = chords.layout.mesh
     if not mesh.domain.periodic:
         return []

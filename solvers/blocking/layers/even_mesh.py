@@ -1,15 +1,12 @@
 """Moves nodes of a mesh so that the ratio of consecutive edges along grid lines is limited.
 
 Let ρ be the logarithms of the ratios of consecutive edges, θ the angles at corners of cells, and z the nodes.
-The nodes minimise::
+Nodes near ratios above the limit minimise, in Gauss-Newton steps::
 
     E = the term of `growth_limit` in ρ + ν Σ (θ - θ0)² + σ Σ |z - z0|² / h²
 
-θ0 and z0 are the initial values, where angles are limited to between 60 and 120 degrees, and h is the
-shortest edge at a node. ρ and θ are the real and imaginary parts of logarithms of quotients of edges as
-complex numbers: of consecutive edges, and of two edges that leave a corner. Therefore cells a thousand times
-as long as high are no more difficult than squares. Each Gauss-Newton step solves one sparse system. Only
-nodes near ratios above the limit move.
+θ0, limited to between 60 and 120 degrees, and z0 are the initial values; h is the shortest edge at a node. ρ
+and θ are real and imaginary parts of logarithms of quotients of edges as complex numbers.
 """
 
 from __future__ import annotations
@@ -25,7 +22,6 @@ from meshonet.geometry.blocks.shared_nodes import joined_labels
 from meshonet.geometry.elementary import angle, modulus, times
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
-from meshonet.solvers.blocking.sizes.on_loops import on_loops
 from meshonet.solvers.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
 from meshonet.solvers.least_squares import NormalEquations, Residuals
 
@@ -40,13 +36,11 @@ ROUNDS, STEPS = 8, 3
 RAIL = 1e9
 """Weight, in units of σ, that keeps sliding nodes on their tangent."""
 WORTH, FEW = 0.7, 5e-4
-"""Fraction of the excess that may remain after a round so that another one follows; and share of ratios above
-the limit that counts as few.
-"""
+"""Fraction of the excess up to which another round follows; fraction of ratios that counts as few."""
 NO_PAIRS = np.empty((0, 2), dtype=np.intp)
 _ANGLES = np.radians(60.0), np.radians(120.0)  # limits of θ0, so that bad corners improve
 _WORST = np.radians(5.0), np.radians(175.0)  # angles that no step passes, unless they were beyond before
-_SLACK = 0.02  # radians by which such corners may become worse
+_SLACK = 0.02  # radians by which corners beyond them may become worse
 
 
 def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines, following: Indices = NO_PAIRS) -> QuadMesh:
@@ -54,16 +48,14 @@ def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines, following: Indi
 
     The nodes in the mask `held` (n,) are fixed. Each pair in `following` (k, 2) is a node on a loop and a
     node that moves with it, so that first cells keep their heights. Other nodes on loops slide along the
-    loops, except corners and nodes of periodic sides. Where a limit cannot be satisfied, it is exceeded as
-    little as good angles permit.
+    loops, except corners and nodes of periodic sides. Limits are exceeded where good angles require it.
     """
-    sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0)
-    sliding[_periodic(mesh)] = False  # both nodes of a pair would have to move alike
+    sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0) & ~mesh.tied
     fixed = held | (mesh.wall_nodes & ~sliding)
     fixed[following[:, 1]] |= fixed[following[:, 0]]
     weight, before = EXCESS, np.inf
     for _ in range(ROUNDS):
-        z = mesh.nodes[:, 0] + 1j * mesh.nodes[:, 1]
+        z = complex_of(mesh.nodes)
         growth = lines.growth(z)
         free = _near(mesh, lines, growth) & ~fixed
         free[following[:, 1]] = free[following[:, 0]]
@@ -75,14 +67,14 @@ def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines, following: Indi
         on, pairs = sliding & free, following[free[following[:, 0]]]
         tangents = _tangents(mesh, on)
         z, weight = _Patch.of(mesh, lines, z, free, tangents, pairs).evened(z, weight)
-        mesh = _followed(mesh, on_loops(mesh.with_nodes(pairs_of(z)), on), tangents, pairs)
+        mesh = _followed(mesh, mesh.with_nodes(pairs_of(z)).on_loops(on), tangents, pairs)
     return mesh
 
 
 def _followed(before: QuadMesh, after: QuadMesh, tangents: Complexes, pairs: Indices) -> QuadMesh:
-    """Return the mesh `after` a step with the second nodes of pairs (k, 2) where they were from the first.
+    """Return the mesh `after` a step with second nodes of pairs (k, 2) moved like the first ones.
 
-    `tangents` (n,) are those of the loops before.
+    `tangents` (n,) are those of the loops before the step.
     """
     if len(pairs) == 0:
         return after
@@ -94,27 +86,19 @@ def _followed(before: QuadMesh, after: QuadMesh, tangents: Complexes, pairs: Ind
     return after.with_nodes(nodes)
 
 
-def _periodic(mesh: QuadMesh) -> Indices:
-    """Return the nodes of both periodic sides."""
-    images = np.flatnonzero(mesh.places.partner >= 0)
-    return np.concatenate([images, mesh.places.partner[images]])
-
-
 def _tangents(mesh: QuadMesh, sliding: Bools) -> Complexes:
     """Return the directions (n,) of the loops at the nodes that slide, 0 at others."""
     tangents = np.zeros(len(mesh.nodes), dtype=np.complex128)
     for number, loop in enumerate(mesh.domain.loops):
         on = np.flatnonzero(sliding & (mesh.places.loop == number))
-        x, y = loop.tangent(mesh.places.arc[on]).T
-        tangents[on] = x + 1j * y
+        tangents[on] = complex_of(loop.tangent(mesh.places.arc[on]))
     return tangents
 
 
 def _near(mesh: QuadMesh, lines: GrowthLines, growth: Floats) -> Bools:
-    """Return which nodes (n,) are near the middle ones of lines whose growth (k,) exceeds the limit.
+    """Return a mask (n,) of nodes near the middle ones of lines whose growth (k,) exceeds the limit.
 
-    Near means within `AROUND` cells. To these, `REACH` cells are added for each multiple of the limit by
-    which the growth exceeds it.
+    Near means within `AROUND` cells, and `REACH` more for each multiple of the limit beyond it.
     """
     uneven = np.abs(growth) > lines.limit
     near = np.zeros(len(mesh.nodes), dtype=bool)
@@ -127,7 +111,7 @@ def _near(mesh: QuadMesh, lines: GrowthLines, growth: Floats) -> Bools:
 
 
 def _touched(nodes: Bools, groups: Indices) -> Bools:
-    """Return which groups (k, m) of nodes have one in the mask `nodes` (n,)."""
+    """Return a mask (k,) of the groups (k, m) of nodes with a node in the mask `nodes` (n,)."""
     touched = nodes[groups[:, 0]]
     for column in groups.T[1:]:
         touched |= nodes[column]
@@ -153,14 +137,14 @@ class _Patch:
     stiffness: Floats
     """(m,) σ / h²."""
     axes: Complexes
-    """(n,) direction of the first of the two unknowns of each node: the tangent where it slides."""
+    """(n,) direction of the first of the two unknowns of each node: the tangent if it slides."""
     across: Floats
-    """(m,) what the stiffness of the second is multiplied by: those that slide stay on the tangent."""
+    """(m,) factor on the stiffness of the second unknown, which keeps sliding nodes on the tangent."""
     equations: NormalEquations
     pairs: Indices
     """(k, 2) nodes on loops, and those that move with them."""
     part: Indices
-    """(n,) number of the part of the patch that a node is in, -1 for none; parts do not change each other."""
+    """(n,) number of the independent part of the patch that each node is in, -1 for none."""
 
     @classmethod
     def of(
@@ -235,10 +219,7 @@ class _Patch:
         return placed
 
     def _alike(self, nodes: Indices, derivatives: Complexes) -> Complexes:
-        """Return the derivatives (k, 3) with respect to `nodes` (k, 3), added up where nodes move together.
-
-        If two nodes of a row move together, the sum is at the first of them, and 0 at the other.
-        """
+        """Return derivatives (k, 3) by `nodes` (k, 3); of nodes that move together, the first has the sum."""
         leader = np.arange(len(self.part))
         leader[self.pairs[:, 1]] = self.pairs[:, 0]
         for i, j in ((0, 1), (0, 2), (1, 2)):
@@ -281,10 +262,7 @@ def _angles(z: Complexes, corners: Indices) -> Floats:
 
 
 def _parts(free: Bools, groups: Sequence[Indices]) -> Indices:
-    """Return the number (n,) of the part that each free node is in, -1 for others.
-
-    Free nodes of a row of one of `groups` (k, m) are in the same part.
-    """
+    """Return a number (n,) for each free node, -1 for others, the same within a row of `groups` (k, m)."""
     pairs = []
     for group in groups:
         inside = free[group]
@@ -297,5 +275,5 @@ def _parts(free: Bools, groups: Sequence[Indices]) -> Indices:
 
 
 def _by_coordinates(derivatives: Complexes) -> Floats:
-    """Return derivatives (k, 6) by both parts of moves of the real part of `derivatives` (k, 3) by these."""
+    """Return derivatives (k, 6) by real and imaginary parts, from complex `derivatives` (k, 3)."""
     return np.stack([derivatives.real, -derivatives.imag], axis=2).reshape(len(derivatives), 6)

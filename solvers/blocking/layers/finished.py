@@ -16,7 +16,7 @@ from meshonet.solvers.blocking.layers.marched import AT_SHARP_EDGE
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.layers.layer_settings import LayerSettings
 
-FEW_ITERATIONS = 10  # after untangling: only nodes around folds move
+FEW_ITERATIONS = 10  # only nodes around folds move
 NEAR_FOLDS = 5
 """Cells around folded ones that are optimised with them."""
 
@@ -45,11 +45,7 @@ def finished(layout: Layout, settings: LayerSettings, held: Bools, following: In
 def evened(
     layout: Layout, settings: LayerSettings, held: Bools | None = None, following: Indices = NO_PAIRS
 ) -> Layout:
-    """Return the layout with cells whose growth is limited, as far as the first cells permit it.
-
-    The nodes in the mask `held` (n,) are fixed; `following` (k, 2) are pairs of a node on a wall and a node
-    that moves with it.
-    """
+    """Return the layout with limited growth of its cells; `held` and `following` are as in `finished`."""
     places = layout.mesh.places
     held = np.zeros(len(places.loop), dtype=bool) if held is None else held.copy()
     for number in layout.layers:
@@ -66,13 +62,13 @@ def evened(
     except SolverError:  # nodes that coincide
         return layout
     mesh = made_symmetric(mesh)
-    if len(following):  # means of images are nearer, where the loop is not quite symmetric
+    if len(following):  # the means of images are too near if the loop is not exactly symmetric
         mesh = made_symmetric(_as_far(mesh, layout.mesh, following))
     return replace(layout, mesh=mesh)
 
 
 def _as_far(mesh: QuadMesh, before: QuadMesh, pairs: Indices) -> QuadMesh:
-    """Return the mesh with second nodes of pairs (k, 2) as far from the first as they were `before`."""
+    """Return the mesh with the distances between pairs (k, 2) of nodes that they had `before`."""
     first, second = pairs.T
     nodes, away = mesh.nodes.copy(), mesh.nodes[second] - mesh.nodes[first]
     far = norms(before.nodes[second] - before.nodes[first])
@@ -81,11 +77,7 @@ def _as_far(mesh: QuadMesh, before: QuadMesh, pairs: Indices) -> QuadMesh:
 
 
 def unfolded(layout: Layout, held: Bools) -> Layout:
-    """Return the layout with nodes near folded cells moved to unfold them.
-
-    The nodes in the mask `held` (n,) are fixed. Cells keep their aspect ratios, so that layers stay where
-    they are.
-    """
+    """Return the layout with folded cells unfolded; nodes in `held` (n,) and aspect ratios do not change."""
     mesh = layout.mesh
     bad = smallest_jacobians(mesh.nodes, mesh.quads) <= 0.0
     if not bad.any():

@@ -1,19 +1,11 @@
-"""Pairs of consecutive edges along the grid lines of a mesh, and the limits of their ratios.
+"""Pairs of consecutive edges along the grid lines of a mesh, and the limits of their ratios."""
 
-The limit is strict along lines that start at walls and across the sides of blocks::
-
-    wall |--|---|----|-----|------| ...     through all blocks that the line crosses
-
-At a periodic side the second edge begins at the other node of the pair. Elsewhere, for example along walls,
-another limit applies.
-"""
-
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Complexes, Floats, Indices
+from meshonet.geometry.arrays import Bools, Complexes, Floats, Indices, complex_of
 from meshonet.geometry.blocks.shared_nodes import joined_labels
 from meshonet.geometry.elementary import arctan2, log, modulus
 from meshonet.geometry.layout.layout import Layout
@@ -58,14 +50,14 @@ class GrowthLines:
         """Return all pairs of a layout; `limit` applies along lines from `walls` and across block sides.
 
         `walls` (n,) is a mask of nodes. For all other pairs, and at irregular vertices, the limit is
-        `elsewhere`. Only for pairs parallel to a wall in the blocks at this wall, the limit is the larger of
-        `elsewhere` and the ratio on the wall, unless the wall nodes are `sliding` (n,).
+        `elsewhere`, or the ratio on a wall if larger, for pairs parallel to this wall in the blocks beside
+        it, unless the wall nodes are `sliding` (n,).
         """
-        mesh = layout.mesh
-        nodes, begins = _pairs(mesh)
-        before, after = _edges_of(mesh, nodes, begins)
+        mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
+        nodes = pairs.nodes
+        before, after = _edges_of(mesh, nodes, pairs.begins)
         leaving = _leaving(layout, walls)
-        rows = _beside_walls(layout, walls)
+        rows = layout.beside(walls)
         beside = np.zeros(len(mesh.edges), dtype=bool)  # along walls in the blocks beside them
         for table in rows:
             beside[mesh.edges_between(table[:-1], table[1:])] = True
@@ -82,9 +74,9 @@ class GrowthLines:
         strict &= ~mesh.irregular[middle] | mesh.wall_nodes[middle]
         limits = np.where(strict, limit, elsewhere)
         own = along & ~strict
-        stays = walls & ~np.asarray(sliding)
-        limits[own] = np.maximum(elsewhere, _growth_of_walls(mesh, stays, nodes, rows)[middle[own]])
-        return cls(nodes, limits, np.zeros(len(nodes)), begins)
+        on_walls = pairs.some((walls & ~np.asarray(sliding))[nodes].all(axis=1))
+        limits[own] = np.maximum(elsewhere, on_walls.largest_at(mesh, rows)[middle[own]])
+        return replace(pairs, limit=limits)
 
     def some(self, which: Bools) -> Self:
         """Return the pairs in the mask `which` (k,)."""
@@ -102,18 +94,17 @@ class GrowthLines:
         """
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
+    def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:
+        """Return the largest |growth| (n,) at middle nodes, also for all nodes of the lines in `rows`."""
+        growth = np.zeros(len(mesh.nodes))
+        np.maximum.at(growth, self.nodes[:, 1], np.abs(self.growth(complex_of(mesh.nodes))))
+        for table in rows:
+            growth[table] = np.maximum(growth[table], growth[table[:, :1]])
+        return growth
 
-def growth_along(z: Complexes, lines: Indices) -> Floats:
-    """Return log(second edge / first edge) (k,) of the edges between the three nodes in `lines` (k, 3).
 
-    `z` (n,) are the positions of the nodes as complex numbers.
-    """
-    before, after = z[lines[:, 1]] - z[lines[:, 0]], z[lines[:, 2]] - z[lines[:, 1]]
-    return np.asarray(log(modulus(after) / modulus(before)))
-
-
-def consecutive_edges(mesh: QuadMesh) -> Indices:
-    """Return the nodes (k, 3) of all pairs of consecutive edges along grid lines."""
+def _pairs(mesh: QuadMesh) -> tuple[Indices, Indices]:
+    """Return the nodes (k, 3) of all pairs of consecutive edges, and where (k,) the second edges begin."""
     edges = np.arange(len(mesh.edges))
     beside, _ = line_neighbours(
         np.ascontiguousarray(mesh.quads), mesh.edge_of, np.arange(len(mesh.nodes)), edges
@@ -124,17 +115,12 @@ def consecutive_edges(mesh: QuadMesh) -> Indices:
     for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
         meet = one[:, i] == other[:, j]
         parts.append(np.stack([one[meet, 1 - i], one[meet, i], other[meet, 1 - j]], axis=1))
-    return np.concatenate([*parts, _around_irregular(mesh)])
-
-
-def _pairs(mesh: QuadMesh) -> tuple[Indices, Indices]:
-    """Return the nodes (k, 3) of all pairs of consecutive edges, and where (k,) the second edges begin."""
-    nodes, (across, begins) = consecutive_edges(mesh), _across_periodic(mesh)
+    nodes, (across, begins) = np.concatenate([*parts, _around_irregular(mesh)]), _across_periodic(mesh)
     return np.concatenate([nodes, across]), np.concatenate([nodes[:, 1], begins])
 
 
 def _across_periodic(mesh: QuadMesh) -> tuple[Indices, Indices]:
-    """Return `_pairs` across periodic sides, their ends included, where one edge leads inwards on both."""
+    """Return `_pairs` across periodic sides, also at their ends, if one edge leads inwards on each side."""
     images, on = np.flatnonzero(mesh.places.partner >= 0), mesh.tied
     own = mesh.places.partner[images]
     end, _ = _leading(mesh.edges[mesh.on_wall], on)
@@ -148,7 +134,7 @@ def _across_periodic(mesh: QuadMesh) -> tuple[Indices, Indices]:
 
 
 def _leading(edges: Indices, on: Bools) -> tuple[Indices, Indices]:
-    """Return a node off the mask `on` (n,) to which `edges` lead from each on it, and how many do."""
+    """Return, for nodes in the mask `on` (n,), a neighbour outside the mask and the number of such ones."""
     to, count = np.full(len(on), -1, dtype=np.intp), np.zeros(len(on), dtype=np.intp)
     for ends in (edges, edges[:, ::-1]):
         off = ends[on[ends[:, 0]] & ~on[ends[:, 1]]]
@@ -158,10 +144,7 @@ def _leading(edges: Indices, on: Bools) -> tuple[Indices, Indices]:
 
 
 def _around_irregular(mesh: QuadMesh) -> Indices:
-    """Return the nodes (k, 3) of edges at irregular vertices inside that have one edge between them.
-
-    Cells on both sides of a block's side that ends there are as large, then, as at its other nodes.
-    """
+    """Return the nodes (k, 3) of pairs of edges with one edge between them at interior irregular vertices."""
     parts = [np.empty((0, 3), dtype=np.intp)]
     for vertex in np.flatnonzero(mesh.irregular & ~mesh.wall_nodes).tolist():
         ends = mesh.edges[(mesh.edges == vertex).any(axis=1)]
@@ -183,10 +166,7 @@ def _sides(layout: Layout) -> list[Indices]:
 
 
 def _leaving(layout: Layout, walls: Bools) -> Bools:
-    """Return which edges (e,) are along a direction of a block whose lines start at walls, or continue such.
-
-    `walls` (n,) is a mask of nodes. Lines continue across periodic sides.
-    """
+    """Return a mask (e,) of edges along lines of blocks that start at `walls` (n,), through all blocks."""
     mesh, sides = layout.mesh, _sides(layout)
     partner = mesh.places.partner
     image = np.where(partner >= 0, partner, np.arange(len(partner)))
@@ -203,20 +183,3 @@ def _leaving(layout: Layout, walls: Bools) -> Bools:
             if int(label[2 * k + axis]) in starts:
                 leaving[mesh.edges_between(table[:-1], table[1:])] = True
     return leaving
-
-
-def _beside_walls(layout: Layout, walls: Bools) -> list[Indices]:
-    """Return the nodes (k, m) of blocks beside walls, from these on; `walls` (n,) is a mask of nodes."""
-    tables = [t for block in layout.blocks for t in (block, block[:, ::-1], block.T, block.T[:, ::-1])]
-    return [table for table in tables if walls[table[:, 0]].all()]
-
-
-def _growth_of_walls(mesh: QuadMesh, walls: Bools, nodes: Indices, rows: list[Indices]) -> Floats:
-    """Return the growth (n,) along walls at nodes on them, and at those of the lines of `rows` from there."""
-    growth = np.zeros(len(mesh.nodes))
-    on = nodes[walls[nodes].all(axis=1)]
-    z = mesh.nodes[:, 0] + 1j * mesh.nodes[:, 1]
-    np.maximum.at(growth, on[:, 1], np.abs(growth_along(z, on)))
-    for table in rows:
-        growth[table] = np.maximum(growth[table], growth[table[:, :1]])
-    return growth

@@ -20,8 +20,7 @@ _WINDOW = 4  # columns to either side over which lengths along fronts are averag
 def ring_metric(ring: Ring, settings: LayerSettings, factors: Floats | float = 1.0) -> SizeMetric:
     """Return the sizes of the cells beyond the front (outer edge) of a ring of layers.
 
-    The sizes follow from the distances between columns on the front and the heights of the last layer. The
-    height of the first cell at each column is that of the settings times `factors` (n,).
+    First cells have the height of the settings times `factors` (n,).
     """
     points = ring.front.curve.points
     step = np.roll(points, -1, axis=0) - points
@@ -47,12 +46,10 @@ def ring_rows(
     mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats,
     factors: Callable[[Floats], Floats] | None = None,
 ) -> Rows:  # fmt: skip
-    """Return the layers between the wall of a ring and the nodes on its front, the outer edge of the layers.
+    """Return the layers between the wall of a ring and the nodes on its front (their outer edge).
 
-    `inner` (k,) are the heights of the cells beyond the front.
-
-    First cells have the height of the settings, times `factors` (a function of arc lengths (k,) of the wall)
-    if given.
+    `inner` (k,) are the heights of the cells beyond the front. First cells have the height of the settings,
+    times `factors` at arc lengths (k,) of the wall if given.
     """
     order = mesh.places.along(loop)
     columns, starts = ring.columns(mesh.places.arc[order])
@@ -63,17 +60,10 @@ def ring_rows(
 
 def heights_inside(layout: Layout, loop: int) -> Floats:
     """Return the lengths (k,) of edges from the nodes of a loop into the domain, in order of arc length."""
-    mesh = layout.mesh
-    height = np.zeros(len(mesh.nodes))
-    for block in layout.blocks:
-        for side, next_row in (
-            (block[:, 0], block[:, 1]), (block[:, -1], block[:, -2]),
-            (block[0], block[1]), (block[-1], block[-2]),
-        ):  # fmt: skip
-            if (mesh.places.loop[side] == loop).all():
-                height[side] = np.maximum(
-                    height[side], np.hypot(*(mesh.nodes[next_row] - mesh.nodes[side]).T)
-                )
+    mesh, height = layout.mesh, np.zeros(len(layout.mesh.nodes))
+    for table in layout.beside(mesh.places.loop == loop):
+        side = table[:, 0]
+        height[side] = np.maximum(height[side], norms(mesh.nodes[table[:, 1]] - mesh.nodes[side]))
     return height[mesh.places.along(loop)]
 
 

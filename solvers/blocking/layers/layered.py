@@ -22,6 +22,7 @@ from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.solvers.blocking.chord_cells import metric_places
 from meshonet.solvers.blocking.decomposition.side_counts import alike_along_sides, suited
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric, node_images
 from meshonet.solvers.blocking.layers.attach import attach
@@ -31,11 +32,9 @@ from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
 from meshonet.solvers.blocking.layers.outside import found_outside, taken_outside
 from meshonet.solvers.blocking.layers.placed_rows import held_nodes, layers_of, with_layers
-from meshonet.solvers.blocking.layers.sheet import has_sharp_edge, wake_of
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.layers.wall_layers import ROWS, Counts, WallLayers, wanted_counts
-from meshonet.solvers.blocking.layers.wall_rows import WallRows, with_wall_rows
-from meshonet.solvers.blocking.sizes.even_metric import metric_places
+from meshonet.solvers.blocking.layers.wall_rows import WallRows, has_sharp_edge, wake_of, with_wall_rows
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.layers.even_line import EVEN, FEW_STEPS, evened_loops
@@ -46,17 +45,15 @@ from meshonet.solvers.stages import Timings, stage
 
 ITERATIONS, STRIDING = 120, 60  # of each optimum, and of one before it on fewer cells
 UNFOLDING = 3
-"""Factor on the number of iterations after folded cells, which leave nodes far from the optimum."""
+"""Factor on the number of iterations if cells are folded at first."""
 SWEEPS = 10
-"""Sweeps that make wanted lengths change gradually: with twice as many, cells in slots grow too fast."""
+"""Sweeps that smooth target lengths: with twice as many, cells in slots grow too fast."""
 COUNTINGS = 3
-"""Number of rounds in which cells are counted and nodes optimised, before nodes on fronts are placed evenly
-and fixed.
-"""
+"""Number of rounds in which cells are counted and nodes optimised, before nodes on fronts are fixed."""
 LIMITS = 1.0, 2.0, 4.0
 """Multiples of `EVEN` that are tried in turn: nodes that move far along a front fold the cells beside it."""
 BASE_GROWTH = math.log(4.0)
-"""Logarithm of the ratio of neighbouring edges along a wall and its wake beyond which it gets a ring."""
+"""Logarithm of the ratio of neighbouring edges above which a wall with a wake gets a ring."""
 
 
 def layered(
@@ -65,9 +62,9 @@ def layered(
 ) -> Layout:  # fmt: skip
     """Return a fine layout of about `cells` cells, with layers at `loops` and `stretches` of a domain.
 
-    Without `cells`, edges away from walls are at most `cell_size` long. `layout`, if given, is used instead
-    of a decomposition: the layout of a similar domain, or of the part of a similar domain outside the layers.
-    Raises InputError; SolverError; NoValidGridError: folded cells.
+    Without `cells`, edges away from walls are at most `cell_size` long. `layout`, of a similar domain or of
+    its part outside the layers, is used instead of a decomposition. Raises InputError; SolverError;
+    NoValidGridError: folded cells.
     """
     timings = {} if timings is None else timings
     sheets = () if layout else tuple(k for k in loops if k and has_sharp_edge(domain.loops[k]))
@@ -75,8 +72,8 @@ def layered(
         with stage("layers", timings):
             rings = [k for k in loops if k not in sheets]
             walls = WallLayers.of(domain, rings, settings, stretches, sheets)
-        coarse = layout and taken_outside(layout, walls.rest, walls.fronts)
-        coarse = coarse or found_outside(walls.rest, walls.fronts, timings, bool(walls.mirrors))
+        coarse = layout and taken_outside(layout, walls.rest, walls.rings)
+        coarse = coarse or found_outside(walls.rest, walls.rings, timings, bool(walls.mirrors))
         free = tuple(k for k in sheets if walls.is_free(k, coarse.mesh, wake_of(coarse.mesh, k)))
         if free == sheets:
             coarse, rows = with_wall_rows(coarse, walls.stretches, sheets, walls.mirrors)
@@ -110,7 +107,7 @@ def _optimum(
         coarse = _tied(walls.symmetric(refine(layout, counts.coarse, chords, places)))
     with stage("optimum", timings):
         if counts.stride > 1:
-            with suppress(NoValidGridError):  # so few cells may stay folded, and more not
+            with suppress(NoValidGridError):  # more cells may unfold
                 coarse = _optimised(coarse, walls, rows, counts, STRIDING)
             coarse = _tied(walls.symmetric(multiplied(coarse, counts.stride)))
         coarse = _optimised(coarse, walls, rows, counts, ITERATIONS)
@@ -125,7 +122,7 @@ def _optimum(
 
 
 def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, timings: Timings) -> Layout:
-    """Return the fine layout outside the rings, its rows with all their layers."""
+    """Return the fine layout outside the rings, with all layers of its rows."""
     times = counts.times
     with stage("optimum", timings):
         on = np.isin(coarse.mesh.places.loop, list(walls.measures))
@@ -142,7 +139,7 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
         row, cells = rows.of_chords(chords), times * chords.counts
         layers = [layers_of(coarse, rows, number, own) for number, own in enumerate(walls.of_rows)]
         cut = max((n for n, loop in zip(layers, rows.loops, strict=True) if loop == 0), default=0)
-        for number, loop in enumerate(rows.loops):  # walls that periodic sides cut have the same at both
+        for number, loop in enumerate(rows.loops):  # walls have as many layers at both periodic sides
             cells[row == number] = cut if loop == 0 and walls.domain.periodic else layers[number]
         if not alike_along_sides(chords, cells):
             problem = "layers end at one of two periodic sides and not at the other"
@@ -156,7 +153,7 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
 
 
 def _factors(layout: Layout, walls: WallLayers, rows: WallRows, times: int) -> Floats:
-    """Return factors of edges (e,): those across rows of layers stand for the cell beyond the last layer."""
+    """Return factors (e,) by which edges across rows of layers become the cells beyond the last layers."""
     factors = np.ones(len(layout.mesh.edges))
     for row, settings in enumerate(walls.of_rows):
         last = settings.join * (1.0 - 1.0 / settings.growth)  # cell beyond the layers over their thickness
@@ -175,7 +172,7 @@ def _optimised(
     layout: Layout, walls: WallLayers, rows: WallRows, counts: Counts, iterations: int,
     held: Bools | None = None,
 ) -> Layout:  # fmt: skip
-    """Return a layout with its nodes optimised for some sizes; `held` (n,) stay."""
+    """Return a layout with its nodes optimised for the sizes of `counts`; nodes `held` (n,) are fixed."""
     mesh = layout.mesh
     targets = counts.metric.gradual(mesh, SWEEPS)
     if rows.loops:
@@ -210,7 +207,7 @@ def _thickness(walls: WallLayers, mesh: QuadMesh, base: Indices, loop: int, scal
 
 
 def _joined(walls: WallLayers, rows: WallRows, layout: Layout) -> Layout:
-    """Return the layout with the rings, and the rows to a distant outer loop, attached, its cells evened."""
+    """Return the layout with rings and rows to a distant outer loop attached, and its growth limited."""
     settings, mesh = walls.settings, layout.mesh
     attached = [
         ring_rows(

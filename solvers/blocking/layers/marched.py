@@ -15,15 +15,13 @@ from meshonet.solvers.hyperbolic.march import AREA_SMOOTHING
 from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
 
 GAP_PART = 0.38
-"""Largest fraction of the gap in front of a wall that layers fill; those of two walls leave a quarter of
-it.
-"""
+"""Largest fraction of the gap in front of a wall that its layers fill."""
 SLOPE = 0.25
 """Largest change of the thickness of layers per length along the wall."""
 MARCH_GROWTH = 1.2
 """Ratio of neighbouring levels of the march; the layers are redistributed along its lines later."""
 THINNER = 0.6
-"""Factor of the thickness after the march has folded with all settings."""
+"""Factor on the thickness after every march has folded."""
 TRIES = 4  # thicknesses, the last a fifth of the first
 BLUNT = "{base} 0.005"
 """Option that opens the sharp edge of an airfoil."""
@@ -38,9 +36,8 @@ def marched(
 ) -> tuple[Floats | None, Bools]:
     """Return levels (n, m, 2) and a mask of folded columns, for the best of several marches.
 
-    The first level is the closed wall `start` (n, 2), which has the domain on its left. The first cells have
-    the height `first`; the last level is at the distance `thickness` (n,). The levels are None if all marches
-    overflow.
+    The first level is the closed wall `start` (n, 2), with the domain on its left. The first cells have the
+    height `first`; the last level is at the distance `thickness` (n,). The levels are None if all overflow.
     """
     cells = cells_for_growth(first, float(thickness.max()), MARCH_GROWTH)
     heights = distinct(thickness)  # most columns have the same
@@ -89,10 +86,9 @@ def fitted(
 
 
 def check_room(room: Floats, first: float, place: Callable[[int], str]) -> None:
-    """Raise InputError if `room` (n,) is too small for layers that start with `first`.
+    """Raise InputError if `room` (n,), `GAP_PART` of the gap, is too small for first cells of height `first`.
 
-    `room` is `GAP_PART` times the gap in front of each column; `place` returns the description of column k
-    for messages.
+    `place` returns the description of column k for messages.
     """
     k = int(np.argmin(room))
     if room[k] < FEWEST_CELLS * first:

@@ -24,9 +24,9 @@ FAR = 4.0
 NEAR = 2.2
 """Radius of the circle that replaces it, relative to the circle around all bodies."""
 _POINTS = 240  # of the circle, a spline through them
-_EVEN = 1.1  # ratio of neighbouring first cells of rows, at the most
-_UNLIKE = 1.2  # first cells of rows over their mean
-_OWN = 0.5  # part of a row in which it becomes like the others
+_EVEN = 1.1  # largest ratio of the first cells of neighbouring rows
+_UNLIKE = 1.2  # largest ratio of the first cell of a row to the mean
+_OWN = 0.5  # part of a row beyond which its cells are like those of the other rows
 GROWTH = 1.18  # of cells in rows to the far field
 
 
@@ -48,7 +48,7 @@ class NearField:
 
     @classmethod
     def of(cls, domain: Domain) -> NearField | None:
-        """Return the near field of a domain, or None unless its outer loop is smooth, far, star-shaped."""
+        """Return the near field of a domain; None unless its outer loop is smooth, far and star-shaped."""
         outer = domain.loops[0]
         if len(domain.loops) < 2 or outer.corners:
             return None
@@ -86,8 +86,7 @@ class NearField:
     def rows(self, mesh: QuadMesh, heights: Floats, settings: LayerSettings) -> Rows:
         """Return straight rows from the nodes of the circle, loop 0 of `mesh`, to the outer loop.
 
-        `heights` (k,) are the heights of the cells just inside the circle. The cells of a row start with this
-        height and grow by a ratio of at most `GROWTH`, and less than the limit for layers.
+        Cells grow by a ratio of at most `GROWTH` from `heights` (k,), those of the cells inside the circle.
         """
         order = mesh.places.along(0)
         start = mesh.nodes[order]
@@ -103,12 +102,11 @@ class NearField:
         wanted = np.clip(wanted, mean / _UNLIKE, _UNLIKE * mean)
         cells = self.cells(mean, settings)
         whole = np.stack([_shares(first, cells) for first in (mean / length).tolist()])
-        # each row begins with its own cell and becomes like the others: their angles stay right
+        # each row begins with its own cell and becomes like the others, so that angles stay right
         own = np.clip(1.0 - np.arange(cells) / (_OWN * cells), 0.0, 1.0) ** 2
         step = np.diff(whole, axis=1) * exp(log(wanted / mean)[:, None] * own)
-        step[:, own == 0.0] *= ((1.0 - step[:, own > 0.0].sum(axis=1)) / step[:, own == 0.0].sum(axis=1))[
-            :, None
-        ]
+        rest = 1.0 - step[:, own > 0.0].sum(axis=1)
+        step[:, own == 0.0] *= (rest / step[:, own == 0.0].sum(axis=1))[:, None]
         share = np.concatenate([np.zeros((len(step), 1)), np.cumsum(step, axis=1)], axis=1)
         nodes = start[:, None] + share[..., None] * (end - start)[:, None]
         nodes[:, -1] = end
@@ -116,7 +114,7 @@ class NearField:
 
 
 def _shares(first: float, cells: int) -> Floats:
-    """Return (cells + 1,) parts of a length, from 0 to 1, in cells that grow from `first` by one ratio."""
+    """Return fractions (cells + 1,) of a length, in cells that grow from `first` by one ratio."""
     equal = first * cells >= 1.0
     steps = np.full(cells, 1.0 / cells) if equal else growing_steps(first, 1.0, cells)
     return np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])

@@ -3,22 +3,47 @@
 from collections.abc import Collection
 from dataclasses import replace
 
+import numpy as np
+
+from meshonet.geometry.arrays import turned_left
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.wall_turning import sizes_by_bend
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.spacing.gradual_sizes import graded
 from meshonet.solvers.blocking.decomposition.decompose import decompose
 from meshonet.solvers.blocking.decomposition.reuse import carried_over
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
-from meshonet.solvers.blocking.sizes.feature_sizes import feature_sizes
+from meshonet.solvers.refinement.size_metric import SizeMetric
 from meshonet.solvers.stages import Timings
 
 PRICE = 0.08
-"""Price of a block in degrees of mean deviation. With 0.03 to 0.08 a tube bank gets 70 blocks, with 0 it gets
-91.
-"""
+"""Price of a block in degrees of mean deviation; a tube bank gets 70 blocks, without a price 91."""
+TURN = np.radians(20.0)
+"""Largest angle by which a wall turns along one cell of the quad mesh."""
+CELLS_IN_GAP = 2.5  # so that at least two quads cross every gap
+CELLS_AROUND, CELLS_ACROSS = 24.0, 30.0
+"""Smallest numbers of cells around a loop, and across a domain far from all features."""
+GRADING = 0.2
+"""Growth of sizes along walls, and with the distance from walls, per length."""
 CLOSE = "use a larger {growth} or a larger first cell, or open the gap there"
 """Remedy for walls, or fronts of layers, that nearly touch."""
+
+
+def feature_sizes(domain: Domain) -> SizeMetric:
+    """Return isotropic cell sizes that resolve the curvature, corners and gaps of the walls of a domain."""
+    points, normals, sizes = [], [], []
+    for loop in domain.loops:
+        arcs, size = sizes_by_bend(loop, loop.length / CELLS_AROUND, TURN)
+        size = np.minimum(size, wall_gaps(domain, loop, arcs) / CELLS_IN_GAP)
+        points.append(loop.at(arcs))
+        normals.append(turned_left(loop.tangent(arcs)))
+        sizes.append(graded(size, arcs, loop.length, GRADING))
+    size = np.concatenate(sizes)
+    largest = domain.extent / CELLS_ACROSS
+    return SizeMetric(np.concatenate(points), np.concatenate(normals), size, size, largest, GRADING)
 
 
 def found_outside(
@@ -44,10 +69,8 @@ def found_outside(
 def taken_outside(layout: Layout, rest: Domain, fronts: Collection[int]) -> Layout:
     """Return `layout` transferred to the domain `rest`; its loops `fronts` are the outer edges of layers.
 
-    A layout of a domain without layers can be used if its blocks have no vertex at a corner of a wall behind
-    a front.
-
-    Raises InputError: as `carried_over`; or the layout has layers around other loops.
+    Raises InputError: as `carried_over`; the layout has layers around other loops, or no layers around walls
+    with sharp corners.
     """
     taken = carried_over(layout, rest)
     places = taken.mesh.places
@@ -64,6 +87,6 @@ def taken_outside(layout: Layout, rest: Domain, fronts: Collection[int]) -> Layo
 
 
 def _smooth(loop: Loop) -> Loop:
-    """Return a loop without the corners at which the field is not to turn: nodes are put there later."""
+    """Return a loop without its corners of two cells, at which nodes are placed later."""
     corners = tuple(k for k, cells in zip(loop.corners, loop.corner_cells, strict=True) if cells != 2)
     return loop if corners == loop.corners else Loop(loop.curve, corners, loop.names[:1])

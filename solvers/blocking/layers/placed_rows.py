@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import compress
 
 import numpy as np
 
@@ -11,37 +12,26 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import exp, log, power
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.solvers.algebraic.tfi import interpolate, parameters
+from meshonet.solvers.algebraic.tfi import between
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
-from meshonet.solvers.blocking.sizes.on_loops import on_loops
 from meshonet.solvers.layers.layer_settings import LayerSettings, exact, spaced
 
 GROWING_COLUMNS = 75
-"""Percentage of the columns of a row that the layers must fill without growing too fast; the longer columns
-become shorter when growth is limited.
-"""
+"""Percentage of the columns of a row that the layers must fill without growing too fast."""
 SHORT_COLUMNS = 20
-"""Percentage of columns that may be too short for the rows with the prescribed first cells; in these columns
-cells become lower away from the wall.
-"""
+"""Percentage of columns that may be too short for layers; cells there become lower away from the wall."""
 OPENS = 0.15
-"""Distance behind a sharp edge, relative to its loop, over which the first cells of a wake grow."""
+"""Distance behind a sharp edge, over the length of its loop, within which the first cells of a wake grow."""
 _STEPS = 50  # of bisection, to round-off
 
 
 def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings) -> int:
     """Return the number of layers of a row: in most columns they fill the row and do not grow too fast."""
-    blocks = np.nonzero(rows.across == row)[0]
-    columns = np.concatenate(
-        [
-            table
-            for block, table in zip(blocks.tolist(), rows.columns(layout, row), strict=True)
-            if rows.across[block].min() < 0
-        ]
-    )
+    alone = rows.across[np.nonzero(rows.across == row)[0]].min(axis=1) < 0  # blocks of no other row
+    columns = np.concatenate(list(compress(rows.columns(layout, row), alone)))
     first, extra = settings.first, settings.constant - 1
     room = norms(np.diff(layout.mesh.nodes[columns], axis=1)).sum(axis=1) / first
-    on = layout.mesh.places.loop[columns[:, 0]] == rows.loops[row]  # a wake has as many
+    on = layout.mesh.places.loop[columns[:, 0]] == rows.loops[row]  # not of the wake, which has as many
     rise = math.log(settings.growth)
     wanted = extra + log(1.0 + math.expm1(rise) * np.maximum(room[on] - extra, 1.0)) / rise
     count = int(np.ceil(percentiles_of(wanted, (GROWING_COLUMNS,))[0]))
@@ -50,10 +40,9 @@ def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings)
 
 
 def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings]) -> Layout:
-    """Return a fine layout in which the nodes of wall rows are moved along the grid lines across the rows.
+    """Return a fine layout with nodes of wall rows moved along the lines across the rows into layers.
 
-    `settings` has one entry per row. First cells get their prescribed height exactly; the heights of the
-    other cells grow to that of the cells beyond the front of the row.
+    `settings` has one entry per row. First cells are exact; others grow to the height beyond the front.
     """
     mesh = layout.mesh
     moved = np.zeros(len(mesh.nodes), dtype=bool)
@@ -67,7 +56,7 @@ def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings
             nodes[table[:, 1:-1]] = lines[:, 1:-1]
             moved[table[:, 1:-1]] = True
         mesh = mesh.with_nodes(nodes)
-    mesh = on_loops(mesh, moved & mesh.wall_nodes)
+    mesh = mesh.on_loops(moved & mesh.wall_nodes)
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()
     for corner, across in _corners(layout, rows):
         loop = mesh.domain.loops[mesh.places.loop[corner[0, 0]]]
@@ -103,10 +92,7 @@ def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings, sheets: 
 
 
 def _corners(layout: Layout, rows: WallRows) -> list[tuple[Indices, list[int]]]:
-    """Return the nodes of the blocks where two rows cross, seen from the corner of the wall, and the rows.
-
-    The first row is along the south of the block, the second along the west.
-    """
+    """Return, for blocks where two rows cross: their nodes from the corner on; the south and the west row."""
     corners = []
     for block, across in zip(layout.blocks, rows.across.tolist(), strict=True):
         if min(across) >= 0:
@@ -135,7 +121,7 @@ def _beyond(layout: Layout, tables: list[Indices]) -> Floats:
 
 
 def _opened(mesh: QuadMesh, base: Indices, loop: int) -> Floats:
-    """Return 0 for columns (k,) on the wall, and along wakes up to 1, where first cells no longer count."""
+    """Return 0 for columns (k,) on the wall, up to 1 along wakes; at 1, first cells are not prescribed."""
     on = mesh.places.loop[base] == loop
     if on.all():
         return np.zeros(len(base))
@@ -147,8 +133,7 @@ def _opened(mesh: QuadMesh, base: Indices, loop: int) -> Floats:
 def _lines(columns: Floats, beyond: Floats, opened: Floats, settings: LayerSettings) -> Floats:
     """Return the nodes (k, n, 2) of layers along columns (k, n, 2).
 
-    `beyond` (k,) gives the cell sizes beyond the layers. Where `opened` (k,) is 1, the cells grow by one
-    ratio up to these sizes, and the first-cell height is not prescribed.
+    `beyond` (k,) are the cell sizes beyond the layers. Where `opened` (k,) is 1, cells grow by one ratio.
     """
     rows, first = columns.shape[1] - 1, settings.first
 
@@ -178,10 +163,7 @@ def _lines(columns: Floats, beyond: Floats, opened: Floats, settings: LayerSetti
 
 
 def _by_one_ratio(length: Floats, first: Floats, rows: int) -> Floats:
-    """Return places (k, rows + 1) from 0 to `length` (k,) of cells that grow by a constant ratio.
-
-    `first` (k,) are the lengths of the first cells.
-    """
+    """Return distances (k, rows + 1), to `length` (k,), of cells that grow from `first` (k,) by one ratio."""
     low, high = np.zeros(len(length)), np.full(len(length), 2.0)
     powers = np.arange(float(rows))
     for _ in range(_STEPS):
@@ -193,7 +175,7 @@ def _by_one_ratio(length: Floats, first: Floats, rows: int) -> Floats:
 
 
 def _wall_arcs(loop: Loop, arcs: Floats, beside: Floats, settings: LayerSettings) -> Floats:
-    """Return arc lengths (n,) of nodes of a wall from a corner on, layers like those `beside` (n, 2)."""
+    """Return arc lengths (n,) of wall nodes from a corner on, in layers like those `beside` (n, 2)."""
     way = arcs[-1] - arcs[0]
     way -= loop.length * np.round(way / loop.length)
     column = np.hypot(*np.diff(beside, axis=0).T)
@@ -204,14 +186,9 @@ def _wall_arcs(loop: Loop, arcs: Floats, beside: Floats, settings: LayerSettings
 
 
 def _between(nodes: Floats, south: float, west: float) -> Floats:
-    """Return the nodes (n, m, 2) of a block from its sides, of which south and west are walls.
-
-    First cells are `south` and `west` high.
-    """
+    """Return nodes (n, m, 2) between the sides of a block, with first cells of heights `south` and `west`."""
     sides = nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1]
-    filled = np.empty((2, *nodes.shape[:2]))
-    interpolate(filled[0], filled[1], sides, parameters(sides, "arclength"))
-    block = filled.transpose(1, 2, 0)
+    block = between(sides)
     block[:, 0], block[:, -1], block[0], block[-1] = sides
     for wall, first in ((block[1:-1], south), (block.transpose(1, 0, 2)[1:-1], west)):
         exact(wall, first)

@@ -1,11 +1,6 @@
 """Rings of layers around the loops of a domain: marched from the wall, limited by the gaps.
 
-::
-
-    wall --march, step by step as thick as the gap in front allows--> front
-
-The front is a smooth loop that replaces the wall when the rest of the domain is decomposed. The ring itself
-is a map from position along the front and height to the plane, so that it gives a column of nodes anywhere.
+The front, their outer edge, is a loop that replaces the wall when the rest of the domain is decomposed.
 """
 
 from collections.abc import Mapping, Sequence
@@ -30,9 +25,7 @@ from meshonet.solvers.layers.even_line import FINER, SLACK, Measures
 FILLED = 0.85
 """Largest part of a gap that the rings of both walls fill; without sharp edges they fill twice `GAP_PART`."""
 THICKNESS, COLUMNS = 0.018, 140
-"""Thickness of layers where there is room, divided by the length of the loop; and number of cells around a
-loop if all were as long as the longest.
-"""
+"""Thickness of layers where there is room, and the inverse length of the longest cells, by loop length."""
 _SAMPLES = 2000  # points of a wall from which distances are measured
 
 
@@ -46,8 +39,8 @@ class Ring:
     arcs : (n,) ascending arc lengths at which the columns of `levels` start. If the wall has corners, the
         first column starts at one.
     levels : (n, m, 2) nodes from the wall (0) to the front (m - 1).
-    front : loop along the last level, with one point per column. Where the wall has a corner, the front has a
-        corner with two cells, which forces a node there.
+    front : loop along the last level, with one point per column, and corners of two cells where the wall has
+        corners.
     """
 
     wall: Loop
@@ -99,7 +92,7 @@ class Ring:
         return Measures(front, np.stack([front, wall - wall[0], above - above[0]]), SLACK)
 
     def _unwrapped(self) -> Floats:
-        """Return arc lengths (n + 3,) of columns -1 to n + 1, ascending."""
+        """Return ascending arc lengths (n + 3,) of columns -1 to n + 1."""
         around = np.append(self.arcs, [self.arcs[0] + self.wall.length, self.arcs[1] + self.wall.length])
         return np.concatenate([[self.arcs[-1] - self.wall.length], around])
 
@@ -120,10 +113,10 @@ def march_ring(
 ) -> Ring:  # fmt: skip
     """Return the ring around a loop of a domain, as thick as `thickness` where there is room.
 
-    `first` is the height of first cells, `largest` the largest length of cells along the wall; both are in
-    the domain's unit. The ring is symmetric about those `mirrors` in which the loop is its own image. If
-    `before` and `room` (n,) are given, the ring is at most as thick as `room` at the columns of the ring
-    `before`. Raises InputError, with the place: no layer fits in a gap, or every march folds at a wall.
+    `first` is the height of first cells, `largest` the largest length of cells along the wall, both in the
+    domain's unit. The ring is symmetric about `mirrors` of the loop. If given, `room` (n,) limits its
+    thickness at the columns of the ring `before`. Raises InputError, with the place: no layer fits in a gap,
+    or every march folds at a wall.
     """
     loop = domain.loops[number]
     own = [mirror for mirror in mirrors if mirror.loops[number] == number]
@@ -146,16 +139,11 @@ def march_ring(
         gap = np.minimum(gap, gap[to])
     if own:
         arcs = _at_corners(loop, arcs)
-    levels = fitted(
-        loop.at(arcs),
-        arcs,
-        loop.length,
-        gap,
-        thickness,
-        first,
-        ATTEMPTS,
-        place=lambda k: place(loop, arcs[k]),
-    )
+
+    def at(column: int) -> str:
+        return place(loop, arcs[column])
+
+    levels = fitted(loop.at(arcs), arcs, loop.length, gap, thickness, first, ATTEMPTS, place=at)
     for each in steps:
         levels = sum((own[k].images(levels[images[k]]) for k in each), start=levels) / (len(each) + 1)
     if own:
@@ -166,8 +154,7 @@ def march_ring(
 def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
     """Return, for each ring that would hit another one, the largest thickness (n,) at each of its columns.
 
-    Rings can collide although gaps were considered: columns fan out around a sharp edge, towards walls that
-    are not in front of the points where the columns start.
+    Columns fan out around a sharp edge, towards walls that are not in front of their starting points.
     """
     rooms = {}
     walls = {k: np.arange(_SAMPLES) / _SAMPLES * ring.wall.length for k, ring in rings.items()}
@@ -187,10 +174,7 @@ def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
 
 
 def mirrored(ring: Ring, loop: Loop, mirror: Mirror, total: float) -> Ring:
-    """Return the mirror image of a ring: the ring around `loop`, the image of its wall.
-
-    `total` is the sum of the arc lengths of a point of the wall and of its mirror image on `loop`.
-    """
+    """Return the mirror image of a ring, around `loop`; `total` is the `Mirror.sums` of its wall."""
     arcs = _at_corners(loop, np.mod(total - ring.arcs[::-1], loop.length))
     levels = mirror.images(ring.levels[::-1])
     levels[:, 0] = loop.at(arcs)
@@ -199,7 +183,7 @@ def mirrored(ring: Ring, loop: Loop, mirror: Mirror, total: float) -> Ring:
 
 
 def _at_corners(loop: Loop, arcs: Floats) -> Floats:
-    """Return arc lengths (n,) with those nearest to corners of a loop at these."""
+    """Return arc lengths (n,), the nearest ones moved to the corners of a loop."""
     arcs = arcs.copy()
     for corner in loop.corner_arcs.tolist():
         arcs[nearest_arc(arcs, corner, loop.length)] = corner
@@ -226,8 +210,7 @@ def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
 def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, Indices]:
     """Return the weights (k, 4) of four columns for each fractional `index` (k,), and the first column (k,).
 
-    The columns that are used lie between `low` and `high` (k,), the columns at the two nearest corners. Where
-    there are fewer than four of them, the last weights are zero.
+    Columns outside of `low` to `high` (k,), those at the nearest corners, have zero weights.
     """
     first = np.clip(index.astype(np.intp) - 1, low, np.maximum(high - 3, low))
     width = np.minimum(high - first, 3)
@@ -244,10 +227,7 @@ def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, 
 
 
 def started(lines: Floats, begin: Floats) -> Floats:
-    """Return lines (k, m, 2) with their first nodes moved to `begin` (k, 2).
-
-    The displacement decreases along each line to 0 at its end.
-    """
+    """Return lines (k, m, 2) moved to start at `begin` (k, 2); displacements decrease to 0 at their ends."""
     moved = lines + (1.0 - arc_parts(lines))[..., None] * (begin - lines[:, 0])[:, None]
     moved[:, 0] = begin
     return np.asarray(moved)

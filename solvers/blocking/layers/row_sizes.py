@@ -32,9 +32,7 @@ THINNEST = 8.0
 SPREAD = 0.1
 """Growth of the thickness of layers along a wake per distance from the sharp edge."""
 AROUND_CORNER = 2.5
-"""If the arc length to a point of the same wall, divided by the distance, is less, the point is around a
-corner, and the distance is no gap.
-"""
+"""Ratio of arc length to distance up to which a point of the same wall is around a corner: no gap."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +77,7 @@ class RowSizes:
     def thickness(self, scale: float, settings: LayerSettings) -> Floats:
         """Return the thickness (n,) of the layers, whose cells grow until they are square or fill the gap.
 
-        `scale` is a factor on the cell lengths along the wall; with a larger scale, layers are thicker.
+        `scale` is a factor on the cell lengths along the wall, here and in the other methods.
         """
         last = scale * self.length * settings.growth
         full = np.maximum((last - self.first) / (settings.growth - 1.0), THINNEST * self.first)
@@ -97,10 +95,7 @@ class RowSizes:
         return edge + SPREAD * away
 
     def rows(self, scale: float, settings: LayerSettings) -> int:
-        """Return the approximate number of layers, of points with the first-cell height of `settings`.
-
-        `scale` is a factor on the cell lengths along the wall.
-        """
+        """Return the approximate number of layers where first cells have the height of `settings`."""
         on = self.on & (self.first == settings.first)
         return settings.rows(float(self.thickness(scale, settings)[on if on.any() else self.on].max()))
 
@@ -111,10 +106,7 @@ class RowSizes:
             check_room(room, float(first), lambda k: place(self.loop, self.arcs[k]))
 
     def metric(self, scale: float, settings: LayerSettings) -> SizeMetric:
-        """Return the sizes of cells beyond the layers.
-
-        `scale` is a factor on the cell lengths along the wall.
-        """
+        """Return the sizes of cells beyond the layers."""
         on, along = self.on, np.maximum(scale * self.length, self.first)
         thick, normals = self.thickness(scale, settings), turned_left(self.loop.tangent(self.arcs))
         across = np.minimum(last_layers(thick, self.rows(scale, settings), settings, self.first), along)
@@ -122,10 +114,7 @@ class RowSizes:
         return SizeMetric(points[on], normals[on], across[on], along[on], np.inf)
 
     def wake_metric(self, wake: Floats, scale: float, settings: LayerSettings) -> SizeMetric:
-        """Return the sizes of cells next to a wake (k, 2), a line that begins at the sharp edge.
-
-        `scale` is as in `metric`.
-        """
+        """Return the sizes of cells next to a wake (k, 2), a line that begins at the sharp edge."""
         tangent = np.gradient(wake, axis=0)
         normals = turned_left(tangent) / np.hypot(*tangent.T)[:, None]
         away = np.hypot(*(wake - wake[0]).T)

@@ -68,7 +68,7 @@ def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int
 
 
 def continued_notes(domain: Domain, names: Collection[str]) -> list[str]:
-    """Return a note for each wall whose layers go on along an axis or symmetry line; see `layered_walls`."""
+    """Return a note for each wall whose layers continue along an axis or symmetry line (`layered_walls`)."""
     notes = []
     for number, loop in enumerate(domain.loops):
         walls = _with_layers(domain, number, names)
@@ -88,9 +88,9 @@ def _with_layers(domain: Domain, number: int, names: Collection[str]) -> list[bo
 
 
 def _onward(loop: Loop, walls: Sequence[bool]) -> dict[int, tuple[int, int]]:
-    """Return the parts of a loop along which layers of `walls` go on: axes, and symmetry lines.
+    """Return the axes and symmetry lines along which layers of `walls` continue.
 
-    With each are the part that it continues, and the corner between both.
+    The dict maps them to the part that they continue, and to the corner between both.
     """
     count, onward = len(loop.corners), dict[int, tuple[int, int]]()
     lines = [k for k, name in enumerate(loop.names) if not may_be_wall(name) and kind_of(name) in _LINES]

@@ -14,17 +14,17 @@ TURN = np.radians(4.0)
 """Largest angle by which the wall turns along one cell."""
 GROWTH = 0.1
 """Largest difference of neighbouring cells relative to their length."""
-_SAMPLES = 4000  # places around a loop at which sizes are tabulated: 28 a cell of the longest
-_CORNER_PART = 1.0 / 40.0  # cell at a corner, in cells elsewhere
-_PIECE_PART = 1.0 / 3.0  # and at the most in lengths of the pieces of wall that end there
-_RESOLVED = 0.01  # samples that a cell at a corner is long, at the least, without more samples there
+_SAMPLES = 4000  # points around a loop at which sizes are tabulated: 28 in each of the longest cells
+_CORNER_PART = 1.0 / 40.0  # length of a cell at a corner over the largest one
+_PIECE_PART = 1.0 / 3.0  # largest length of a cell at a corner over that of the shorter wall there
+_RESOLVED = 0.01  # smallest length of a cell at a corner over the distance of samples
 
 
 def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floats:
     """Return the ascending arc lengths (n,) of columns around a loop; each corner gets a column.
 
-    `largest` is the largest distance of neighbouring columns. For each c in `sums`, the columns are
-    symmetric: the mirror image of the column at arc length s is the column at c - s.
+    `largest` is the largest distance of neighbouring columns. For each c in `sums`, the image of the column
+    at arc length s is the column at c - s.
     """
     arcs = np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs)
     arcs = distinct(np.append(arcs, _beside_corners(loop, largest)))
@@ -77,7 +77,7 @@ def _sizes(loop: Loop, arcs: Floats, largest: float) -> Floats:
 
 
 def _at_corners(loop: Loop, largest: float) -> list[tuple[float, float]]:
-    """Return arc lengths of convex corners and the cells there: columns converge where layers end."""
+    """Return the arc lengths of corners with more than one cell, and the cell lengths there."""
     corners = loop.corner_arcs
     if len(corners) == 0:
         return []
@@ -89,7 +89,7 @@ def _at_corners(loop: Loop, largest: float) -> list[tuple[float, float]]:
 
 
 def _beside_corners(loop: Loop, largest: float) -> Floats:
-    """Return arc lengths (k,) where cells grow from far smaller ones than samples tell apart."""
+    """Return arc lengths (k,) of more samples beside corners whose cells are far shorter than samples."""
     step = loop.length / _SAMPLES
     beside = [np.zeros(0)]
     for arc, size in _at_corners(loop, largest):

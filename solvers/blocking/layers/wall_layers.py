@@ -16,6 +16,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.spacing.gradual_sizes import graded
 from meshonet.kernels._native import nearest_points
+from meshonet.solvers.blocking.chord_cells import WantedCounts
 from meshonet.solvers.blocking.decomposition.side_counts import nearer, suited
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
@@ -33,7 +34,6 @@ from meshonet.solvers.blocking.layers.rings import (
 from meshonet.solvers.blocking.layers.row_sizes import RowSizes
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
-from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
 from meshonet.solvers.layers.even_line import Measures
 from meshonet.solvers.layers.layer_settings import LayerSettings
 from meshonet.solvers.refinement.chords import Chords
@@ -44,30 +44,29 @@ INNER_THICKNESS = 0.075
 MOST_OPTIMISED = 4000
 """Largest number of cells that are optimised directly; finer grids are splines through these."""
 ROWS = 3
-"""Number of cells across a row of layers during the optimisation, so that it has no very thin cells."""
-_MARCHES = 4  # of rings that come too close to each other, each thinner
+"""Number of cells across a row of layers during the optimisation."""
+_MARCHES = 4  # largest number of marches of rings that are too close to each other
 _BISECTIONS = 14  # of a range of 240 to 1: the scale to 0.03 %
 
 
 @dataclass(frozen=True, eq=False)
 class WallLayers:
-    """The layers at the walls of a domain, and the remaining domain, which is decomposed into blocks.
-
-    There are two kinds of layers. Those of the first kind, `rings`, go around whole loops. The keys of
-    `rings` are the indices of these loops, which are the same in `domain` and in the remaining domain `rest`.
-    Layers of the second kind are rows of blocks of the layout: along `stretches`, or around the loops with
-    indices `sheets` and along their wakes. `sizes` has, by index of the loop, the cell sizes of the second
-    kind. `near` replaces an outer loop that is far away.
-    """
+    """The layers at the walls of a domain, and the remaining domain, which is decomposed into blocks."""
 
     domain: Domain
     rings: Mapping[int, Ring]
+    """Layers around whole loops, by the index of the loop."""
     near: NearField | None
+    """The circle that replaces a distant outer loop."""
     rest: Domain
+    """The remaining domain, with the same indices of loops."""
     settings: LayerSettings
     stretches: tuple[Stretch, ...] = ()
+    """Parts of loops whose layers are rows of blocks of the layout."""
     sheets: tuple[int, ...] = ()
+    """Indices of loops with rows of blocks around them and along their wakes."""
     sizes: Mapping[int, RowSizes] = field(default_factory=dict)
+    """Cell sizes at rows of blocks, by the index of the loop."""
 
     @classmethod
     def of(
@@ -93,11 +92,6 @@ class WallLayers:
             each.check_room()
         return cls(domain, rings, near, left, settings, tuple(stretches), tuple(sheets), sizes)
 
-    @property
-    def fronts(self) -> tuple[int, ...]:
-        """Numbers of the loops of `rest` that are fronts of layers."""
-        return tuple(self.rings)
-
     @cached_property
     def mirrors(self) -> tuple[Mirror, ...]:
         """Mirrors of the domain outside the layers; none if the domain has none."""
@@ -121,8 +115,7 @@ class WallLayers:
     def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
         """Return whether a wake reaches the outer loop and has room for layers on its whole length.
 
-        `wake` lists the indices in `mesh` of the nodes of the wake, starting at the sharp edge of the loop
-        with index `number`.
+        `wake` are the indices in `mesh` of its nodes from the sharp edge of loop `number` on.
         """
         return bool(mesh.places.loop[wake[-1]] == 0) and self.has_room(number, mesh.nodes[wake])
 
@@ -140,10 +133,9 @@ class WallLayers:
         return [ring_metric(ring, self.of_ring(k)) for k, ring in self.rings.items()]
 
     def _at_rings(self, scale: float) -> list[SizeMetric]:
-        """Return the sizes of cells beyond rings, whose lengths along the rings are multiplied by `scale`.
+        """Return the sizes of cells beyond rings, with lengths along the rings multiplied by `scale`.
 
-        Lengths are gradual without a factor, and with one that makes cells shorter. A factor above 1 also
-        multiplies how much they change from one cell to the next, which is therefore limited.
+        If `scale` exceeds 1, differences of neighbouring cells grow too; they are limited.
         """
         parts = []
         for ring, each in zip(self.rings.values(), self._ring_metrics, strict=True):
@@ -157,10 +149,10 @@ class WallLayers:
     def metric(
         self, scale: float, size: float = 0.0, wakes: Mapping[int, Floats] | None = None
     ) -> SizeMetric:
-        """Return the target cell sizes outside the layers.
+        """Return the target cell sizes outside the layers, at most `size` if given.
 
-        Next to layers, they are `scale` times the cell lengths along the wall; they are at most `size`, if
-        given. `wakes` are lines (k, 2) by the index of their loop.
+        Next to layers, they are `scale` times the cell lengths along the wall. `wakes` are lines (k, 2) by
+        the index of their loop.
         """
         scale = 1.0 if size else scale
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
@@ -172,17 +164,14 @@ class WallLayers:
         if size:
             along = metric.along * max(size / metric.along.max(), 1.0) ** 0.5
             return replace(metric, along=np.minimum(along, size), largest=size)
-        finer = min(scale, 1.0)  # as sizes at walls are, so that sizes grow alike at any count of cells
+        finer = min(scale, 1.0)  # like sizes at walls, so that growth per cell is independent of their number
         grading = min(metric.grading, self.settings.grading * max(scale, 1.0))  # with few cells, no less
         largest = self.rest.extent / 12.0 * scale**0.5
         return replace(metric, largest=largest, grading=finer * grading)
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Measures besides arc length in which nodes should be evenly spaced along the new loops of `rest`.
-
-        The new loops are the fronts of rings and the circle of `near`; the keys are their indices.
-        """
+        """Measures whose steps should be even along fronts of rings and the circle of `near`, by loop."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])
@@ -194,10 +183,7 @@ class WallLayers:
         return self.of_ring(number).rows(float(self.rings[number].thickness.max()))
 
     def attached_cells(self, chords: Chords, counts: Indices) -> int:
-        """Return the number of cells in rings and in rows to the far field.
-
-        `counts` (chords,) are the numbers of cells of the chords.
-        """
+        """Return the number of cells in rings and in rows to the far field, for `counts` (chords,)."""
         along = chords.along_loops(counts).tolist()
         total = sum(along[number] * self.ring_rows(number) for number in self.rings)
         if self.near is not None:
@@ -249,15 +235,13 @@ class Counts:
 
     Parameters
     ----------
-    coarse : (chords,) counts of the first layout that is optimised: the final counts divided by `stride` and
-        `times`.
+    coarse : (chords,) counts in the first optimisation: the final counts divided by `stride` and `times`.
     stride : factor from the counts of the first optimisation to those of the second; 1 if there is only one.
     times : factor from the counts of the last optimisation to the final counts.
     scale : factor by which the cell lengths along walls are multiplied.
     metric : target sizes.
-    layers : (rows,) for each row, its number of layers divided by the number that its thickness requires. The
-        ratio is known only after an optimisation. Because the thickness in turn depends on the number of
-        layers, each new ratio is averaged geometrically with the previous one.
+    layers : (rows,) number of layers of each row divided by the number that its thickness requires; known
+        after an optimisation, and averaged with the previous one.
     """
 
     coarse: Indices
@@ -273,8 +257,7 @@ def wanted_counts(
 ) -> Counts:
     """Return counts for about `cells` cells in total, or for cells of the given size.
 
-    During the optimisation each row has `ROWS` cells across, whatever its final number of layers. `before`
-    has the counts of the previous optimisation.
+    During the optimisation each row has `ROWS` cells across. `before` are the previous counts.
     """
     multiple, row = walls.settings.multiple, rows.of_chords(chords)
     wakes = rows.wakes(chords.layout)

@@ -2,11 +2,11 @@
 
 ::
 
-    a corner between two walls, each with a row          a row that ends alone
-        |   |   |                                            |   |   |
-        |---+---+--- front                        front -----+---+---|
-        |   |   |                                            |   |   | the wall beyond
-        +---+---+--- wall                         wall  -----+---+---+
+    a corner between two walls        a row that ends alone        around a sharp edge and its wake
+        |   |   |                            |   |   |                ---------- front --------.
+        |---+---+--- front        front -----+---+---|                 wake  ----------- edge wall |
+        |   |   |                            |   |   | another wall   ---------- front --------'
+        +---+---+--- wall          wall -----+---+---+
 """
 
 from collections.abc import Sequence
@@ -14,15 +14,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, Indices, distinct
+from meshonet.geometry.arrays import Bools, Floats, Indices, complex_of, distinct
+from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.solvers.blocking.decomposition.quads.padding import pad_span
+from meshonet.solvers.blocking.decomposition.quads.inner_rows import half_edges, with_row
+from meshonet.solvers.blocking.decomposition.quads.padding import along_wall, pad_span
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
 from meshonet.solvers.blocking.decomposition.symmetry.symmetric import cut_on_mirrors
-from meshonet.solvers.blocking.layers.growth_lines import consecutive_edges, growth_along
-from meshonet.solvers.blocking.layers.sheet import with_sheet
+from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.refinement.chords import Chords
 
@@ -36,9 +37,8 @@ class WallRows:
     Parameters
     ----------
     loops : for each row, the index of the loop along which it goes.
-    across : (b, 2) for each block, the index of the row whose thickness is the block's south-north direction,
-        and of that whose thickness is its west-east direction; -1 if none. The blocks of a refined layout are
-        the same, so that these indices stay valid.
+    across : (b, 2) index of the row, or -1, whose thickness a block spans from south to north, and from west
+        to east; also valid for a refined layout.
     back : (b, 2) whether this direction of the block leads from the front of the row to the wall.
     """
 
@@ -47,7 +47,7 @@ class WallRows:
     back: Bools
 
     def of_chords(self, chords: Chords) -> Indices:
-        """Return (chords,): the index of the wall row whose thickness the edges of a chord span, or -1."""
+        """Return the index (chords,) of the row whose thickness the edges of each chord span, or -1."""
         row = np.full(chords.count, -1, dtype=np.intp)
         row[chords.chord[chords.sides[:, 2]]] = self.across[:, 0]
         row[chords.chord[chords.sides[:, 0]]] = self.across[:, 1]
@@ -66,9 +66,9 @@ class WallRows:
         base = np.zeros(len(layout.mesh.nodes), dtype=bool)
         for table in self.columns(layout, self.loops.index(loop)):
             base[table[:, 0]] = True
-        lines = consecutive_edges(layout.mesh)
-        z = layout.mesh.nodes[:, 0] + 1j * layout.mesh.nodes[:, 1]
-        return float(np.abs(growth_along(z, lines[base[lines].all(axis=1)])).max())
+        lines = GrowthLines.of(layout.mesh, 0.0)
+        along = lines.some(np.asarray(base[lines.nodes].all(axis=1)))
+        return float(np.abs(along.growth(complex_of(layout.mesh.nodes))).max())
 
     def wakes(self, layout: Layout) -> dict[int, Floats]:
         """Return the wakes (k, 2) of the loops that have a row around them; keys are the loops' indices."""
@@ -83,21 +83,43 @@ class WallRows:
         return lines
 
 
+def has_sharp_edge(loop: Loop) -> bool:
+    """Return whether a loop has exactly one corner, so sharp that four cells meet there."""
+    return len(loop.corners) == 1 and int(loop.corner_cells[0]) == 4
+
+
+def wake_of(mesh: QuadMesh, number: int) -> list[int]:
+    """Return the nodes of the grid line from the sharp edge of a loop to a boundary."""
+    half, places = half_edges(mesh), mesh.places
+    edge = int(np.argmax((places.loop == number) & (places.cells == 4)))
+
+    def turned(node: int, beside: int, quads: int) -> int:
+        """Return the neighbour of a node that follows another one counter-clockwise after some quads."""
+        for _ in range(quads):
+            k, i = half[node, beside]
+            beside = int(mesh.quads[k, (i + 3) % 4])
+        return beside
+
+    wake = [edge, turned(edge, along_wall(mesh, edge, edge)[1], 2)]
+    while not mesh.wall_nodes[wake[-1]]:
+        wake.append(turned(wake[-1], wake[-2], int(mesh.valence[wake[-1]]) // 2))
+    return wake
+
+
 def with_wall_rows(
     layout: Layout, stretches: Sequence[Stretch], sheets: Sequence[int] = (), mirrors: Sequence[Mirror] = ()
 ) -> tuple[Layout, WallRows]:
     """Return a layout with rows of quads along `stretches` and around the loops `sheets`, and the rows.
 
-    Each loop in `sheets` has a sharp edge. The second result says which blocks belong to which row. If the
-    quads of the layout are symmetric about `mirrors`, the blocks are too. Raises SolverError: the lines of
-    the mesh do not bound blocks.
+    Each loop in `sheets` has a sharp edge. If the quads of the layout are symmetric about `mirrors`, the
+    blocks are too. Raises SolverError: the lines of the mesh do not bound blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front
     fronts: list[list[Edge]] = []
     for number in sheets:
-        before = len(mesh.quads)
-        mesh = with_sheet(mesh, number)
+        before, wake = len(mesh.quads), wake_of(mesh, number)
+        mesh = with_row(mesh, [*wake[:0:-1], *along_wall(mesh, wake[0], wake[0])[:-1], *wake])
         row = mesh.quads[before:].tolist()
         fronts.append([(quad[3], quad[2]) for quad in row])
         rungs.append((row[len(row) // 2][0], row[len(row) // 2][3]))
@@ -110,7 +132,7 @@ def with_wall_rows(
         across = [(quad[0], quad[3]) for quad in row] + [(row[-1][1], row[-1][2])]
         ends = {node for front in fronts for node in (front[0][0], front[-1][1])}
         ends |= {across[0][1]} if whole else set()
-        fronts += [[edge] for edge in across if edge[1] in ends]  # fronts go on to the wall that crosses them
+        fronts += [[edge] for edge in across if edge[1] in ends]  # fronts continue to the wall beyond
         fronts.append([(quad[3], quad[2]) for quad in row])
         rungs.append(across[len(row) // 2])
     lines = np.zeros(len(mesh.edges), dtype=bool)

@@ -8,7 +8,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
-from meshonet.solvers.blocking.layers.growth_lines import GrowthLines, consecutive_edges, growth_along
+from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.layers.even_line import Measures, evened_places, evened_steps
 
 LIMIT = np.log(1.2)
@@ -95,9 +95,9 @@ def mesh():
 
 
 def growth_of(mesh, free):
-    lines = consecutive_edges(mesh)
+    lines = GrowthLines.of(mesh, 0.0)
     z = mesh.nodes[:, 0] + 1j * mesh.nodes[:, 1]
-    return np.exp(np.abs(growth_along(z, lines[free[lines].any(axis=1)])).max())
+    return np.exp(np.abs(lines.some(free[lines.nodes].any(axis=1)).growth(z)).max())
 
 
 def test_nodes_of_a_mesh_move_until_cells_grow_by_no_more_than_the_limit(mesh):
@@ -145,6 +145,6 @@ def test_edges_at_irregular_vertices_are_compared_across_the_sides_of_blocks():
     loop = Loop.of_polygon(nodes[:10])
     places = Places.inside(11)
     places.loop[:10] = 0
-    lines = consecutive_edges(QuadMesh(Domain((loop,)), nodes, quads, places))
+    lines = GrowthLines.of(QuadMesh(Domain((loop,)), nodes, quads, places), 0.0).nodes
     at = lines[lines[:, 1] == 10]
     assert sorted(map(tuple, np.sort(at[:, [0, 2]]))) == [(0, 4), (0, 6), (2, 6), (2, 8), (4, 8)]

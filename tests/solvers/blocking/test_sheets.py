@@ -9,7 +9,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.solvers.blocking.layers import layered as pipeline
 from meshonet.solvers.blocking.layers.layered import layered
-from meshonet.solvers.blocking.layers.sheet import has_sharp_edge
+from meshonet.solvers.blocking.layers.wall_rows import has_sharp_edge
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.layers.layer_settings import LayerSettings
 

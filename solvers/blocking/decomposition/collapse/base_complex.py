@@ -35,9 +35,7 @@ class BaseComplex:
     bounds: Bools
     """(e,) mask of the edges that bound blocks."""
     chord: Indices
-    """(e,) number of each edge's chord. Opposite sides of a block belong to the same chord, and so do the
-    edges between them.
-    """
+    """(e,) chord of each edge: one for opposite sides of a block and all edges between them."""
     chords: int
 
     @property
@@ -47,11 +45,10 @@ class BaseComplex:
 
     @cached_property
     def sides(self) -> tuple[Indices, Indices, Indices]:
-        """Edges along the sides of the blocks, in the order south, north, west, east of each block.
+        """Edges along the sides of the blocks: south, north, west, east of each block.
 
-        The first array (k,) lists the nodes of all sides, one side after another: for each node the index of
-        the edge to the next node of the side, or -1 at the last node. The second array (4 b,) has the index
-        in the first array where each side starts, the third array (4 b,) the index of the chord of each side.
+        The first array (k,) has, for each node of each side, the edge to the next node; -1 at the last node.
+        The second array (4 b,) is the start of each side in the first array, the third (4 b,) its chord.
         """
         lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
         nodes = np.concatenate(lines)
@@ -68,7 +65,7 @@ class BaseComplex:
         return moved
 
     def side_lengths(self, unit: Floats | None = None) -> Floats:
-        """Return the lengths (b, 4) of the south, north, west, east sides, if an edge is `unit` (e,) long."""
+        """Return the lengths (b, 4) of the south, north, west, east sides, in units (e,) of each edge."""
         edge, first, _ = self.sides
         length = self.mesh.edge_lengths
         if unit is not None:

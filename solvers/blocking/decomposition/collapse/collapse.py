@@ -27,7 +27,7 @@ FAILURES = 8
 """Number of consecutive attempts without improvement after which the collapse ends."""
 
 PER_CHORD = 14
-"""Number of chords for each chord that is collapsed in addition to the first."""
+"""One more chord is collapsed at a time for each this many chords."""
 ITERATIONS = 12
 """Iterations of the optimisation before a trial is judged."""
 
@@ -38,11 +38,10 @@ PER_TRIAL, PER_OPTIMUM = 3, 20
 
 
 def simplify(mesh: QuadMesh, *, price: float, sizes: SizeMetric | None) -> BaseComplex:
-    """Return the blocks of an optimised quad mesh after collapsing chords (rows of blocks).
+    """Return the blocks of an optimised quad mesh after collapsing chords (rows of blocks), narrowest first.
 
-    The narrowest chords are collapsed first; if there are many, several are collapsed before the next
-    optimisation. `sizes` are prescribed lengths of edges. `price` is how much the mean deviation of angles
-    from 90 degrees (in degrees) may grow for each block that is removed.
+    `sizes` are prescribed lengths of edges. `price` is how much the mean deviation of angles from 90 degrees
+    (in degrees) may grow for each block that is removed.
     """
 
     def wanted(mesh: QuadMesh) -> Floats | None:
@@ -69,10 +68,9 @@ def simplify(mesh: QuadMesh, *, price: float, sizes: SizeMetric | None) -> BaseC
 
 
 def _without(current: BaseComplex, kept: Collection[int], count: int) -> tuple[BaseComplex | None, int, int]:
-    """Return the blocks without `count` chords, the narrowest first; chords in `kept` are not removed.
+    """Return the blocks without up to `count` chords, or None; the first of these; how many were tried.
 
-    Fewer chords are removed if no more can be, and None is returned if none can. Also returned are the number
-    of the first removed chord, and the number of chords that were tried.
+    The narrowest chords are removed, except those in `kept`.
     """
     trial, first, tried = None, -1, 0
     for _ in range(count):
@@ -90,10 +88,7 @@ def _without(current: BaseComplex, kept: Collection[int], count: int) -> tuple[B
 
 
 def _collapsed(current: BaseComplex, chord: int) -> BaseComplex | None:
-    """Return the mesh without a chord, None if this is not permitted or removes no block.
-
-    It is not permitted if periodic sides could no longer have the same number of cells.
-    """
+    """Return the blocks without a chord; None if periodic sides would not match or no block vanishes."""
     mesh = current.mesh
     trial = contract(mesh, current.chord == chord)
     if trial is None:

@@ -1,8 +1,4 @@
-"""Contracts edges of a quad mesh if the result is a conforming mesh of the same domain.
-
-Merged nodes are moved to a corner among them, else to the middle of their interval on the wall, else to their
-mean.
-"""
+"""Contracts edges of a quad mesh if the result is a conforming mesh of the same domain."""
 
 import numpy as np
 
@@ -19,9 +15,10 @@ VALENCES = (3, 5)
 def contract(mesh: QuadMesh, rungs: Bools) -> QuadMesh | None:
     """Return the mesh with the nodes of each edge in `rungs` (e,) merged; None if it would be invalid.
 
-    The mesh would be invalid if two corners were merged; if wall nodes were merged that no wall edge in
-    `rungs` connects; if more wall nodes than before had a wrong number of quads; or if it were not a
-    conforming mesh of the same domain with 3 to 5 quads around each interior node.
+    Merged nodes are moved to the corner among them, else to the mean of their arc lengths on the wall, else
+    to their mean. The mesh would be invalid if two corners were merged; if wall nodes were merged that no
+    wall edge in `rungs` connects; if more wall nodes than before had a wrong number of quads; or if it were
+    not a conforming mesh of the same domain with 3 to 5 quads around each interior node.
     """
     label, count = joined_classes(np.ascontiguousarray(mesh.edges[rungs]), len(mesh.nodes))
     kept = ~rungs[mesh.edge_of].any(axis=1)
@@ -37,7 +34,7 @@ def contract(mesh: QuadMesh, rungs: Bools) -> QuadMesh | None:
 
 
 def _may_join(mesh: QuadMesh, label: Indices, count: int, rungs: Bools) -> bool:
-    """Return whether no class of nodes has two corners, and wall nodes in one are joined along the wall."""
+    """Return whether each class has at most one corner, and wall nodes only if the wall joins them."""
     corners, wall = np.flatnonzero(mesh.places.cells > 0), np.flatnonzero(mesh.places.loop >= 0)
     if len(distinct(label[corners])) < len(corners):
         return False
@@ -48,7 +45,7 @@ def _may_join(mesh: QuadMesh, label: Indices, count: int, rungs: Bools) -> bool:
 
 
 def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
-    """Put the nodes of `trial`, classes of those of `mesh`, at their places."""
+    """Return `trial` with its nodes, classes of those of `mesh`, in their places."""
     places, count = mesh.places, len(trial.nodes)
     corners, wall = np.flatnonzero(places.cells > 0), np.flatnonzero(places.loop >= 0)
     of, loop, cells = label[wall], trial.places.loop, trial.places.cells

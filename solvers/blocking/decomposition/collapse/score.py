@@ -22,8 +22,6 @@ from meshonet.solvers.blocking.decomposition.quads.padding import wrong_count
 
 PRICE = 0.12
 """Price of a block in degrees of mean deviation."""
-
-
 SIZES = 8.0
 """Price in degrees of mean deviation if all cells are too long or short by a factor e."""
 
@@ -50,9 +48,8 @@ def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = Non
 def size_spread(blocks: BaseComplex, wanted: Floats | None) -> float:
     """Return the mean square of log(length / mean length) of the sides of blocks across each chord.
 
-    All these sides have the same number of cells, so that the spread of their lengths is the spread of cell
-    lengths. Means are weighted by the areas of the blocks. If target lengths `wanted` (e,) of edges are
-    given, lengths and areas are measured in units of the target lengths.
+    These sides have equally many cells, so that it is also that of cell lengths. Means are weighted by the
+    areas of the blocks. If target lengths `wanted` (e,) of edges are given, they are the units of length.
     """
     lengths = log(blocks.side_lengths(wanted))
     chord = blocks.sides[2]

@@ -12,10 +12,9 @@ from meshonet.solvers.blocking.decomposition.field.wall_directions import QUARTE
 from meshonet.solvers.blocking.decomposition.surface.laplacian import Laplacian
 from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIOUS
 
-_LARGEST = 4.0
-"""Largest logarithm of a frame's size, which is unbounded at singular points; 1 and 8 give the same
-blocks.
-"""
+_LARGEST = (
+    4.0  # logarithm of a frame's size, which is unbounded at singular points; 1 and 8 give the same blocks
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,21 +25,17 @@ class Frames:
     angles: Floats
     """(t,) angle of the direction u."""
     turns: Indices
-    """(t, 3) number k of quarter turns, 0 to 3: the frame across an edge is i^-k times this one, so that
-    coordinates there are i^k times those here.
-    """
+    """(t, 3) quarter turns k, 0 to 3: coordinates across an edge are i^k times those here."""
     wall_axis: Indices
     """(w,) direction d, 0 to 3, of each wall edge in its frame: it runs along i^d."""
     cut: Bools
-    """(t, 3) edges that open the surface to a disc with the singular vertices on its boundary; all turns
-    are there.
-    """
+    """(t, 3) edges that open the surface to a disc, through all singular vertices; others have no turns."""
     wedges: Indices
     """(t, 3) number of each corner's vertex on the opened surface."""
 
 
 def cut_frames(field: CrossField) -> Frames:
-    """Return frames that agree across all edges but those of a cut, which opens the surface to a disc."""
+    """Return frames that agree across all edges except a cut, which opens the surface to a disc."""
     surface = field.surface
     turn, cut = surface_comb(surface.arrays, surface.size, field.quarters)
     keep = surface.on_wall.copy()
@@ -61,7 +56,7 @@ def cut_frames(field: CrossField) -> Frames:
 
 
 def _wedges(field: CrossField, cut: Bools) -> Indices:
-    """Give the corners around each vertex one number (t, 3) between any two edges of the cut."""
+    """Return a number (t, 3) for each corner, equal for corners at a vertex that no cut separates."""
     surface = field.surface
     start, corners = surface.fans
     behind = cut[:, PREVIOUS].ravel()[corners]  # between a corner of a fan and the next

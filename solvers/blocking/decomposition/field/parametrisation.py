@@ -18,17 +18,15 @@ _IMAGINARY = np.array([0.0, 1.0, 0.0, -1.0])  # imaginary parts of them
 
 
 class Parametrisation:
-    """Linear system for the coordinates u + i v of the vertices of an opened surface.
+    """Linear system for the coordinates w = u + i v of the vertices of an opened surface.
 
     The solution minimises the sum over all triangles of weight times area times
 
         |grad u - s (cos theta, sin theta)|^2 + |grad v - s (-sin theta, cos theta)|^2
 
-    under two constraints. Of u and v, one is equal at both ends of a wall edge. At an edge ab of the cut, the
-    difference w_a - w_b on one side is that on the other side, rotated by a multiple of 90 degrees. This is
-    the map of Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009) 77) with real translations instead of
-    integers. The constant u or v of a wall is one unknown; the conditions at the cut have Lagrange
-    multipliers.
+    u or v is constant along each wall and is one unknown there. The differences of w along an edge of the
+    cut, seen from its two sides, differ by a rotation by a multiple of 90 degrees (Lagrange multipliers).
+    This is the map of Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009) 77) with real translations.
 
     Parameters
     ----------
@@ -59,7 +57,7 @@ class Parametrisation:
         self._right = np.stack([slopes.real for slopes in inner])
 
     def _unknowns(self, frames: Frames) -> tuple[Indices, int]:
-        """Return the unknown (2, t, 3) that u and v of each corner are, -1 for 0, and how many there are."""
+        """Return the index (2, t, 3) of u and v of each corner among the unknowns, -1 for 0; their number."""
         triangle, edge = self.surface.walls
         along = np.where(frames.wall_axis % 2 == 0, self._count, 0)
         pairs = np.stack([self._wedges[triangle, edge] + along, self._wedges[triangle, NEXT[edge]] + along])
@@ -71,7 +69,7 @@ class Parametrisation:
         return number[both], int(kept.sum())
 
     def _stiffness(self) -> tuple[tuple[Indices, Indices], Floats]:
-        """Return rows and columns (m,) of the entries, and their values (2, t, 6) by a triangle's weight."""
+        """Return rows and columns (m,) of the entries, and their values (2, t, 6) for weights of 1."""
         surface, number = self.surface, self._number
         squares = surface.areas[:, None] * modulus(surface.gradients) ** 2
         row = np.concatenate([number, number], axis=2)

@@ -11,7 +11,6 @@ is a length of the domain and r the radius of its core. With smaller cores, fewe
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,26 +21,10 @@ from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, Triang
 from meshonet.solvers.sparse import Factor
 
 CORE = 1.0
-"""Radius of cores relative to the size of the triangles; with 1, a point costs the energy that the
-triangles resolve.
-"""
+"""Radius of cores relative to the size of triangles; with 1, it is the energy that triangles resolve."""
 MOST_PAIRS = 64
 """Largest number of pairs that are examined, the nearest ones."""
 _TURN = 2.0 * np.pi  # a full turn, radians
-
-
-@dataclass(frozen=True, eq=False)
-class _Lines:
-    """Straight lines inside a surface, from singular points of one kind to those of the other."""
-
-    ends: Indices
-    """(k, 2) triangles in which each begins and ends."""
-    line: Indices
-    """(m,) line of each crossing of an edge."""
-    triangle: Indices
-    """(m,) that is left."""
-    edge: Indices
-    """(m,) of that triangle."""
 
 
 def without_pairs(
@@ -56,25 +39,25 @@ def without_pairs(
     steps = phase[surface.triangles[:, NEXT]] - phase[surface.triangles]
     steps -= _TURN * np.round(steps / _TURN)
     turns = np.round(steps.sum(axis=1) / _TURN).astype(np.intp)
-    lines = _lines(surface, np.flatnonzero(turns > 0), np.flatnonzero(turns < 0))
-    if not len(lines.ends):
+    ends, line, crossed = _lines(surface, np.flatnonzero(turns > 0), np.flatnonzero(turns < 0))
+    if not len(ends):
         return crosses
-    halves, jumps = _jumps(surface, lines)
+    halves, jumps = _jumps(surface, crossed, line, len(ends))
     triangle, edge = np.divmod(halves, 3)
     here, there = surface.triangles[triangle, edge], surface.triangles[triangle, NEXT[edge]]
     twin = surface.neighbours[triangle, edge], surface.neighbour_edge[triangle, edge]
     weight = -surface.edge_weights[triangle, edge] - surface.edge_weights[twin]
     jumped = weight[:, None] * jumps
-    right = np.zeros((surface.size, len(lines.ends) + 1))  # of each line, and of the field as it is
+    right = np.zeros((surface.size, len(ends) + 1))  # of each line, and of the field as it is
     np.add.at(right[:, :-1], here, jumped)
     np.add.at(right[:, :-1], there, -jumped)
     right[:, -1] = _divergence(surface, steps)
     moved = np.zeros_like(right)
     moved[laplacian.free] = factor.solve(right[laplacian.free])
     change = moved[there] - moved[here]
-    # gradients are orthogonal to steps that are as small as can be, so products are sums over crossed edges
+    # gradients are orthogonal to the smallest possible steps: products are sums over crossed edges
     taken = _taken(
-        lines.ends,
+        ends,
         product(steps[triangle, edge] + change[:, -1], jumped),
         product(jumped.T, jumps + change[:, :-1]),
     )
@@ -85,28 +68,26 @@ def without_pairs(
 
 
 def _divergence(surface: Triangulation, steps: Floats) -> Floats:
-    """Return what steps (t, 3) of the phase along edges give on the right of Laplace's equation (n,)."""
+    """Return the right side (n,) of Laplace's equation for steps (t, 3) of the phase along edges."""
     flow = (-surface.edge_weights * steps).ravel()
     leaving = np.bincount(surface.triangles.ravel(), flow, surface.size)
     arriving = np.bincount(surface.triangles[:, NEXT].ravel(), flow, surface.size)
     return np.asarray(leaving - arriving)
 
 
-def _jumps(surface: Triangulation, lines: _Lines) -> tuple[Indices, Floats]:
-    """Return the edges (e,) that lines cross, as 3 t + i, and jumps (e, k) of the phase along them."""
-    across = 3 * surface.neighbours + surface.neighbour_edge
-    half = 3 * lines.triangle + lines.edge
-    twin = across[lines.triangle, lines.edge]
+def _jumps(surface: Triangulation, half: Indices, line: Indices, count: int) -> tuple[Indices, Floats]:
+    """Return the edges (e,) that `count` lines cross, as 3 t + i, and the jumps (e, count) of the phase."""
+    twin = (3 * surface.neighbours + surface.neighbour_edge).ravel()[half]
     halves, number = np.unique(np.minimum(half, twin), return_inverse=True)
-    jumps = np.zeros((len(halves), len(lines.ends)))
-    np.add.at(jumps, (number, lines.line), np.where(half < twin, -_TURN, _TURN))
+    jumps = np.zeros((len(halves), count))
+    np.add.at(jumps, (number, line), np.where(half < twin, -_TURN, _TURN))
     return halves, jumps
 
 
 def _taken(ends: Indices, gain: Floats, products: Floats) -> list[int]:
-    """Return the pairs to take out, one after another, each that which lowers the energy most.
+    """Return the pairs to remove, in turn the one that lowers the energy most.
 
-    Taking out pairs x changes it by `gain` (k,) x + x `products` (k, k) x / 2.
+    Removing pairs x changes the energy by `gain` (k,) x + x `products` (k, k) x / 2.
     """
     change = gain + 0.5 * np.diagonal(products) + _TURN * math.log(CORE)
     taken: list[int] = []
@@ -119,8 +100,12 @@ def _taken(ends: Indices, gain: Floats, products: Floats) -> list[int]:
         change[(ends == ends[best]).any(axis=1)] = np.inf
 
 
-def _lines(surface: Triangulation, first: Indices, second: Indices) -> _Lines:
-    """Return the lines from the middles of `first` triangles to those of `second`, the shortest."""
+def _lines(surface: Triangulation, first: Indices, second: Indices) -> tuple[Indices, Indices, Indices]:
+    """Return the shortest lines inside a surface from the middles of `first` triangles to those of `second`.
+
+    They are given by their end triangles (k, 2); the line (m,) of each crossing, and the edge (m,) that is
+    crossed, as 3 t + i of the triangle that the line leaves.
+    """
     points = complex_of(surface.points[surface.triangles])
     middle = points.mean(axis=1)
     ends = np.stack([np.repeat(first, len(second)), np.tile(second, len(first))], axis=1)
@@ -142,4 +127,4 @@ def _lines(surface: Triangulation, first: Indices, second: Indices) -> _Lines:
             break
     line, triangle, edge = (np.concatenate(column) for column in zip(*crossed, strict=True))
     whole, number = seen[line], np.cumsum(seen) - 1
-    return _Lines(ends[seen], number[line[whole]], triangle[whole], edge[whole])
+    return ends[seen], number[line[whole]], 3 * triangle[whole] + edge[whole]

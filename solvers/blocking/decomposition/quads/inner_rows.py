@@ -16,7 +16,7 @@ from meshonet.geometry.arrays import Floats, Indices, distinct, turned_left
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 
 INSET = 0.25
-"""Part of the shorter edge of a wall, or of the way to the middles of cells, that a front is off its path."""
+"""Distance of a front from its path, over the shorter wall edge or the distance to the middles of cells."""
 
 HalfEdges = dict[tuple[int, int], tuple[int, int]]
 
@@ -29,11 +29,10 @@ def half_edges(mesh: QuadMesh) -> HalfEdges:
 def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wall: bool = False) -> QuadMesh:
     """Return the mesh with a row of quads inserted on the left of a path of nodes.
 
-    The path goes from wall to wall, or is `closed`; it may follow a wall. The side of the row opposite to the
-    path is its front. The new quads are the last of the mesh; the first two nodes of each are on the path,
-    the others on the front. If a closed path begins at a corner where one quad meets, the row crosses itself
-    there, and the last quad is the one at this corner. The new nodes are on the front; with `of_wall`, they
-    are on the path, and the old nodes form the front.
+    The path goes from wall to wall, or is `closed`; it may follow a wall. The opposite side of the row is its
+    front, where the new nodes are; with `of_wall`, they are on the path. The new quads are the last of the
+    mesh; the first two nodes of each are on the path, the others on the front. If a closed path begins at a
+    corner with one quad, the row crosses itself there, and the last quad is the one at this corner.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
     new = list(range(n, n + count))
@@ -55,7 +54,7 @@ def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wa
             middle = np.mean([mesh.nodes[mesh.quads[k]].mean(axis=0) for k, _ in corners], axis=0)
             nodes[front[i]] = (1.0 - INSET) * mesh.nodes[node] + INSET * middle
             continue
-        on = int(mesh.places.loop[node])  # the end of a front slides along the loop where the wake ends
+        on = int(mesh.places.loop[node])  # a front ends on the same loop as its path
         around = [int(mesh.quads[k, (j + d) % 4]) for k, j in corners for d in (1, 3)]
         beside = next(v for v in around if mesh.places.loop[v] == on and v not in (ahead, behind))
         nodes[front[i]], places.loop[front[i]], places.arc[front[i]] = _towards(mesh, node, beside)
@@ -71,13 +70,13 @@ def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wa
 
 
 def _inwards(before: Floats, here: Floats, after: Floats) -> Floats:
-    """Return by what a wall node (2,) moves inside, between those before and after it."""
+    """Return the displacement (2,) into the domain of a wall node between two others."""
     shorter, tangent = min(np.hypot(*(here - before)), np.hypot(*(after - here))), after - before
     return np.asarray(INSET * shorter * turned_left(tangent / np.hypot(*tangent)))
 
 
 def _towards(mesh: QuadMesh, node: int, beside: int) -> tuple[Floats, int, float]:
-    """Return the point, the loop and the arc length that are `INSET` of the way between two wall nodes."""
+    """Return point, loop and arc length at `INSET` of the way from one wall node to another."""
     number = int(mesh.places.loop[node])
     loop, (arc, beyond) = mesh.domain.loops[number], mesh.places.arc[[node, beside]].tolist()
     way = beyond - arc
@@ -89,9 +88,9 @@ def _towards(mesh: QuadMesh, node: int, beside: int) -> tuple[Floats, int, float
 def _left_of(
     mesh: QuadMesh, half: HalfEdges, node: int, ahead: int | None, behind: int | None
 ) -> list[tuple[int, int]]:
-    """Return the quads to the left of a path at a node, and which of their nodes it is.
+    """Return the quads to the left of a path at a node, and the index (0 to 3) of the node in each.
 
-    They are counted from the edge ahead round to the one behind, or, where the path ends, the other way.
+    They are in order from the edge ahead to the edge behind; where the path ends, from the edge behind.
     """
     corners = []
     if ahead is not None:
@@ -110,11 +109,9 @@ def _left_of(
 
 
 def corner_row(mesh: QuadMesh, corner: int, farthest: int) -> QuadMesh | None:
-    """Return the mesh with a row of quads inserted around a corner of the domain that has a single quad.
+    """Return the mesh with a row of quads around the node of a corner with a single quad; None if impossible.
 
-    `corner` is the index of the corner's node. The row is placed as far from the corner as possible, but at
-    most `farthest` quads away, and all nodes between the corner and the row must be regular. Return None if
-    irregular nodes are next to the corner.
+    The row is as far from the corner as regular nodes permit, but at most `farthest` quads away.
     """
     for size in range(farthest, 0, -1):
         lattice = _lattice(mesh, corner, size)
@@ -124,7 +121,7 @@ def corner_row(mesh: QuadMesh, corner: int, farthest: int) -> QuadMesh | None:
 
 
 def _lattice(mesh: QuadMesh, corner: int, size: int) -> Indices | None:
-    """Return the nodes (size + 1, size + 1) of a lattice from a corner on; None if it is irregular."""
+    """Return the nodes (size + 1, size + 1) of the lattice at a corner; None if one is irregular."""
     quads, twin = mesh.quads, mesh.twin
     cell, first = (int(values[0]) for values in np.nonzero(quads == corner))
     nodes = np.empty((size + 1, size + 1), dtype=np.intp)

@@ -25,13 +25,16 @@ PROBED = 1500
 CANCELLED, AT_NODE, AT_RAY, AT_WALL, TOO_LONG = range(5)  # how rays end, as in kernels/motorcycle
 
 
+Station = tuple[float, int, int, int]
+"""Length on a trail, the node there, and the directions at which the trail arrives and leaves, or -1."""
+
+
 @dataclass(frozen=True, eq=False)
 class MotorcycleGraph:
     """The nodes of a motorcycle graph, and the trails between them, which become grid lines.
 
-    The directions in which lines leave a node are numbered counter-clockwise; there is one per right angle of
-    the map. At a wall node the first direction, 0, is forwards along the wall, and the last, `quarters`, is
-    backwards along the wall. At an interior node the numbers are modulo `quarters`.
+    Directions at a node are numbered counter-clockwise, one per right angle of the map. At a wall node, 0 is
+    forwards along the wall and `quarters` is backwards; at an interior node, numbers are modulo `quarters`.
     """
 
     map: SeamlessMap
@@ -43,10 +46,8 @@ class MotorcycleGraph:
     """(n,) number of the trail of the node's wall, -1 inside."""
     trails: Trails
     """The rays, then the walls."""
-    stations: tuple[tuple[tuple[float, int, int, int], ...], ...]
-    """For each trail the nodes on it, in its direction: length, node, direction at which the trail
-    arrives, and direction at which it leaves, -1 if it does not. Trails of walls are closed.
-    """
+    stations: tuple[tuple[Station, ...], ...]
+    """For each trail the nodes on it, in its direction. Trails of walls are closed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +79,7 @@ def motorcycle_graph(seamless: SeamlessMap) -> MotorcycleGraph:
 
 
 def _trace(seamless: SeamlessMap, joined: Indices) -> _Traced:
-    """Trace first the rays that meet nodes, one of each pair, then the others, then those from `joined`."""
+    """Return the traced rays; those that meet nodes, one of each pair, are first, those of `joined` last."""
     ports = ports_of(seamless, joined)
     tables = map_tables(seamless)
     count, most = len(ports.vertex), max(int(ports.quarters.max(initial=1)), 2)
@@ -113,7 +114,7 @@ def _graph(seamless: SeamlessMap, traced: _Traced, walls: Trails) -> MotorcycleG
     vertex = np.append(ports.vertex, np.full(len(ended), -1, dtype=np.intp))
     quarters = np.append(ports.quarters, np.where(kinds[ended] == AT_WALL, 2, 4))
     wall = np.full(len(vertex), -1, dtype=np.intp)
-    stations: list[list[tuple[float, int, int, int]]] = [[] for _ in range(rays + len(walls.first) - 1)]
+    stations: list[list[Station]] = [[] for _ in range(rays + len(walls.first) - 1)]
     for node in np.flatnonzero(ports.on_wall).tolist():
         trail, length = walls.at_vertex(int(vertex[node]))
         wall[node] = rays + trail
@@ -131,8 +132,8 @@ def _graph(seamless: SeamlessMap, traced: _Traced, walls: Trails) -> MotorcycleG
     return MotorcycleGraph(seamless, vertex, quarters, wall, trails, ordered)
 
 
-def _along_rays(stations: list[list[tuple[float, int, int, int]]], traced: _Traced, number: Indices) -> None:
-    """Add the nodes on each ray: its start, those where others ended on it, its end."""
+def _along_rays(stations: list[list[Station]], traced: _Traced, number: Indices) -> None:
+    """Add the nodes on each ray: its start, its end, and the ends of other rays on it."""
     for ray, (end, at) in enumerate(zip(traced.ends.tolist(), traced.at.tolist(), strict=True)):
         kind, crossed, place = end
         if kind == CANCELLED:
@@ -149,7 +150,7 @@ def _along_rays(stations: list[list[tuple[float, int, int, int]]], traced: _Trac
 
 
 def _not_joined(graph: MotorcycleGraph, rays: int) -> int:
-    """Return the first wall that has no node or is not connected with the first wall; -1 if there is none."""
+    """Return the first wall without a node or a connection to the first wall; -1 if there is none."""
     walls = len(graph.stations) - rays
     pairs = [
         (walls + station[1], trail - rays if trail >= rays else walls + stations[0][1])
@@ -163,7 +164,7 @@ def _not_joined(graph: MotorcycleGraph, rays: int) -> int:
 
 
 def _free_vertex(walls: Trails, wall: int, taken: Indices, attempt: int) -> int:
-    """Return a vertex of a wall at which no node is."""
+    """Return a vertex of a wall without a node."""
     pieces = slice(int(walls.first[wall]), int(walls.first[wall + 1]))
     vertices = walls.vertex[pieces]
     free = vertices[~np.isin(vertices, taken)]

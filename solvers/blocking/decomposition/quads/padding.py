@@ -22,10 +22,7 @@ Span = tuple[int, float, float]
 
 
 def wrong_count(mesh: QuadMesh) -> Bools:
-    """Return a mask (n,) of boundary nodes with a wrong number of quads.
-
-    The right number is 2, except at corners of the domain.
-    """
+    """Return a mask (n,) of boundary nodes with a wrong number of quads: not 2, or not that of a corner."""
     cells = mesh.places.cells
     return np.asarray(mesh.wall_nodes & (mesh.valence != np.where(cells > 0, cells, 2)))
 
@@ -67,8 +64,7 @@ def pad(mesh: QuadMesh, loops: Sequence[int]) -> QuadMesh:
 def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
     """Return the mesh with a row of quads along a stretch between two corners with one quad each.
 
-    The new quads are the last of the mesh. The first two nodes of each are on the wall, the other two on the
-    front (the opposite side of the row). If both corners are the same, the row is closed.
+    If both corners are the same, the row is closed. The new quads are as in `with_row`.
     """
     number, begin, end = span
     on, length = np.flatnonzero(mesh.places.loop == number), mesh.domain.loops[number].length

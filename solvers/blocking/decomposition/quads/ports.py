@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Bools, Indices
+from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.elementary import angle, times
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
 
@@ -16,28 +15,25 @@ SLACK = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Ports:
-    """Nodes of a motorcycle graph at vertices of the triangulation, and the rays that leave these nodes.
-
-    `vertex` (n,) is the vertex of the triangulation at each node, `on_wall` (n,) whether the vertex is on a
-    wall.
-    """
+    """Nodes of a motorcycle graph at vertices of the triangulation, and the rays that leave these nodes."""
 
     vertex: Indices
-    """(n,)"""
+    """(n,) vertex of the triangulation at each node."""
     quarters: Indices
     """(n,) number of right angles around each node, which is the number of cells."""
     on_wall: Bools
-    """(n,)"""
+    """(n,) whether the vertex is on a wall."""
     node: Indices
     """(t, 3) node at each corner of each triangle, or -1."""
     port: Indices
-    """(t, 3, 4) number of the direction in which a line leaves that node through the triangle along each
-    axis, or -1. At walls 1 is the first interior direction; inside 0 is the first axis
-    counter-clockwise of the fan's first edge.
+    """(t, 3, 4) number of the direction from that node through the triangle along each axis, or -1.
+
+    At walls 1 is the first interior direction; inside, 0 is the first axis after the fan's first edge.
     """
     starts: Indices
-    """(r, 6) rays: node, port, triangle, corner, axis, and a column for the caller. Nodes at which the
-    wall is straight in the map, although it has a corner, have none.
+    """(r, 6) rays: node, port, triangle, corner, axis, and a column for the caller.
+
+    There are none at corners of walls that are straight in the map.
     """
 
 
@@ -62,7 +58,7 @@ def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
 
 
 def _fans(seamless: SeamlessMap, vertex: Indices) -> tuple[Indices, Indices]:
-    """Return the corners (e,) around the vertices, and for each the node that it belongs to."""
+    """Return the corners (e,) around the vertices, and the node (e,) of each."""
     start, corners = seamless.surface.fans
     count = start[vertex + 1] - start[vertex]
     owner = np.repeat(np.arange(len(vertex)), count)
@@ -71,14 +67,9 @@ def _fans(seamless: SeamlessMap, vertex: Indices) -> tuple[Indices, Indices]:
 
 
 def _directions(
-    seamless: SeamlessMap,
-    face: Indices,
-    corner: Indices,
-    owner: Indices,
-    quarters: Indices,
-    on_wall: Bools,
-) -> tuple[Indices, NDArray[np.float64]]:
-    """Return the port (e, 4) of each axis at each corner, -1 for walls, and how far inside it is."""
+    seamless: SeamlessMap, face: Indices, corner: Indices, owner: Indices, quarters: Indices, on_wall: Bools
+) -> tuple[Indices, Floats]:
+    """Return the port (e, 4) of each axis at each corner, -1 for walls, and its angle (radians) inside it."""
     w = seamless.corner_coords
     here = w[face, corner]
     right, left = w[face, (corner + 1) % 3] - here, w[face, (corner + 2) % 3] - here
@@ -101,15 +92,9 @@ def _directions(
 
 
 def _starts(
-    face: Indices,
-    corner: Indices,
-    owner: Indices,
-    port: Indices,
-    margin: NDArray[np.float64],
-    shoots: Bools,
-    most: int,
+    face: Indices, corner: Indices, owner: Indices, port: Indices, margin: Floats, shoots: Bools, most: int
 ) -> Indices:
-    """Return the rays: for each port the corner that it lies deepest in."""
+    """Return the rays (r, 6), each in the corner inside of which it has the largest `margin` (e, 4)."""
     e, axis = np.nonzero((port >= 0) & (margin > -SLACK) & shoots[owner][:, None])
     key = owner[e] * (most + 1) + port[e, axis]
     order = np.lexsort((-margin[e, axis], key))

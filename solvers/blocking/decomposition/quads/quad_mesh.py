@@ -9,7 +9,7 @@ from meshonet.geometry.elementary import modulus
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.solvers.algebraic.tfi import interpolate, parameters
+from meshonet.solvers.algebraic.tfi import between
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
 from meshonet.solvers.blocking.decomposition.quads.motorcycle import motorcycle_graph
 from meshonet.solvers.blocking.decomposition.quads.t_mesh import Face, Side, TMesh, t_mesh
@@ -25,8 +25,7 @@ LOOP = 4
 def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None = None) -> QuadMesh:
     """Return a conforming mesh of about `cells` quads, whose irregular nodes are those of the map.
 
-    If `sizes` (target edge lengths) are given, `cells` is ignored. Nodes on the arcs of the T-mesh have the
-    positions that the map gives; the other nodes are interpolated. Cells may be folded.
+    If `sizes` (target edge lengths) are given, `cells` is ignored. Cells may be folded.
 
     Raises SolverError: the lines of the map form no T-mesh of rectangles, or no mesh with so few cells
     conforms.
@@ -43,7 +42,7 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None 
 
 
 def _plane_lengths(mesh: TMesh, sizes: SizeMetric | None = None) -> Floats:
-    """Return the lengths (a,) of arcs in the plane, in edges of `sizes` if given."""
+    """Return the lengths (a,) of arcs in the plane, in the domain's unit or in edges of `sizes`."""
     trails = mesh.graph.trails
     steps = modulus(trails.end - trails.begin)
     if sizes is not None:
@@ -63,8 +62,8 @@ def _plane_lengths(mesh: TMesh, sizes: SizeMetric | None = None) -> Floats:
 def _arc_counts(mesh: TMesh, wanted: Floats) -> Indices:
     """Return numbers of cells (a,) along arcs, at least 1 and near `wanted` (a,), equal on opposite sides.
 
-    They belong to the arcs of a T-mesh rather than to coordinates of the map (Campen, Bommes, Kobbelt, ACM
-    Trans. Graph. 34 (2015) 192; Lyon, Campen, Bommes, Kobbelt, Comput. Graph. Forum 38 (2019) 21-32).
+    Campen, Bommes, Kobbelt, ACM Trans. Graph. 34 (2015) 192; Lyon, Campen, Bommes, Kobbelt, Comput. Graph.
+    Forum 38 (2019) 21-32.
     """
     sides = [[[half // 2 for half in side] for side in face] for face in mesh.faces]
     rows = [difference(face[k], face[k + 2]) for face in sides for k in (0, 1)]
@@ -74,7 +73,7 @@ def _arc_counts(mesh: TMesh, wanted: Floats) -> Indices:
 
 
 def _within(mesh: TMesh, trail: Indices, length: Floats) -> tuple[Floats, Floats]:
-    """Return how often a closed trail has been gone round at a length, and the length on the last round."""
+    """Return the whole rounds of a closed trail at a length, and the length beyond them."""
     trails = mesh.graph.trails
     total = trails.length[trails.first[1:] + np.arange(len(trails.loop))][trail]
     rounds = np.where((trails.loop[trail] >= 0) & (length >= total), 1.0, 0.0)
@@ -83,14 +82,14 @@ def _within(mesh: TMesh, trail: Indices, length: Floats) -> tuple[Floats, Floats
 
 @dataclass(frozen=True, eq=False)
 class _Nodes:
-    """The nodes on arcs: which, and where on their trails."""
+    """The nodes on arcs of a T-mesh."""
 
     points: Complexes
     """(n,) in the plane."""
     loop: Indices
     arc: Floats
     on: tuple[list[int], ...]
-    """By arc its nodes, both ends included."""
+    """The nodes of each arc, both ends included."""
 
 
 def _on_arcs(mesh: TMesh, counts: Indices) -> _Nodes:
@@ -123,7 +122,7 @@ def _on_arcs(mesh: TMesh, counts: Indices) -> _Nodes:
 
 
 def _fine(mesh: TMesh, counts: Indices) -> QuadMesh:
-    """Return the mesh of all faces, their inner nodes between the sides."""
+    """Return the mesh of all faces, with inner nodes interpolated between the sides."""
     nodes, vertex, seamless = _on_arcs(mesh, counts), mesh.graph.vertex, mesh.graph.map
     lattices, points, count = [], [pairs_of(nodes.points)], len(nodes.points)
     for face in mesh.faces:
@@ -147,13 +146,8 @@ def _lattice(nodes: _Nodes, face: Face, first: int) -> tuple[Indices, Floats]:
     inner[...] = first + np.arange(inner.size).reshape(inner.shape)
     if not inner.size:
         return grid, np.empty((0, 2))
-    low, high, left, right = (
-        pairs_of(nodes.points[line]) for line in (grid[:, 0], grid[:, -1], grid[0], grid[-1])
-    )
-    sides = low, high, left, right
-    filled = np.empty((2, *grid.shape))
-    interpolate(filled[0], filled[1], sides, parameters(sides, "arclength"))
-    return grid, filled[:, 1:-1, 1:-1].reshape(2, -1).T
+    lines = [pairs_of(nodes.points[line]) for line in (grid[:, 0], grid[:, -1], grid[0], grid[-1])]
+    return grid, between((lines[0], lines[1], lines[2], lines[3]))[1:-1, 1:-1].reshape(-1, 2)
 
 
 def _along(nodes: _Nodes, side: Side) -> list[int]:

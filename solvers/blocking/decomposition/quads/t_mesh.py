@@ -31,9 +31,7 @@ class TMesh:
     trail: Indices
     """(a,) trail of the arc."""
     span: Floats
-    """(a, 2) lengths of that trail at both ends of the arc; beyond its total length if a closed trail
-    comes round.
-    """
+    """(a, 2) lengths of that trail at both ends; the last arc of a closed trail ends beyond its length."""
     faces: tuple[Face, ...]
     """The half-edges of the four sides of each face, counter-clockwise, the face on their left."""
 
@@ -66,7 +64,7 @@ _Ways = list[list[tuple[int, int]]]
 def _arcs(
     graph: MotorcycleGraph,
 ) -> tuple[list[tuple[int, int]], list[int], list[tuple[float, float]], _Ways]:
-    """Return nodes, trail and lengths of each arc, and the half-edges at each node with their ways."""
+    """Return nodes, trail and lengths of each arc, and the half-edges at each node with their directions."""
     nodes: list[tuple[int, int]] = []
     trail: list[int] = []
     span: list[tuple[float, float]] = []
@@ -90,10 +88,7 @@ def _arcs(
 
 
 def _successors(graph: MotorcycleGraph, ways: _Ways) -> dict[int, tuple[int, int]]:
-    """Return, for each half-edge with a face on its left, the next around that face and the angle between.
-
-    Angles are in right angles, 1 for a corner of the face.
-    """
+    """Return, for each half-edge with a face on its left, the next around it and their angle in quarters."""
     follow = {}
     for around, quarters, wall in zip(ways, graph.quarters.tolist(), graph.wall.tolist(), strict=True):
         around.sort()

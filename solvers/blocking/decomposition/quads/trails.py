@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats, Indices, complex_of
+from meshonet.geometry.arrays import Bools, Complexes, Floats, Indices, complex_of
 from meshonet.geometry.elementary import modulus, times
 from meshonet.geometry.errors import SolverError
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
@@ -45,35 +44,21 @@ class Trails:
     vertex: Indices
     """(p,) vertex at the start of the piece, at walls; -1 elsewhere."""
 
-    @cached_property
-    def _edges(self) -> dict[tuple[int, int], int]:
-        """Piece of each wall's triangle and edge."""
-        keys = zip(self.face.tolist(), self.edge.tolist(), strict=True)
-        return {key: piece for piece, key in enumerate(keys)}
-
-    @cached_property
-    def _vertices(self) -> dict[int, int]:
-        """For each vertex on a wall, the number of the piece that starts there."""
-        return {vertex: piece for piece, vertex in enumerate(self.vertex.tolist())}
-
     def total(self, trail: int) -> float:
         """Return the length of a trail in the map."""
         return float(self.length[self.first[trail + 1] + trail])
 
-    def trail_of(self, piece: int) -> int:
-        """Return the trail of a piece."""
-        return int(np.searchsorted(self.first, piece, side="right")) - 1
-
     def at_vertex(self, vertex: int) -> tuple[int, float]:
         """Return the wall trail through a vertex, and its length there."""
-        piece = self._vertices[vertex]
-        trail = self.trail_of(piece)
-        return trail, float(self.length[piece + trail])
+        return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
         """Return the wall trail through the point at `part` (0 to 1) of an edge, and its length up to it."""
-        piece = self._edges[face, edge]
-        trail = self.trail_of(piece)
+        return self._on_piece((self.face == face) & (self.edge == edge), part)
+
+    def _on_piece(self, which: Bools, part: float) -> tuple[int, float]:
+        piece = int(np.argmax(which))
+        trail = int(np.searchsorted(self.first, piece, side="right")) - 1
         start, stop = self.length[piece + trail : piece + trail + 2]
         return trail, float(start + part * (stop - start))
 

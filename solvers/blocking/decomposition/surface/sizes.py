@@ -1,6 +1,7 @@
 """Target edge lengths of a triangulation: short at narrow gaps, curved walls and short sides."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,21 +12,13 @@ from meshonet.geometry.polygon.corners import angle_between
 from meshonet.kernels._native import wall_gaps, wall_growth
 
 GROWTH = 0.35
-"""Largest change of the size per length: 22 domains have 431 blocks with it, 450 with 0.15 and 455 with
-0.7.
-"""
+"""Largest change of the size per length; 0.15 and 0.7 give 22 domains 450 and 455 blocks, not 431."""
 PER_GAP = 3.5
-"""Edges across a gap: with half as many, 22 domains have 459 blocks instead of 431, with twice as many
-423.
-"""
+"""Edges across a gap; half and twice as many give 22 domains 459 and 423 blocks, not 431."""
 PER_RADIUS = 0.45
-"""Edge length relative to the radius of curvature: with half of it, 22 domains have 446 blocks, with twice
-428.
-"""
+"""Edge length over the radius of curvature; half and twice as much give 446 and 428 blocks, not 431."""
 PER_PIECE = 4.0
-"""Smallest number of edges between two corners: 2 and 8 change the mean score of 22 domains by 0.03 of
-7.17.
-"""
+"""Smallest number of edges between two corners."""
 FLOOR = 1.0 / 25.0
 """Smallest size at walls, relative to the largest size, or to `OF_LOOP` times the loop."""
 OF_LOOP = 1.0 / 16.0  # of its length, the largest edge on a loop: 16 make a circle round
@@ -55,20 +48,18 @@ class WallSizes:
     """(n,) size at the sample."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Samples:
-    """Samples of one loop, as many in each piece as its length asks for."""
+class _Samples(NamedTuple):
+    """Samples of a loop: pieces (n,), those before and behind (n, 2) or -1, distances (n, 2) to their starts.
+
+    `length` (n,) is that of a sample's interval, `of_piece` (n,) that of its piece.
+    """
 
     piece: Indices
-    """(n,) number of the piece from a corner to the next, on this loop."""
     beside: Indices
-    """(n, 2) the pieces before and behind; -1 on a smooth loop."""
     corner: Floats
-    """(n, 2) distances along the wall to where they begin."""
     arc: Floats
     length: Floats
     of_piece: Floats
-    """(n,) length of the piece."""
     points: Floats
     tangents: Floats
 
@@ -94,19 +85,14 @@ def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None =
     """
     largest = usual_size(domain.area, count)
     samples = [_sample(loop, largest) for loop in domain.loops]
-    many = np.array([len(s.arc) for s in samples])
-    loop = np.repeat(np.arange(len(samples)), many)
+    loop = np.repeat(np.arange(len(samples)), [len(s.arc) for s in samples])
     first = np.cumsum([0] + [s.piece[-1] + 1 for s in samples])[loop]
-    piece = np.concatenate([s.piece for s in samples]) + first
-    beside = np.concatenate([s.beside for s in samples])
-    beside = np.where(beside >= 0, beside + first[:, None], -1)
-    points = np.concatenate([s.points for s in samples])
-    tangents = np.concatenate([s.tangents for s in samples])
-    length = np.concatenate([s.length for s in samples])
-    size = np.concatenate([_own_size(s, largest) for s in samples])
-    normals = turned_left(tangents)
-    corner = np.concatenate([s.corner for s in samples])
-    wall_gaps(points, normals, piece, beside, corner, 1.0 / PER_GAP, CONE, size)
+    every = _Samples(*map(np.concatenate, zip(*samples, strict=True)))
+    piece, points, arc, length = every.piece + first, every.points, every.arc, every.length
+    beside = np.where(every.beside >= 0, every.beside + first[:, None], -1)
+    size = _own_size(every._replace(piece=piece), largest)
+    normals = turned_left(every.tangents)
+    wall_gaps(points, normals, piece, beside, every.corner, 1.0 / PER_GAP, CONE, size)
     smallest = FLOOR * np.minimum(largest, OF_LOOP * domain.lengths)
     np.maximum(size, smallest[loop], out=size)
     affordable = _affordable(length, size, MOST * count)
@@ -115,13 +101,12 @@ def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None =
         for point, wanted in zip(*finer, strict=True):
             np.minimum(size, wanted + GROWTH * np.hypot(*(points - point).T), out=size)
     wall_growth(points, GROWTH, size)
-    arc = np.concatenate([s.arc for s in samples])
     smallest = np.maximum(smallest, affordable)
     return WallSizes(max(largest, affordable), smallest, loop, piece, arc, length, size)
 
 
 def _affordable(length: Floats, size: Floats, most: float) -> float:
-    """Return the smallest size for which ∫ ds / h stays below a number of edges; 0 where it does anyway."""
+    """Return the smallest size for which ∫ ds / h is at most a number of edges; 0 if it already is."""
     floor = 0.0
     while (length / np.maximum(size, floor)).sum() > most:
         floor = 1.1 * max(floor, float(size.min()))
@@ -148,7 +133,7 @@ def _sample(loop: Loop, largest: float) -> _Samples:
 
 
 def _own_size(samples: _Samples, largest: float) -> Floats:
-    """Return the size (n,) that a loop itself asks for: a quarter of its pieces, part of its radius."""
+    """Return the size (n,) due to a loop itself: a quarter of its pieces, a fraction of its radius."""
     same = samples.piece[1:] == samples.piece[:-1]
     turn = np.where(same, np.abs(angle_between(samples.tangents[:-1], samples.tangents[1:])), 0.0)
     beside = np.append(turn, 0.0) + np.insert(turn, 0, 0.0)

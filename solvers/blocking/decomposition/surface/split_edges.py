@@ -34,7 +34,7 @@ def split_edges_between_walls(triangulation: Triangulation) -> Triangulation:
 
 
 def _split(triangulation: Triangulation, triangle: Indices, edge: Indices) -> Triangulation:
-    """Return the triangulation with edges split that no two of have a triangle in common."""
+    """Return the triangulation with the given edges split; no two of them are in one triangle."""
     triangles, points = triangulation.triangles, triangulation.points
     neighbour = triangulation.neighbours[triangle, edge]
     back = triangulation.neighbour_edge[triangle, edge]

@@ -51,10 +51,7 @@ class Triangulation:
 
     @cached_property
     def fans(self) -> tuple[Indices, Indices]:
-        """Offsets (n + 1,) and the triangle corners (3 t,) around the vertices, vertex by vertex.
-
-        Those of vertex v begin at offsets[v] and end before offsets[v + 1].
-        """
+        """Offsets (n + 1,) and corners (3 t,); those at vertex v are corners[offsets[v] : offsets[v + 1]]."""
         start, corners, reached = surface_fans(self.arrays, self.size)
         if reached != len(corners):
             raise SolverError("triangles that meet in a point only")
@@ -96,10 +93,9 @@ class Triangulation:
 
     @cached_property
     def edge_weights(self) -> Floats:
-        """(t, 3) for each edge of a triangle, minus half the cotangent of the angle opposite to it.
+        """(t, 3) minus half the cotangent of the angle opposite to each edge.
 
-        It is the integral over the triangle of the scalar product of the `gradients` of the two ends of the
-        edge.
+        It is the integral over the triangle of the product of the `gradients` of both ends of the edge.
         """
         g = self.gradients
         return np.asarray(self.areas[:, None] * times(g, np.conj(g[:, NEXT])).real)

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, Indices
+from meshonet.geometry.arrays import Floats, Indices, cross2
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import InputError
 from meshonet.kernels._native import DelaunayMesh
@@ -14,17 +14,11 @@ _BOX = 4  # nodes that the kernel has before ours
 _SIDE = 2.0**29
 """Number of integer steps along the domain; the kernel's box is twice as wide."""
 _LARGEST = 1.3
-"""Size inside relative to the largest size at walls: 22 domains have 431 blocks with it, 471 with 1, 467
-with 2.
-"""
+"""Size inside over the largest size at walls; 1 and 2 give 22 domains 471 and 467 blocks, not 431."""
 _SMOOTHING, _SMOOTHINGS = 0.7, 3
-"""Relaxation factor and number of smoothing steps: 22 domains have 431 blocks, 456 without smoothing and
-445 with factor 1.
-"""
+"""Relaxation factor and number of smoothing steps; no smoothing gives 22 domains 456 blocks, not 431."""
 _JITTER = 1.7e-3
-"""Random displacement of nodes relative to their size, so that symmetric domains have no ambiguous
-diagonals.
-"""
+"""Random displacement of nodes over their size: symmetric domains then have no ambiguous diagonals."""
 _NEAREST = 1e-7
 """Distance of walls, relative to the extent, below which they cannot be distinguished."""
 
@@ -46,7 +40,7 @@ class _Frame:
 
 
 class _Walls:
-    """Nodes along the loops, in a kernel's triangulation, until the edges between them are edges of it."""
+    """Nodes along the loops, and the triangulation to which they are added until it has all wall edges."""
 
     def __init__(self, domain: Domain, sizes: WallSizes, frame: _Frame, most: int) -> None:
         self.domain, self.sizes, self.frame, self.most = domain, sizes, frame, most
@@ -81,11 +75,7 @@ class _Walls:
         return np.stack([order, after], axis=1)
 
     def recover(self) -> None:
-        """Add wall edges that the triangulation lacks.
-
-        A long wall edge is halved, with the new node on the curve of the wall. A short one is obtained by
-        flipping the edges of triangles.
-        """
+        """Add missing wall edges: long ones are halved on the wall, short ones made by flips of edges."""
         lengths = self.domain.lengths
         while True:
             edges = self.edges()
@@ -112,7 +102,7 @@ class _Walls:
 
 
 def _spread(n: int) -> Indices:
-    """Return an order (n,) in which to insert n nodes in a row: every second comes last, and so on."""
+    """Return an order (n,) in which to insert n nodes of a row: every second node last, and so on."""
     number = np.arange(n)
     level = np.where(number == 0, 64, np.frexp(np.maximum(number & -number, 1))[1] - 1)
     return np.argsort(-level, kind="stable")
@@ -123,10 +113,9 @@ def triangulate(
 ) -> Triangulation:
     """Return a triangulation of a domain with about `count` nodes, or more if walls need short edges.
 
-    Nodes along the walls follow `wall_sizes`; wall edges that are missing in the Delaunay triangulation are
-    halved. Then circumcentres of triangles that are too large are inserted, and nodes are smoothed. `finer`
-    are points (m, 2), around which sizes (m,) are prescribed. The same input and `seed` give bitwise the same
-    result.
+    Nodes along the walls follow `wall_sizes`. Circumcentres of triangles that are too large are inserted, and
+    nodes are smoothed. `finer` are points (m, 2) with sizes (m,) around them. The same input and `seed` give
+    bitwise the same result.
 
     Raises InputError: walls that are so close to each other that they cannot be distinguished.
     """
@@ -152,11 +141,6 @@ def triangulate(
     return _result(walls)
 
 
-def _twice_area(a: Floats, b: Floats, c: Floats) -> Floats:
-    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
-    return np.asarray(ux * vy - uy * vx)
-
-
 def _result(walls: _Walls) -> Triangulation:
     order = np.lexsort((walls.arc, walls.loop))
     places, _ = walls.mesh.nodes()
@@ -165,7 +149,7 @@ def _result(walls: _Walls) -> Triangulation:
     number[order] = np.arange(len(order))
     points = np.concatenate([walls.points[order], walls.frame.real(places[len(order) :])])
     a, b, c = (points[number[triangles[:, k]]] for k in range(3))
-    flat = np.flatnonzero(_twice_area(a, b, c) <= 0)
+    flat = np.flatnonzero(cross2(b - a, c - a) <= 0)
     if flat.size:
         walls.refuse(walls.loop[order], points, int(number[triangles[flat[0]]].min()))
     return Triangulation(

@@ -50,11 +50,10 @@ def agree(images: Images) -> bool:
 
 
 def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
-    """Return the mesh with each node at the mean of itself and its mirror images.
+    """Return the mesh with each node at the mean of itself and its mirror images, by default in all mirrors.
 
-    `images` are by default the images in all mirrors. Corners do not move. A ring with an odd number of quads
-    around it is made symmetric about the first mirror only. If there are several mirrors, nodes are first
-    made symmetric about the first mirror, and then averaged over the rotations.
+    Corners do not move. If images in several mirrors do not combine to rotations, as in a ring of an odd
+    number of quads, only the first mirror is used.
     """
     images = images_of(mesh) if images is None else images
     if not agree(images):
@@ -65,7 +64,7 @@ def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
 
 
 def _mean(mesh: QuadMesh, images: Images) -> QuadMesh:
-    """Return the mesh with nodes at the means of themselves and their images."""
+    """Return the mesh with each node at the mean of itself and its `images`."""
     places, part = mesh.places, 1.0 / (len(images) + 1)
     on = np.flatnonzero((places.loop >= 0) & (places.cells == 0))
     loop, length = places.loop[on], mesh.domain.lengths[places.loop[on]]
@@ -83,9 +82,9 @@ def _mean(mesh: QuadMesh, images: Images) -> QuadMesh:
 
 
 def _image(mesh: QuadMesh, mirror: Mirror) -> Indices | None:
-    """Return the node (n,) that each one becomes; None unless quads, walls and corners become such.
+    """Return the image (n,) of each node; None unless quads, walls and corners have images.
 
-    It follows from one quad and its image: of some, those which are nearest to each other, by their size.
+    It follows from one quad and its image: the pair, of some quads, with the smallest relative distance.
     """
     x, y = (mesh.nodes[mesh.quads, axis].mean(axis=1) for axis in (0, 1))
     middles, some = np.stack([x, y], axis=1), slice(None, None, 1 + len(mesh.quads) // SOME)
@@ -107,17 +106,16 @@ def _image(mesh: QuadMesh, mirror: Mirror) -> Indices | None:
 
 
 def _continued(mesh: QuadMesh, quad: int, image: int, corner: int) -> Indices | None:
-    """Return the node (n,) that each one becomes if the first corner of a quad becomes a corner of its image.
+    """Return the image (n,) of each node if the image of a quad's first corner is `corner` of quad `image`.
 
-    Quads turn round: their corner i becomes number `first` - i of the image. None where quads do not fit.
+    None if the quads beside them do not correspond.
     """
     images_and_corners = quad_images(mesh.twin, quad, image, corner)
     if images_and_corners is None:
         return None
     images, first = images_and_corners
-    sides = np.arange(4)
     to = np.zeros(len(mesh.nodes), dtype=np.intp)
-    turned = mesh.quads[images[:, None], (first[:, None] - sides) % 4]
+    turned = mesh.quads[images[:, None], (first[:, None] - np.arange(4)) % 4]  # images run clockwise
     to[mesh.quads] = turned
     fits = np.array_equal(to[mesh.quads], turned) and (images >= 0).all()
     return to if fits and np.array_equal(to[to], np.arange(len(to))) else None

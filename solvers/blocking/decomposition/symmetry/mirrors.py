@@ -1,8 +1,6 @@
 """The lines about which a domain is its own mirror image.
 
-A mirror reverses the direction of the boundary. The image of a loop is a loop, and the image of its point at
-arc length s is the point at c - s, where c is a constant of the loop. The image of a point on a wall is thus
-known exactly for any curve.
+The image of the point of a loop at arc length s is the point of a loop at c - s, with a constant c.
 """
 
 import math
@@ -17,23 +15,19 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 
 SAME = 1e-7
-"""Largest distance of a symmetric boundary from its mirror image, relative to the extent. Drawings that are
-meant to be symmetric deviate by up to 1e-12, others by more than 1e-4."""
+"""Largest distance of a symmetric boundary from its mirror image, over the extent; drawings have 1e-12."""
 MOST = 64
-"""Largest number of directions that are examined: a circle has one for each of its points, and the first few
-suffice.
-"""
+"""Largest number of directions that are examined; a circle has one for each of its points."""
 MOST_MIRRORS = 8
 """Largest number of mirrors through a centre: a domain with more is a circle, or nearly."""
-_STEPS = 8  # of Newton's method towards a place on a curve, from the nearest of two places an interval
+_STEPS = 8  # of Newton's method for the nearest point of a curve
 
 
 @dataclass(frozen=True, eq=False)
 class Mirror:
-    """A mirror line through `centre` (2,) along the unit vector `along` (2,), and the images of the loops.
+    """A mirror line through `centre` (2,) along the unit vector `along` (2,).
 
-    The image of loop k is loop `loops[k]`. The image of the point of loop k at arc length s is the point of
-    loop `loops[k]` at arc length `sums[k]` - s.
+    The image of the point of loop k at arc length s is the point of loop `loops[k]` at `sums[k]` - s.
     """
 
     centre: Floats
@@ -72,7 +66,7 @@ def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
 
 
 def _all_about(domain: Domain, first: Mirror, count: int) -> tuple[Mirror, ...]:
-    """Return so many mirrors with equal angles between, from the first on; none if one is not there."""
+    """Return `count` mirrors at equal angles from the first one; none if the domain lacks one of them."""
     across, mirrors = turned_left(first.along), [first]
     for k in range(1, count):
         angle = math.pi * k / count
@@ -101,7 +95,7 @@ def mirror_about(domain: Domain, centre: Floats, along: Floats) -> Mirror | None
 
 
 def _keeps_given(domain: Domain, mirror: Mirror) -> bool:
-    """Return whether no stretch of a domain has another prescribed value than its image."""
+    """Return whether stretches of a domain and their images have the same prescribed values."""
     given: tuple[Mapping[str, float], ...] = (domain.heights, domain.counts)
     if not any(given):
         return True
@@ -134,11 +128,10 @@ def _centroids(domain: Domain) -> tuple[Floats, Floats]:
 
 
 def _directions(domain: Domain, middles: Floats, centre: Floats) -> list[Floats]:
-    """Return the directions that a mirror may have: that of x, or y, first.
+    """Return possible directions of mirrors: first that of x, then those that pair up loops and corners.
 
-    It takes the first corner of a loop around the centroid, or its first point if there are no corners, to
-    one as far from the centroid, and the centroids of holes to each other. Of several such loops it is the
-    one with the fewest.
+    They take the first corner (or point) of a loop around the centroid to one as far from the centroid, and
+    the centroids of holes to each other. The loop is that with the fewest corners.
     """
     near = SAME * domain.extent
     around = [
@@ -159,7 +152,7 @@ def _directions(domain: Domain, middles: Floats, centre: Floats) -> list[Floats]
 
 
 def _sum_of_arcs(loop: Loop, other: Loop, centre: Floats, along: Floats, near: float) -> float | None:
-    """Return c where the image of arc length s of a loop is c - s on the other one; None where it is not."""
+    """Return c if images of points at arc lengths s of a loop are at c - s on the other one, else None."""
     if abs(loop.length - other.length) > near or len(loop.corners) != len(other.corners):
         return None
     begin = loop.corner_arcs[0] if loop.corners else 0.0
@@ -177,13 +170,13 @@ def _sum_of_arcs(loop: Loop, other: Loop, centre: Floats, along: Floats, near: f
 
 
 def _samples(loop: Loop) -> Floats:
-    """Return the arc lengths of the points of a loop, and of the middles between."""
+    """Return the arc lengths of the points of a loop, then those of the middles between them."""
     knots = np.append(loop.curve.knots, loop.length)
     return np.concatenate([knots[:-1], 0.5 * (knots[1:] + knots[:-1])])
 
 
 def _nearest(loop: Loop, point: Floats) -> float:
-    """Return the arc length of the place of a loop that is nearest to a point (2,) on it."""
+    """Return the arc length of the point of a loop nearest to a given point (2,)."""
     arcs = _samples(loop)
     arc = arcs[norms(loop.at(arcs) - point).argmin()][None]
     for _ in range(_STEPS):

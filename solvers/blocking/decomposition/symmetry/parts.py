@@ -1,9 +1,7 @@
 """One part of a symmetric domain, bounded by rays on mirrors, and the mesh of the part and its images.
 
-It is the half on the left of a mirror, a quarter between two at right angles, or a sector from a mirror to
-the next but one. A sector is symmetric to the mirror between, so that its rays are each other's images and
-turned copies of it fit together. Rays become grid lines of the mesh. A loop that crosses one meets it at
-right angles or at half a corner; the number of cells there follows from the angle in each part.
+It is the half on the left of a mirror, a quarter between two mirrors at right angles, or a sector from a
+mirror to the next but one, whose rotated copies fit together. Rays become grid lines of the mesh.
 """
 
 from collections.abc import Sequence
@@ -23,26 +21,21 @@ from meshonet.solvers.blocking.decomposition.quads.padding import Span
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
 
 _NEAR = 1e-6
-"""Positions nearer than this fraction of a loop, or of the extent, are the same: it is more than the
-deviation of mirror images, and less than a cell.
-"""
+"""Positions nearer than this fraction of a loop, or of the extent, are the same."""
 _SHARPEST = 52.5
-"""Smallest angle of half a corner, in degrees: a corner of 90 degrees keeps its one cell, one of 120 is cut
-in two.
-"""
+"""Smallest angle of half a corner in degrees: a corner of 90 degrees is not cut, one of 120 degrees is."""
 Ray = tuple[Mirror, Floats]
 """A mirror, and the direction (2,) of the ray on it, from the centre of the part."""
 
 
 @dataclass(frozen=True, eq=False)
 class LoopPart:
-    """Part of a loop of the whole domain between two rays: ascending arc lengths (n,), and the points there.
-
-    Where the part is only the centre of the mirrors, which lies on no loop, `loop` is -1.
-    """
+    """Part of a loop of the whole domain between two rays, or only the centre of the mirrors."""
 
     loop: int
+    """Index of the loop; -1 for the centre."""
     arcs: Floats
+    """(n,) ascending arc lengths."""
     points: Floats
     """(n, 2) points at these arc lengths."""
     corners: Indices
@@ -63,8 +56,8 @@ class DomainPart:
     domain : the part; its outer loop begins on the first ray.
     stretches, holes : walls of the part: parts of loops of the whole domain, and whole loops inside.
     rays : the mirrors that bound the part.
-    copies : for each part of the whole domain, the mirrors at which this part is reflected one after the
-        other to obtain it. The first entry is empty: it is this part itself.
+    copies : for each part of the whole domain, the mirrors at which this part is reflected in turn; the
+        first entry is empty.
     """
 
     whole: Domain
@@ -78,8 +71,7 @@ class DomainPart:
 def spans_between(loop: Loop) -> list[Span]:
     """Return the stretches of a part's outer loop from one corner with a single cell to the next.
 
-    Any corners within a stretch have two cells. A row of quads along a stretch moves singularities from a
-    wall, or from a ray, into the interior.
+    Corners within a stretch have two cells.
     """
     corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
     turns = [(arc, cells) for arc, cells in corners if cells != 2]
@@ -122,7 +114,7 @@ def _between(
     on_rays: tuple[list[LoopPart], list[LoopPart]] = ([], [])
     for number, loop in enumerate(domain.loops):
         crossed = [_crossings(loop, number, mirror, way, centre) for mirror, way in (first, last)]
-        if all(len(each) == 1 for each in crossed):  # around the centre; a hole runs back to the first ray
+        if all(len(each) == 1 for each in crossed):  # around the centre; a hole leads back to the first ray
             ends = crossed if number == 0 else crossed[::-1]
             mirrors = (first[0], last[0]) if number == 0 else (last[0], first[0])
             through.append(_stretch(loop, number, ends[0][0], loop.length / len(copies), mirrors))
@@ -164,9 +156,9 @@ def _on_mirror(loop: Loop, number: int, mirror: Mirror) -> tuple[Floats, Floats]
 
 
 def _joined(row: Sequence[LoopPart]) -> Loop:
-    """Return the loop along stretches and straight lines between them.
+    """Return the loop along stretches and the straight lines between them.
 
-    Raises SolverError: a sharp corner at an end of one.
+    Raises SolverError: a ray cuts a sharp corner.
     """
     counts = [len(stretch.points) for stretch in row]
     first = np.cumsum([0, *counts[:-1]])
@@ -194,7 +186,7 @@ def _half(loop: Loop, number: int, mirror: Mirror, way: Floats) -> LoopPart:
 def _stretch(
     loop: Loop, number: int, begin: float, length: float, mirrors: tuple[Mirror, Mirror]
 ) -> LoopPart:
-    """Return the stretch of a loop from an arc length on, of a length; it begins and ends on mirrors."""
+    """Return the stretch of a loop that starts at arc length `begin`; its ends are moved onto `mirrors`."""
     near = _NEAR * loop.length
     knots = np.append(loop.curve.knots, loop.length)
     along, corners, breaks = (
@@ -219,10 +211,7 @@ def _stretch(
 
 
 def with_copies(mesh: QuadMesh, part: DomainPart) -> QuadMesh:
-    """Return the mesh of the whole domain, made of copies of the mesh of a part.
-
-    If the nodes on the rays do not fit together, the result is no conforming mesh.
-    """
+    """Return the mesh of the whole domain: copies of the mesh of a part; it may not conform at rays."""
     nodes, (loop, arc, on_ray) = mesh.nodes.copy(), _places_in_whole(mesh, part)
     ends = np.flatnonzero(on_ray)
     nearest = np.stack([np.abs(ray.ahead_and_left(nodes[ends])[1]) for ray in part.rays]).argmin(axis=0)
@@ -254,10 +243,9 @@ def with_copies(mesh: QuadMesh, part: DomainPart) -> QuadMesh:
 
 
 def _on_loops(mesh: QuadMesh, on_rays: Indices) -> QuadMesh:
-    """Return a mesh of copies of a part with its wall nodes on the loops of its domain, some at corners.
+    """Return a mesh of copies of a part with its wall nodes on the loops, the nearest ones at corners.
 
-    Of the nodes `on_rays` (k,) those at a corner that was to have an odd number of cells have as many as meet
-    there.
+    Corners among `on_rays` (k,) that should have an odd number of cells get the number that they have.
     """
     whole, points, places = mesh.domain, mesh.nodes.copy(), mesh.places
     loop, arc, cells = places.loop, places.arc.copy(), np.zeros_like(places.cells)
@@ -275,7 +263,7 @@ def _on_loops(mesh: QuadMesh, on_rays: Indices) -> QuadMesh:
 
 
 def _places_in_whole(mesh: QuadMesh, part: DomainPart) -> tuple[Indices, Floats, Bools]:
-    """Return loop and arc length in the whole of the nodes of a part, and which lie on a ray."""
+    """Return loops (n,) and arc lengths (n,) of a part's nodes in the whole, and whether (n,) on rays."""
     old, outer = mesh.places, mesh.domain.loops[0]
     loop, arc = np.full(len(old.loop), -1, dtype=np.intp), np.zeros(len(old.loop))
     on_ray, near, first = old.loop == 0, _NEAR * outer.length, 0

@@ -1,10 +1,7 @@
 """Symmetric blocks of symmetric domains, if they are about as good as those of the decomposition.
 
-Symmetric blocks are found in several ways. If the quads are symmetric, each node moves to the mean of itself
-and of its images. If only the blocks are symmetric, the counts of cells are made equal first. Otherwise the
-blocks of a half, or of a quarter, are mirrored. If lengths of edges are prescribed, blocks for edges of equal
-length are also tried. For three or more mirrors, except at right angles, the blocks of a sector are rotated
-about the centre.
+If the quads are symmetric, each node moves to the mean of itself and its images. If only the blocks are
+symmetric, the counts of cells are made equal first. Otherwise the blocks of a part are mirrored or rotated.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,39 +18,27 @@ from meshonet.geometry.ties import less
 from meshonet.kernels._native import joined_classes
 from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseComplex, base_complex
 from meshonet.solvers.blocking.decomposition.collapse.contract import is_conforming
-from meshonet.solvers.blocking.decomposition.quads.padding import Span, wrong_count
+from meshonet.solvers.blocking.decomposition.quads.padding import wrong_count
 from meshonet.solvers.blocking.decomposition.symmetry.images import Images, agree, images_of, made_symmetric
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
-from meshonet.solvers.blocking.decomposition.symmetry.parts import (
-    part_of,
-    sector_of,
-    spans_between,
-    with_copies,
-)
+from meshonet.solvers.blocking.decomposition.symmetry.parts import DomainPart, part_of, sector_of, with_copies
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.refinement.refine import refine
 
 WORTH = 2.0
-"""Largest increase of the mean deviation from 90 degrees, in degrees, for which symmetric blocks are
-preferred to those of the decomposition.
-
-The penalty for more blocks does not count here.
-"""
+"""Largest increase of the score without prices (degrees) that symmetric blocks may have."""
 AT_CENTRE = 6
 """Largest number of quads around the centre of three or more mirrors; or the number of mirrors, if larger."""
 EVEN = 4
 """Number of cells along the sides of all blocks in the search for images."""
-FindPart = Callable[[Domain, int, Sequence[Span]], QuadMesh]
-"""Function that returns the mesh of a part of a domain; its arguments are the domain of the part, the number
-of parts (2 for a half), and stretches for rows of quads.
-"""
+FindPart = Callable[[DomainPart], QuadMesh]
+"""Returns the mesh of a part of a domain."""
 Optimised = Callable[[QuadMesh], QuadMesh]
 Way = Callable[[], QuadMesh]
-"""Function that returns a mesh that may be symmetric."""
+"""Returns a mesh that may be symmetric."""
 Score = Callable[[BaseComplex, bool], float]
-"""Function that returns the score of blocks, with or without the penalty for their number; lower is better.
-"""
+"""Returns the score of blocks, with or without the price of their number; lower is better."""
 
 
 def symmetric_blocks(
@@ -119,14 +104,14 @@ def symmetric_blocks(
 def _of_sector(
     domain: Domain, mirrors: Sequence[Mirror], start: int, find: FindPart, optimised: Optimised, score: Score
 ) -> QuadMesh:  # fmt: skip
-    """Return the mesh of a sector, from a mirror on, and its turned copies."""
+    """Return the mesh of the sector that starts at a mirror, and its rotated copies."""
     part = sector_of(domain, mirrors, start)
-    blocks = base_complex(find(part.domain, len(mirrors), spans_between(part.domain.loops[0])))
+    blocks = base_complex(find(part))
     return with_copies(symmetric_blocks(blocks, find, optimised, score, worth=np.inf).mesh, part)
 
 
 def _trial(way: Way, mirrors: Sequence[Mirror], optimised: Optimised) -> BaseComplex | None:
-    """Return the blocks of a mesh, optimised with its nodes symmetric; None where that cannot be."""
+    """Return the blocks of a mesh whose optimised nodes are symmetric; None if that is impossible."""
     try:
         mesh, images = _symmetric(optimised(_symmetric(way(), mirrors)[0]), mirrors)
         at_centre = max(len(mirrors), AT_CENTRE) if len(mirrors) > 2 else 0
@@ -177,9 +162,9 @@ def cut_on_mirrors(mesh: QuadMesh, images: Images, more: Bools | None = None) ->
 
 
 def _recounted(blocks: BaseComplex, mirrors: Sequence[Mirror], optimised: Optimised, alike: bool) -> QuadMesh:
-    """Return the mesh of the same blocks with counts of cells that images have in common.
+    """Return the mesh of the same blocks with equal counts of cells for mirror images.
 
-    They are for edges that are all `alike`, or near those that the blocks have.
+    Counts give equal edges if `alike`, else they are near those of the blocks.
     """
     before = Chords.of(blocks.layout)
     even = refine(blocks.layout, np.full(before.count, max(EVEN, int(before.least.max()))), before)
@@ -195,4 +180,4 @@ def _recounted(blocks: BaseComplex, mirrors: Sequence[Mirror], optimised: Optimi
 def _of_part(domain: Domain, mirrors: Sequence[Mirror], find: FindPart) -> QuadMesh:
     """Return the mesh of a half and its image, or of a quarter and its images."""
     part = part_of(domain, mirrors)
-    return with_copies(find(part.domain, len(part.copies), spans_between(part.domain.loops[0])), part)
+    return with_copies(find(part), part)

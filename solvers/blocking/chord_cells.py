@@ -1,17 +1,14 @@
-"""Initial positions of new nodes along the edges of a layout, such that cells have their target sizes.
-
-Along each edge the integral of 1/size is divided into equal parts. The results for opposite edges of blocks
-are then averaged repeatedly, so that lines across blocks are initially nearly straight.
-"""
+"""Numbers of cells along the chords of a layout, and initial positions of their nodes, for target sizes."""
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices
-from meshonet.geometry.elementary import product
+from meshonet.geometry.elementary import exp, log, product
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
 from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.refinement.size_metric import SizeMetric
 
+_PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are evaluated
 SAMPLES = 64
 """Number of intervals of an edge in which sizes are sampled."""
 ROUNDS = 4
@@ -20,14 +17,40 @@ STEEPEST = 8.0
 """Largest ratio of the largest to the smallest cell along an edge."""
 
 
+class WantedCounts:
+    """Target numbers of cells of chords, computed for several metrics with equal points but other sizes."""
+
+    def __init__(self, chords: Chords, metric: SizeMetric) -> None:
+        self.chords = chords
+        nodes = chords.layout.mesh.nodes
+        start = nodes[np.concatenate([edge[:-1] for edge in chords.edges])]
+        step = nodes[np.concatenate([edge[1:] for edge in chords.edges])] - start
+        self.length = np.hypot(*step.T)
+        self.near = [metric.near(start + part * step, step) for part in _PARTS]
+        self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
+
+    def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
+        """Return the multiples (chords,) of `multiple` that are nearest to the target numbers of cells.
+
+        The target of a chord is the geometric mean of the targets of its edges.
+        """
+        parts = [self.length / near.length(metric) for near in self.near]
+        chords = self.chords
+        wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)
+        weight = np.bincount(chords.chord, wanted, chords.count)
+        mean = np.bincount(chords.chord, wanted * log(np.maximum(wanted, 1e-9)), chords.count) / weight
+        return multiple * chords.rounded(exp(mean) / multiple, chords.least)
+
+
 def metric_places(chords: Chords, counts: Indices, metric: SizeMetric) -> list[Floats]:
     """Return, for each edge, the positions (cells + 1,) of its new nodes as fractional indices of old nodes.
 
-    `counts` (chords,) are the new numbers of cells.
+    `counts` (chords,) are the new numbers of cells. The integral of 1/size is divided into equal parts, and
+    the results for opposite edges of blocks are averaged, so that lines across blocks are nearly straight.
     """
     nodes = chords.layout.mesh.nodes
     cells = counts[chords.chord]
-    lines = [_dense(nodes[edge]) for edge in chords.edges]
+    lines = [product(spline_matrix(len(edge), SAMPLES + 1, False), nodes[edge]) for edge in chords.edges]
     start = np.concatenate([line[:-1] for line in lines])
     step = np.concatenate([line[1:] for line in lines]) - start
     length = np.hypot(*step.T).reshape(len(lines), SAMPLES)
@@ -43,13 +66,8 @@ def metric_places(chords: Chords, counts: Indices, metric: SizeMetric) -> list[F
     return [np.interp(share, row, at) for share, row, at in zip(shares, along, index, strict=True)]
 
 
-def _dense(points: Floats) -> Floats:
-    """Return a line (n, 2) at `SAMPLES` equal steps of the number of its nodes."""
-    return np.asarray(product(spline_matrix(len(points), SAMPLES + 1, False), points))
-
-
 def _averaged(chords: Chords, shares: list[Floats]) -> list[Floats]:
-    """Return shares of edges, each with half of those of the edges on the other sides of its blocks."""
+    """Return shares of edges, averaged with those of the edges on the opposite sides of blocks."""
     pairs = [
         (sides[a], sides[b], bool(turned[a] != turned[b]))
         for sides, turned in zip(chords.sides.tolist(), chords.reversed.tolist(), strict=True)

@@ -1,1 +1,0 @@
-"""Numbers of cells of the blocks of a layout, and cell sizes."""
