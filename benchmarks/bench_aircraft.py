@@ -36,8 +36,8 @@ HEAD = """# Bodies with a wing
 
 <!-- made by python benchmarks/bench_aircraft.py --airfoils FOLDER --page docs/benchmarks/aircraft.md -->
 
-Use this page to find the number of random aircraft for which a valid grid is made, the quality of these grids
-and the CPU time. [A body with wings](../guide/aircraft.md) explains how to make such grids.
+Use this page to see for how many random aircraft `stack` makes a valid grid, and the quality and CPU time of
+these grids. [A body with wings](../guide/aircraft.md) explains how to make such grids.
 
 Each of {count} aircraft has a fuselage with a round nose and a slender tail, and a wing. Random properties:
 
@@ -45,7 +45,7 @@ Each of {count} aircraft has a fuselage with a round nose and a slender tail, an
 | --- | --- |
 | section of the wing | one of {files} real airfoils, 10 to 20 % thick |
 | height of the wing | from half a body radius below the axis to half a body radius above it |
-| taper | 0.3 to 0.7 |
+| taper, the chord of the tip over the chord of the root | 0.3 to 0.7 |
 | sweep, dihedral | 0 to 30 degrees, 0 to 5 degrees |
 | first-cell height | 1e-5 to 1e-3 chords of the root |
 
@@ -53,16 +53,17 @@ Grids have {around} nodes around the wing and {span} along the span, and a far f
 
 - *folded*: grids with a cell in which the Jacobian at a corner, or one of its Bezier coefficients, is not
   positive. (If all Bezier coefficients are positive, the Jacobian is positive in the whole cell.)
-- *seams*: largest distance between the two copies of a node that two blocks share.
+- *least scaled Jacobian*: the smallest [scaled Jacobian](../reference/metrics.md#cells-of-volumes) of a cell
+  of the grid. *relative error of first cells*: the largest relative error of a first-cell height.
 - *growth*: share of the pairs of consecutive edges along all grid lines, across blocks too, whose lengths
   differ by a factor of at most 1.3.
 - *normals*: 95th percentile of the angle between a grid line that leaves a wall and the normal of the wall.
 - *CPU s*: one thread of {machine}, while other programs used the machine.
 
-A grid was made for {made} of the {count} aircraft; {folded} of these grids have folded cells. *seams* is
-{seams:g}.
+A grid was made for {made} of the {count} aircraft; {folded} of these grids have folded cells.
+The two copies of a node that two blocks share are at most {seams:g} apart.
 
-| figure | best | median | worst |
+| metric | best | median | worst |
 | --- | --- | --- | --- |
 """
 

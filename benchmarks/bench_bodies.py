@@ -155,19 +155,20 @@ WAKES = """
 
 A C grid is a four-sided domain whose south side consists of wake, airfoil and wake. The table gives averages
 over six grids of 201 x 65 nodes: around three airfoils, each with a far field at 5 and at 15 chords. The
-network for four-sided domains was not trained on such domains, and its 33 nodes are too few for the long
-south side. Without iteration its grids are worse than those of TFI. No model for C grids is shipped; `infer`
-marches C grids from the wall.
+network for four-sided domains, `quad-general`, was not trained on such domains, and the 33 nodes per side on
+which it works are too few for the long south side. Without iteration its grids are worse than those of
+transfinite interpolation (TFI). meshonet has no model for C grids; `infer` marches C grids from the wall.
 
 | method | valid % | max / mean angle, average | CPU ms, median |
 | --- | --- | --- | --- |"""
 HOLES = """
 ## The moving hole of the MeshONet paper, 101 x 101
 
-For `hole-winslow` and the paper's models, the table gives the median relative L2 distance to Winslow's
-solution and, in brackets, how many grids have folded cells. For `hole-o` and Winslow's grid, it gives the
-largest and the mean angle of a grid, averaged over the grids. The network was not trained on holes of this
-family; the paper's models were trained on 30 of them ([the reproduction](paper/index.md)).
+This family of shapes is a square far field with a hole whose position varies. The columns `hole-winslow`
+to MeshONet-hard give the median relative L2 distance to Winslow's solution and, in brackets, how many grids
+have folded cells. The last three columns give the maximum / mean angle, averaged over the grids. The network
+was not trained on this family; the paper's models were trained on 30 shapes of it
+([the reproduction](paper/index.md)).
 
 | split | hole-winslow | 2 cycles | MeshONet | MeshONet-hard | hole-o | hole-o, 5 steps | Winslow |
 | --- | --- | --- | --- | --- | --- | --- | --- |"""
@@ -175,21 +176,21 @@ HEAD = """# The neural operator for bodies: accuracy and time
 
 <!-- made by python benchmarks/bench_bodies.py --page docs/benchmarks/body-operator.md -->
 
-Read this page to decide whether the accuracy of `infer --model hole-o` suffices for O grids around
+Read this page to decide whether the neural network `hole-o` is accurate enough for your O grids around
 bodies. For the method see [neural operators](../theory/operators.md).
 
-- `hole-o` predicts the variational O grid, `hole-winslow` Winslow's grid. *n steps* and *n cycles* are
-  `--polish n`: iterations of the variational method, or multigrid cycles for Winslow's grid.
-- The network was trained on 5,710 random bodies for six epochs, about nine minutes on one core. This is
-  little training.
+- `hole-o` (*network* in the tables) predicts the variational O grid, `hole-winslow` Winslow's grid. *n steps*
+  and *n cycles* are `--polish n`: after the network, n iterations of the variational method, or n multigrid
+  cycles for Winslow's equations.
+- The network was trained for only about nine minutes on one core: six epochs with 5,710 random bodies.
 - *valid*: share of grids without a folded cell, before repair.
 - *no worse than Winslow*: share of grids that are valid, and in which neither the maximum nor the mean angle
   is larger than in Winslow's grid.
-- *angle*: largest included angle of each cell, in degrees. The tables give the maximum and the mean over
-  the cells, averaged over the bodies.
-- *gain*: two reductions of the angle relative to Winslow's grid are compared. The reduction in this grid is
-  divided by the reduction in the full variational grid. *all*: both reductions are summed over the bodies
-  before the division. *median*: the ratio is computed for each body, and the median of the ratios is given.
+- *max / mean angle*: take the largest angle of each cell, in degrees; the maximum and the mean over the cells
+  of a grid, averaged over the bodies.
+- *gain*: the reduction of the angle compared with Winslow's grid, in percent of the reduction that the
+  variational grid reaches. *all*: both reductions are summed over the bodies before the division. *median*:
+  median of the ratios of the bodies.
 - Bodies for which Winslow's iteration does not converge, a few in a hundred, are left out.
 - *CPU ms*: CPU time of one thread, while other programs used the machine.
 """
@@ -198,14 +199,13 @@ TAIL = """
 
 - `infer` without `--model` uses `hole-o` for compact bodies for which the conformal map fails. If the
   network's grid on 65 x 33 nodes has folded cells, the elliptic solver generates the grid instead.
-- With five iterations after the network the grids of all bodies are valid, whereas a quarter of Winslow's
-  grids have folded cells before repair. The network with five iterations takes about three times as long as
-  Winslow's method, and its angles are closer to 90 degrees.
-- `solve-pde --method variational` has the best angles; it takes about three times as long as the network with
-  five iterations.
+- With five iterations after the network all grids are valid and angles are closer to 90 degrees than in
+  Winslow's grids, a quarter of which have folded cells before repair. This takes about three times as long as
+  Winslow's method.
+- `solve-pde --method variational` gives the best angles, and takes about three times as long again.
 - In the grids of the network and of the variational method, grid lines cluster where a body is close to its
   far field.
-- Smooth bodies in a round far field and thin bodies are meshed by the conformal map without a network.
+- For smooth bodies in a round far field and for thin bodies `infer` uses the conformal map and no network.
 - The network was not trained on bodies whose centroid lies outside them, such as clips, crescents and angle
   sections. Its grids around such bodies often have folded cells, which five iterations or the repair remove.
   For 25 plates, crescents and angle sections, all grids were valid after the iterations.

@@ -43,7 +43,7 @@ HEAD = """# Datasets of a million grids
 
 <!-- made by python benchmarks/bench_datasets.py --page docs/benchmarks/datasets.md -->
 
-Read this page before you generate a dataset in several files. It gives the memory and time of such a batch,
+Read this page before you generate a dataset of very many grids. It gives the memory and time of such a batch,
 and the time to read a sample. A large dataset is divided into files called *parts*; the index file `out.h5`
 presents them as one HDF5 file ([large datasets](../guide/datasets.md)). The grids here are tiny, so that a
 million of them take only minutes; memory and the times for the index file do not depend on the size of the
@@ -58,8 +58,8 @@ reads the name of that sample. Times are medians over {repeats} processes, with 
 PARTS = """
 ## Number of parts
 
-Here each part has ten grids. The table gives the time to write the index file, its size, and the time to open
-it and to read the last sample in a new process.
+Here each part has only ten grids. The table gives the time to write the index file, its size, and the times
+to open it and to read the last sample in a new process.
 """
 ZARR = """
 ## Comparison with Zarr
@@ -74,7 +74,7 @@ takes a few milliseconds for a thousand parts and grows with their number. Parts
 to 1,000 inputs or 256 MiB. A part holds at most 500 grids of 200 x 100 nodes, so a million of them are
 2,000 parts.
 
-The two formats are about equally fast once Zarr is imported. meshonet uses HDF5 virtual datasets for two
+Once the packages are imported, both formats take milliseconds. meshonet uses HDF5 virtual datasets for two
 reasons: the same ten lines of h5py, MATLAB or Julia read an index file, a part and a dataset in one file; and
 meshonet needs no further package.
 """

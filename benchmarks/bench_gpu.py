@@ -37,26 +37,23 @@ TITLE = """# GPU
 <!-- made by python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md -->
 """
 HEAD = """
-Use this page to find the speed of training and of batched grids on a GPU. For its use see [threads and
+Use this page to find the speed of training and of batches of grids on a GPU. For its use see [threads and
 GPUs](../guide/threads-and-gpu.md). The page is made by `python benchmarks/bench_gpu.py --page
-docs/benchmarks/gpu.md`. The benchmark starts no measurement after seven minutes and ends within eight
-minutes; the tables say which measurements were not made. Four things are measured.
+docs/benchmarks/gpu.md`, which ends within eight minutes; the tables say which measurements were not made for
+lack of time.
 
-- **Layers**: the functions of `meshonet.layer`: exact solvers, and for comparison the network `quad-general`.
-  Sides are in the memory of the device. The table has the grids per second without and with gradients, the
-  peak memory, whether two runs give bitwise equal nodes, and the largest distance from the nodes of the
-  compiled solver or operator on the CPU. Grids of 65 x 65 nodes are made in batches; larger batches follow
-  while time is left, then single grids of 800 x 800 and 3200 x 3200 nodes. In rows with `coarse=65`, the
-  equations are solved on 65 x 65 nodes and the grid is interpolated; the distance is measured from the nodes
-  of the same function on the CPU. The aims are 100,000 grids of 65 x 65 nodes per second, 800 x 800 nodes in
-  3 ms, and 3200 x 3200 nodes in 40 ms. For 3200 x 3200 nodes [the paper](paper/index.md) reports 278 ms on an
-  RTX 4090.
-- **Operators**: grids per second and peak memory of `infer --device cuda` with `airfoil-o`, `quad-general`
-  and `hole-o`, for 256 grids of 65 x 65 and of 200 x 200 nodes.
-- **Training**: shapes per second and peak memory of `meshonet` (here the network of the paper), `fno2d` and
-  `quad`, for two batch sizes, with `--amp`, and with `--compile` for the smaller one. Speed and last loss are
-  also given relative to training without these options. Speeds are measured in the second half of the epochs,
-  so they do not include the time of compiling.
+- **Layers**: the functions of `meshonet.layer`, which are exact solvers, and for comparison the network
+  `quad-general`. The sides of the domains are in the memory of the GPU. The table gives the grids per second
+  without and with gradients, the peak memory, whether two runs give bitwise equal nodes, and the largest
+  distance from the nodes that the CPU computes. Grids of 65 x 65 nodes are made in batches, larger grids
+  singly. In rows with `coarse=65`, the equations are solved on 65 x 65 nodes and the grid is interpolated.
+  The aims are 100,000 grids of 65 x 65 nodes per second, one grid of 800 x 800 nodes in 3 ms, and one of
+  3200 x 3200 nodes in 40 ms, for which [the paper](paper/index.md) reports 278 ms on an RTX 4090.
+- **Operators**: grids per second and peak memory of `infer --device cuda` with the networks `airfoil-o`,
+  `quad-general` and `hole-o`, for 256 grids of 65 x 65 and of 200 x 200 nodes.
+- **Training**: shapes per second and peak memory of the networks `meshonet` (of the paper), `fno2d` and
+  `quad`, for two batch sizes, with `--amp`, and with `--compile` for the smaller batch. Speed and last loss
+  are also given relative to training without these options. The time of compiling is not included.
 - **Equality**: nodes may differ from the nodes computed on the CPU by 1e-10 of the size of the domain. A
   larger distance is marked TOO FAR.
 """

@@ -214,15 +214,14 @@ def page(rows: list[Row]) -> str:
     return f"# Training throughput\n\n{mark}\n\n{NOTE}\n\n{table}\n"
 
 
-NOTE = """Read this page before choosing `--batch` and `--points` of `meshonet train --model meshonet`. The
-settings are explained in [paper models](../theory/paper-models.md).
+NOTE = """Read this page to choose `--batch` (shapes per step) and `--points` (random points per shape) of `meshonet
+train --model meshonet`. [Paper models](../theory/paper-models.md) describes this network and its settings.
 
-The model `meshonet` is trained on 30 arches of 101 x 101 nodes. Times are CPU times of one thread. The
-published scheme processes one geometry per step. It is not known whether it uses all grid points or a random
-sample of them; the first two rows of the table are for these two cases. The two columns of speed-up compare
-the speed with the first and with the second row. The loss is computed from all points of all grids, after the
-stated number of geometries. If a loop was run with several random seeds, the median of the losses is given,
-with minimum and maximum in brackets."""
+The network is trained on 30 arches of 101 x 101 nodes. Times are CPU times of one thread. The paper processes
+one geometry per step; it does not say whether with all grid points or with a random sample. The first two
+rows of the table are these two cases, and the two columns of speed-up are relative to them. The loss is
+computed from all points of all grids, after the stated number of geometries. Where a loop was run with
+several random seeds, the table gives the median loss, with minimum and maximum in brackets."""
 
 
 if __name__ == "__main__":

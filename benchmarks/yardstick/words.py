@@ -5,20 +5,19 @@ HEAD = """# A comparison that is open to other programs
 <!-- made by python benchmarks/yardstick entries build/yardstick --page docs/benchmarks/yardstick.md -->
 
 Use this page to compare a program that makes structured grids with the programs below, on shapes for which none of them
-was made. The folder `benchmarks/yardstick` contains the programs that draw the shapes, read and write the files and judge
+was made. The scripts in `benchmarks/yardstick` draw the shapes, read and write the files and judge
 the grids. They need NumPy and h5py, and do not use meshonet.
 
 There are nine kinds of random shapes, here {count} of each, drawn with seed {seed}. Six kinds are four-sided domains with
 65 x 65 nodes: `wavy`, `sector`, `duct`, `bumps`, `kinked` and `lens`. Three are bodies with 65 x 33 nodes: `star`, `slab`
 and `section`. The boundary nodes are given.
 
-- *Grids*: the number of shapes for which there is a grid.
+- *Grids*: the number of shapes for which the program made a grid.
 - *Folded*: number of grids with folded cells and, in brackets, number of folded cells. A cell is folded if
   the Jacobian at one of its corners is not positive.
-- *Largest angle*: largest angle between two edges of a cell, in degrees: mean over the grids / maximum over
-  the grids. *Least angle*: smallest angle between two edges of a cell, over all grids.
-- *Skew*: for each cell the largest deviation of its angles from 90 degrees; the table gives the mean over all
-  cells.
+- *Largest angle*: largest corner angle of a cell of a grid, in degrees; mean / maximum over the grids.
+  *Least angle*: smallest corner angle of a cell, over all grids.
+- *Skew*: largest deviation of the angles of a cell from 90 degrees, in degrees; mean over all cells.
 - *Boundary error*: the largest distance of a boundary node from the given node, relative to the size of the
   shape.
 - *ms*: milliseconds of processor time of the whole command, start included, divided by the number of grids.
@@ -27,33 +26,35 @@ and `section`. The boundary nodes are given.
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
 
 TAIL = """
-`meshonet` repairs folded cells, except with `--no-repair` and in the rows `meshonet train`.
+`meshonet` repairs folded cells, except with `--no-repair` and in the rows `meshonet train`. The commands have the option
+`--allow-invalid`, so that grids with folded cells are written too. One four-sided domain, `wavy-15`, has a corner of 182
+degrees, at which every grid with the given boundary nodes has a folded cell.
 
 The rows `meshonet train` are the [networks of the MeshONet paper](../theory/paper-models.md) and the operators with which
 the paper compares them. Each operator is trained twice, with its default settings, seed 0 and 15 epochs: on 600 four-sided
-domains with 33 x 33 nodes, and on 576 bodies with 65 x 33 nodes (of 600 random bodies, Winslow's equations converge for
-576). Each training therefore processes about 9,000 shapes in 300 steps, as in
+domains with 33 x 33 nodes, and on 576 bodies with 65 x 33 nodes (those of 600 random bodies for which Winslow's equations
+converge). Each training processes about 9,000 shapes in 300 steps, as in
 [the table of every model on every case](paper/index.md#every-model-on-every-case). The grids for training are Winslow's
 grids of random shapes of `sample-boundary --family four-sided` and `--family bodies`; the nine kinds of shapes are not used
 in training. As in the paper, the boundary nodes of a predicted grid are replaced by the given nodes (`infer --answer
-pasted`); folded cells are not repaired. Almost all grids of these operators have folded cells, for two reasons: 300 steps
-are few, and the shapes on this page have other sizes and positions than the shapes for training. Their errors on one
-family of shapes, after longer training, are on [the page of the paper](paper/index.md).
+pasted`). Almost all grids of these operators have folded cells, for two reasons: 300 steps
+are few, and the shapes on this page have other sizes and positions than the shapes for training. [The page of the
+paper](paper/index.md) gives their errors on one family of shapes after longer training.
 
-Each network `mgnet` or `meshnet` is trained for one geometry. Such a network was trained only for the first
-shape of each kind, with 500 steps; the column *ms* includes this training.
+A network `mgnet` or `meshnet` is trained for one geometry, here for the first
+shape of each kind only, with 500 steps; the column *ms* includes this training.
 
 ## How to enter
 
 1. Draw the shapes. Each kind is a file `build/yardstick/KIND.h5` with the arrays `south`, `north` (n, ni, 2),
-   `west`, `east` (n, nj, 2) and `names`. With `--plot3d` each kind is also a folder `KIND`. It has a 2D ASCII
+   `west`, `east` (n, nj, 2) and `names`. With `--plot3d` each kind is also a folder `KIND`, with a 2D ASCII
    Plot3D file for each shape, whose four blocks are the sides. For a body, south is the body, clockwise, and
-   north is the far field. West and east are the two sides of one cut from the body to the far field; the
-   nodes of this cut may move.
+   north is the far field. West and east are the two sides of one cut from the body to the far field; your
+   program may move the nodes of this cut.
 
        python benchmarks/yardstick shapes build/yardstick --seed 1
 
-2. Run your program. The program gets two paths: the file of boundaries to read, and the file of grids to
+2. Run your program. It gets two paths: the file of boundaries to read, and the file of grids to
    write. Grids are a `.h5` file with `nodes` (n, ni, nj, 2) and `names`, or with `--plot3d` a folder of
    Plot3D files with the names of the shapes. Leave out shapes that your program cannot do.
 
@@ -63,7 +64,7 @@ shape of each kind, with 500 steps; the column *ms* includes this training.
 
        python benchmarks/yardstick judge build/yardstick
 
-With another `--seed` you see whether a result depends on these shapes. `gmsh_transfinite.py` is an entry of 80 lines to start
-from. The table above is made by `python benchmarks/yardstick entries build/yardstick`, which keeps the trained networks in
+With another `--seed` you see whether a result depends on these shapes. The entry `gmsh_transfinite.py` has 80 lines; start
+from it. `python benchmarks/yardstick entries build/yardstick` makes the table above, and keeps the trained networks in
 `build/yardstick/trained`.
 """
