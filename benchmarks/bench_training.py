@@ -214,8 +214,8 @@ def page(rows: list[Row]) -> str:
     return f"# Training throughput\n\n{mark}\n\n{NOTE}\n\n{table}\n"
 
 
-NOTE = """Read this page to choose `--batch` (shapes per step) and `--points` (random points per shape) of `meshonet
-train --model meshonet`. [Paper models](../theory/paper-models.md) describes this network and its settings.
+NOTE = """Read this page to choose `--batch` (shapes per step) and `--points` (random points per shape) of
+`meshonet train --model meshonet`. [Paper models](../theory/paper-models.md) describes this network.
 
 The network is trained on 30 arches of 101 x 101 nodes. Times are CPU times of one thread. The paper processes
 one geometry per step; it does not say whether with all grid points or with a random sample. The first two

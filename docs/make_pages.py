@@ -51,10 +51,11 @@ ERRORS_HEAD = """# Held-out errors of the shipped models
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for the accuracy of the models that are part of meshonet: the distance between grids of a model and
-grids of the solver, on shapes that were not used in training. The training parameters are in
-[shipped models](../reference/models.md); `meshonet models` prints errors and parameters. The loss after each
-epoch is in `docs/benchmarks/curves`; `quad-first` is the first of the two training runs of `quad-general`.
+Look here for the accuracy of the neural networks (models) that are part of meshonet: the distance between
+grids of a model and grids of the solver, on *held-out* shapes, which were not used in training. The training
+parameters are in [shipped models](../reference/models.md); `meshonet models` prints errors and parameters.
+The loss after each epoch is in `docs/benchmarks/curves`; `quad-first` is the first of the two training runs
+of `quad-general`.
 """
 C_GRIDS = """## C grids: no model
 
@@ -211,11 +212,11 @@ def curve(name: str) -> list[str]:
 def strip_figures(figures: dict[str, Any], _: str) -> list[str]:
     """Return the held-out errors of the airfoil operator."""
     lines = [
-        f"The held-out samples are {figures['strips']} random airfoils. The weights of the network are in",
-        "float16. The conformal map takes the domain to a [strip](../reference/glossary.md). The error is",
-        "the root mean square distance from Winslow's solution in the strip, in radians. *base* is the",
-        "initial grid (the harmonic extension of the boundary), which the network corrects. *n Picard* adds",
-        "n Picard steps towards Winslow's solution.\n",
+        f"The held-out samples are {figures['strips']} random airfoils. A",
+        "[conformal map](../theory/o-grids.md) takes each domain to a strip. The error is the root mean",
+        "square distance from Winslow's solution in the strip, in radians. *base* is the initial grid (the",
+        "harmonic extension of the boundary), which the network corrects. *n Picard* adds n Picard steps",
+        "towards Winslow's solution. The weights of the network are in float16.\n",
         "| method | median | 90th percentile | maximum |",
         "| --- | --- | --- | --- |",
     ]
@@ -231,7 +232,7 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     lines = [
         f"The held-out samples are {figures['domains']} random domains. One network predicts both the",
         "variational grid and Winslow's grid. Errors are relative L2 distances from the solver's grid",
-        f"on {counts} nodes, without polish (solver iterations after the network). *initial* is the",
+        f"on {counts} nodes, without solver iterations after the network. *initial* is the",
         "median error of the initial grid, which the network corrects; *valid* is the share of grids",
         "without folded cells.\n",
         "| predicted grid | median error | 90th percentile | initial | valid |",
@@ -247,10 +248,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "Take the largest angle of each cell. Its mean and its maximum over all cells are smaller in\n"
-        "variational grids than in Winslow's grids. The network reaches "
-        f"{100 * gain['mean_gain']:.0f} % of the reduction\n"
-        f"of the mean and {100 * gain['max_gain']:.0f} % of the reduction of the maximum.",
+        "The largest angles of cells are closer to 90 degrees in variational grids than in Winslow's grids.\n"
+        f"The predicted variational grids reach {100 * gain['mean_gain']:.0f} % of the reduction of the mean\n"
+        f"over the cells, and {100 * gain['max_gain']:.0f} % of the reduction of the maximum.",
     ]
     return lines
 

@@ -8,33 +8,34 @@ HEAD = """
 Read this page to see which claims of the paper are confirmed: Xiao, Chen, Peng, Wang, Liu, *MeshONet: A Generalizable
 and Efficient Operator Learning Method for Structured Mesh Generation*, arXiv 2501.11937.
 
-All values come from `meshonet` commands: `make paper` samples the six families of shapes, solves for their grids, trains
-the networks, evaluates them and measures the results. The commands are in `examples/paper/Makefile`. The models are
-described in [paper models](../../theory/paper-models.md). The paper measures quality by the largest included angle of a
-cell and shows it as colour maps without numbers. Its claims are therefore quoted in words next to our values.
+MeshONet is a neural network that learns to predict the grid of a shape from its boundary. All values here come from
+`meshonet` commands: `make paper` samples the six [families of shapes](../../reference/families.md), solves for their grids, trains
+the networks, evaluates them and measures the results. The commands are in `examples/paper/Makefile`;
+[paper models](../../theory/paper-models.md) describes the networks. The paper measures quality by the largest included angle of a
+cell and shows it as colour maps without numbers. This page therefore quotes its claims in words next to our values.
 """
 
 STANDS = """
 ## Which claims are confirmed
 """
 
-LOWEST = """The paper claims that MeshONet's loss is orders of magnitude below the losses of its four modified
-baselines. Here all models are trained on the same shapes, equally often, with the same learning-rate
+LOWEST = """The paper claims that MeshONet's loss is orders of magnitude below the losses of four other networks, the
+baselines. Here all networks are trained on the same shapes, equally often, with the same learning-rate
 schedule. Values are mean and spread over the random seeds.
 
 """
 
 CLAIMS = """
-The paper's claims about quality compare MeshONet with transfinite interpolation (TFI) and with the PDE
-solver. Here we compare the largest included angle of a grid, averaged over the test grids; lower is better.
+The paper's claims about quality compare MeshONet with transfinite interpolation (TFI) and with a solver of
+Winslow's equations (PDE). Here we compare the largest included angle of a grid, averaged over the test grids; lower is better.
 The column *max angle against TFI / PDE* says whether MeshONet's angle is below, equal to or above the angle
-of TFI, and of the PDE solver. The column *claimed* translates the words of the paper: "better" means below,
+of TFI / of the PDE solver. The column *claimed* translates the words of the paper: "better" means below,
 "slightly worse" means above. A dash means that the paper makes no claim.
 
 As in the paper, the boundary nodes of the network's output are replaced by the given nodes (*boundary
 pasted*). This folds cells if the error of the network at the boundary exceeds the height of the first row of
-cells. `meshonet-hard` matches the boundary exactly. *Repaired* grids are the output of `infer` with its
-default options, which repair folded cells.
+cells. `meshonet-hard`, our variant of MeshONet, matches the boundary exactly. *Repaired* grids are the output of `infer`
+without options, which repairs folded cells. The last four columns are numbers of folded cells.
 """
 
 SPEED = """
@@ -49,13 +50,13 @@ QUALITY = """
 Each case has 36 shapes of 101 x 101 nodes: 30 for training and 6 for tests, as in the paper. *Interpolation*
 tests the middle of the parameter range and trains on both ends. *Extrapolation* tests one end of the range.
 *Random* tests random parameters. All values are for test grids. *Relative L2* is the distance from the
-converged Winslow solution. *Boundary error* is the largest distance of a boundary node of the network from
-the given node. Angles are in degrees.
+converged Winslow solution. *Boundary error* is the largest distance of a predicted boundary node from
+the given node. *Max angle* and *mean angle* are the largest included angle of a cell, in degrees: maximum and mean over a grid.
 
-The rows *PDE* are the grids from which the models learn. For the wrench, Winslow's equations fold 4 to 18
-cells of each grid at the two corners of 270 degrees; these cells are repaired. `meshonet-hard` has a trained
-trunk network. For wrench and airfoil, modes that are computed from the training grids replace the trunk
-network ([reasons](../../theory/paper-models.md#meshonet-hard)).
+The networks learn from the grids of the rows *PDE*. For the wrench, Winslow's equations fold 4 to 18
+cells of each grid at the two corners of 270 degrees; these cells are repaired. For wrench and airfoil, modes that are
+computed from the training grids replace the trunk network of `meshonet-hard`
+([reasons](../../theory/paper-models.md#meshonet-hard)).
 """
 
 PAPER = {
@@ -74,8 +75,8 @@ All models are trained on the same shapes, equally often, with the same learning
 in each step. Values are mean ± spread over the random seeds. A figure of the paper, over 100,000 iterations, shows
 MeshONet's loss orders of magnitude below the others.
 
-`meshonet-hard` learns a correction of an initial grid, and its loss is the error of this correction. It
-cannot be compared with the losses of the other models; compare the relative L2 errors instead. `fno2d` learns
+`meshonet-hard` learns a correction of an initial grid. Its loss is the error of this correction and
+cannot be compared with the other losses; compare the relative L2 errors instead. `fno2d` learns
 from every second node in each direction, because all nodes would take four times as long; splines interpolate
 its output to 101 x 101 nodes.
 """
@@ -84,23 +85,21 @@ SHELF = """
 ## Every model on every case
 
 All models are trained on all families and splits with one budget: 300 epochs (9,000 shapes) on grids of 51 x 51 nodes, with
-the same schedule and the same random points in each step. This is a fiftieth of the budget of the tables of quality
-above (a tenth for `meshonet-hard` on the airfoil). Settings are the defaults of each model.
+the same schedule and the same random points in each step. The tables of quality
+above have fifty times this budget (ten times for `meshonet-hard` on the airfoil). Settings are the defaults of each model.
 
 Values are relative L2 distances of the network's output from the test grids: the median over the grids, then mean ± spread
 over the random seeds 0 and 1. The least value of each row is bold.
 """
 
-AGAINST = """The paper compares MeshONet's loss with four baselines on one case. It only cites WNO, KNO and
-LNO and makes no claim about them. If MeshONet's error were orders of magnitude below the errors of its
-baselines, it would be the smaller one in all cases. The list
-compares the errors for each other model."""
+AGAINST = """The paper compares MeshONet's loss with those of four baselines on one case; it only cites WNO, KNO and
+LNO. If the claim held for errors too, MeshONet's error would be the smaller one in all cases of this list:"""
 
 PHYSICS = """
 ## Physics-informed networks
 
-Each of these networks, with 5,122 parameters, is trained for one geometry. The time to generate a grid is therefore the
-training time. The geometry is the arch of the refinement table with 101 x 101 nodes, and the output is compared with
+Each of these networks, with 5,122 weights, is trained for one geometry. The time to generate a grid is therefore the
+training time (*seconds*). The geometry is the arch of [mesh refinement](#mesh-refinement) with 101 x 101 nodes; *relative L2* is the distance from
 the converged Winslow solution. The paper gives no values for these networks; it says that they are as good as the PDE
 solver but do not generalise.
 """
@@ -108,14 +107,14 @@ solver but do not generalise.
 TIME = """
 ## Mesh refinement
 
-The table gives seconds from boundary nodes in memory to grid nodes in memory. The shape is an arch that was not used in
+The table gives seconds from boundary nodes in memory to grid nodes in memory, for square grids. The shape is an arch that was not used in
 training. Our times are those of one thread on {machine}. The paper's MeshONet ran on an RTX 4090.
 """
 
 MAPS = """
 ## Maps of the largest included angle
 
-The maps show the first test shape of each case.
+The maps show the first test shape of each case. Colour is the largest included angle of each cell.
 """
 
 SETTINGS = """
