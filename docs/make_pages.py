@@ -249,8 +249,8 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     lines += [
         "",
         "The largest angles of cells are closer to 90 degrees in variational grids than in Winslow's grids.\n"
-        f"The predicted variational grids reach {100 * gain['mean_gain']:.0f} % of the reduction of the mean\n"
-        f"over the cells, and {100 * gain['max_gain']:.0f} % of the reduction of the maximum.",
+        f"The predicted variational grids reach {100 * gain['mean_gain']:.0f} % of the reduction of the\n"
+        f"mean over the cells, and {100 * gain['max_gain']:.0f} % of the reduction of the maximum.",
     ]
     return lines
 
