@@ -29,10 +29,7 @@ SIDES: tuple[Side, ...] = ("south", "east", "north", "west")
 
 AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
 
-_ROUNDING = 1e-12
-"""Distance of the ends of a closed curve, divided by its extent, that counts as rounding, for example of
-sin(2 pi).
-"""
+_ROUNDING = 1e-12  # largest distance of the ends of a closed curve, relative to its extent
 _MANY, _SAMPLE = 1 << 17, 1 << 14  # values of which ranks are found by a sample, and how large that is
 
 

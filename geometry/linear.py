@@ -14,12 +14,9 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import product
 from meshonet.kernels._native import solve_systems
 
-_SWEEPS = 60
-"""Largest number of sweeps of Jacobi rotations; they converge quadratically, in 4 to 10 sweeps."""
-_SMALL = 2**-58
-"""Relative size of off-diagonal entries at which sweeps end: they no longer change any digit."""
-_RIGHT_ANGLE = 2**-50
-"""Columns count as orthogonal if the cosine of their angle is at most this: rounding errors."""
+_SWEEPS = 60  # largest number of sweeps of Jacobi rotations; they converge quadratically, in 4 to 10 sweeps
+_SMALL = 2**-58  # relative size of off-diagonal entries at which sweeps end: they no longer change any digit
+_RIGHT_ANGLE = 2**-50  # largest cosine of the angle between columns that count as orthogonal
 
 
 def solve(matrix: Any, right: Any) -> Floats:

@@ -13,8 +13,7 @@ from meshonet.geometry.arrays import Floats, Indices
 
 EQUAL = 1e-9
 """Largest difference of two equal values, divided by the larger one."""
-_NOISE = 1e-7
-"""Relative perturbation of costs: larger than rounding errors, far smaller than real differences."""
+_NOISE = 1e-7  # relative perturbation of costs: larger than rounding, far smaller than real differences
 
 Item = TypeVar("Item")
 

@@ -9,10 +9,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
-_TAPER = 0.02
-"""Smallest allowed ratio of the shortest chord of a wing to its longest one: a wing must not end in a point,
-because all sections have the same number of cells.
-"""
+_TAPER = 0.02  # smallest ratio of the shortest to the longest chord: all sections have equal numbers of cells
 
 
 @dataclass(frozen=True, eq=False)

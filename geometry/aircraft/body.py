@@ -12,16 +12,11 @@ from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError, in_place
 
 _STEPS = 6
-_SMALLEST = 1e-9
-"""Least length of a body, in any unit."""
-_BETWEEN = 8
-"""Parts of an interval between points in which the spline is checked."""
-_TURNED = 0.01
-"""Part of the length by which x may lie before or behind the points around it."""
-_BULGED = 1.5
-"""Largest radius over that of the points."""
-_FLAT = 1e-6
-"""Least dx/ds at which Newton's method is used: at a blunt nose x does not change along the meridian."""
+_SMALLEST = 1e-9  # least length of a body, in any unit
+_BETWEEN = 8  # parts of an interval between points in which the spline is checked
+_TURNED = 0.01  # part of the length by which x may lie before or behind the points around it
+_BULGED = 1.5  # largest radius over that of the points
+_FLAT = 1e-6  # smallest dx/ds at which Newton's method is used; dx/ds is 0 at a blunt nose
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,27 +14,14 @@ from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.notes import Change
 from meshonet.geometry.surface.merge import merged
 
-_CLOSE = 1e-4
-"""Smallest distance between cuts, relative to the length of a body."""
-_SAME = 1e-6
-"""Largest distance, relative to the height of a body, of points of a cut that are merged."""
-_CAP = 9
-"""Number of cuts through a cap."""
-_CORNER, _CORNER_STEP = math.radians(10.0), 2e-5
-"""Smallest turn of keel and crown at a corner; and distance of the cuts on both sides of it, relative to the
-length of the body. With these cuts, splines also have the corner and do not bulge near it.
-"""
-_ALONE = 3.0
-"""Smallest ratio of the turn at a corner to the turns at neighbouring nodes: at a round nose with few nodes
-all turns are large.
-"""
-_CAP_STEP = math.sin(0.5 * math.pi / _CAP) / 2.0
-"""First step of a cap, relative to its height."""
-_MOST = 30
-"""Largest number of cuts on one side of a corner."""
-_ROUND = 1e-6
-"""Largest difference of the radii of a cut through a body of revolution, relative to the length of the body.
-"""
+_CLOSE = 1e-4  # smallest distance between cuts, relative to the length of a body
+_SAME = 1e-6  # largest distance, relative to the height of a body, of points of a cut that are merged
+_CAP = 9  # number of cuts through a cap
+_CORNER, _CORNER_STEP = math.radians(10.0), 2e-5  # smallest turn; distance to cuts, in body lengths
+_ALONE = 3.0  # smallest ratio of the turn at a corner to the turns beside it; at coarse noses all are large
+_CAP_STEP = math.sin(0.5 * math.pi / _CAP) / 2.0  # first step of a cap, relative to its height
+_MOST = 30  # largest number of cuts on one side of a corner
+_ROUND = 1e-6  # largest difference of the radii of a cut through a body of revolution, in body lengths
 
 
 @dataclass(frozen=True, eq=False)

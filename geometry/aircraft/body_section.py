@@ -14,17 +14,11 @@ from meshonet.geometry.polygon.corners import turning
 
 ANGLES = 513
 """Number of equally spaced angles from keel to crown at which the shape of a section is stored."""
-_DENSE = 8
-"""Number of points on the spline between two given points, from which the shape is interpolated."""
+_DENSE = 8  # number of points on the spline between two given points, from which the shape is interpolated
 _FEWEST_POINTS = 5
-_EXPONENTS = 1.2, 20.0
-"""Least and largest exponent: sections between a rhombus and a rectangle, whose corners are rounded."""
-_MOST_TURN = math.radians(60.0)
-"""Largest turn of a section at a point: at a larger turn, the spline would bulge beside the point."""
-_IN_PLANE = 1e-6
-"""Distance of an end of a section from z = 0, divided by the width, that counts as rounding of the
-coordinates.
-"""
+_EXPONENTS = 1.2, 20.0  # smallest and largest exponent: from about a rhombus to about a rectangle
+_MOST_TURN = math.radians(60.0)  # largest turn of a section at a point; beside it the spline would bulge
+_IN_PLANE = 1e-6  # rounding of coordinates: largest distance of an end from z = 0, in widths
 
 
 @dataclass(frozen=True, eq=False)

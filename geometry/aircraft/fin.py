@@ -9,10 +9,8 @@ from meshonet.geometry.sections.section import Section
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
-_CAMBER = 1e-5
-"""Largest distance in chords of points from the image of the other side: rounded coordinates of a file."""
-_POINTS = 65
-"""Points of a side that are compared."""
+_CAMBER = 1e-5  # largest difference of the two sides, in chords: rounding of coordinates in files
+_POINTS = 65  # points of a side that are compared
 
 
 @dataclass(frozen=True, eq=False)

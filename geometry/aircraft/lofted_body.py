@@ -15,11 +15,9 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.ties import first_least
 from meshonet.kernels._native import lattice_values
 
-_FLATTEST = 3.5
-"""Largest width of a section over its height, or the reverse."""
+_FLATTEST = 3.5  # largest width of a section over its height, or the reverse
 _FEWEST = 4
-_LONGEST = 0.1
-"""Longest distance of sections, over the body's, without further points of the meridian between them."""
+_LONGEST = 0.1  # largest distance of sections, in body lengths, without points of the meridian between them
 
 
 @dataclass(frozen=True, eq=False)

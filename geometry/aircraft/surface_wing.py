@@ -14,20 +14,11 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
 from meshonet.geometry.sections.stack import Tip
 
-_NOSE = 0.02
-"""Distance in chords: a joint of two strips this near to the point farthest from the trailing edge is the
-nose.
-"""
-_SLIM = 0.95
-"""A tip counts as closing if its ratio of thickness to chord, divided by the ratio one chord before it, is
-less.
-"""
-_SHORT = 0.05
-"""Smallest allowed ratio of the chord of the tip to the longest chord."""
-_CLOSING = 0.1
-"""Fraction of the span, at the tip, in which z need not increase along the lines."""
-_LEVELS = 33
-"""Number of heights between root and tip at which chords are measured."""
+_NOSE = 0.02  # a joint of two strips is the nose if it is this close, in chords, to the foremost point
+_SLIM = 0.95  # a tip closes if its thickness-to-chord ratio is below this fraction of that one chord inboard
+_SHORT = 0.05  # smallest allowed ratio of the chord of the tip to the longest chord
+_CLOSING = 0.1  # fraction of the span, at the tip, in which z need not increase along the lines
+_LEVELS = 33  # number of heights between root and tip at which chords are measured
 
 
 @dataclass(frozen=True, eq=False)

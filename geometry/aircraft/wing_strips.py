@@ -14,18 +14,11 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import angle_between
 
-_CORNER = np.pi / 3.0
-"""Smallest turn of a section at a corner of the trailing edge."""
-_PART = 0.5
-"""Smallest extent of a strip along the span, divided by the largest: patches with a smaller one close the
-tip.
-"""
-_EDGE, _BASE = 0.03, 0.1
-"""Largest distance of a base from the trailing edge, and largest length of a base, in chords."""
-_GAP = 0.05
-"""Largest distance of neighbouring strips, in chords."""
-_LEVELS = 5
-"""Number of heights at which strips are compared."""
+_CORNER = np.pi / 3.0  # smallest turn of a section at a corner of the trailing edge
+_PART = 0.5  # smallest span of a strip, relative to the longest; shorter patches close the tip
+_EDGE, _BASE = 0.03, 0.1  # largest distance of a base from the trailing edge, and largest length, in chords
+_GAP = 0.05  # largest distance of neighbouring strips, in chords
+_LEVELS = 5  # number of heights at which strips are compared
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,13 +18,11 @@ from meshonet.kernels._native import spline_crossings
 
 MOST_EXTENDED = 0.2
 """Largest part of the span by which a blade is continued straight to hub or casing."""
-_NOTED = 0.01
-"""Part of the span from which on a note mentions the continuation."""
+_NOTED = 0.01  # part of the span from which on a note mentions the continuation
 _CHECKED = 400  # places around the blade at which profiles are compared
 _FARTHEST = 90.0  # degrees around the axis from one profile to the next: no blade leans as much
 _ORDER = "give profiles from hub to casing, all of one blade: splitters are not made"
-_SAME_HEIGHT = 1e-9
-"""Difference of heights, in spans, that counts as rounding."""
+_SAME_HEIGHT = 1e-9  # difference of heights, in spans, that counts as rounding
 _HALF_TURN = np.pi
 
 

@@ -31,16 +31,10 @@ from meshonet.kernels._native import (
     lengthen_cells,
 )
 
-_PIECES = 512
-"""Number of pieces of the tables of hub and casing."""
-_COLUMNS = 8
-"""Columns of the kernel's table (``channel.h``): hub, vector to the casing, fractions of it at up to four
-heights.
-"""
+_PIECES = 512  # number of pieces of the tables of hub and casing
+_COLUMNS = 8  # columns of the table of channel.h: hub, vector to the casing, fractions at up to four heights
 _NEWTON = 12
-_LEAST_GAP = 1e-6
-"""Narrowest gap, divided by the span: in narrower gaps, cell heights would vanish in the rounding of radii.
-"""
+_LEAST_GAP = 1e-6  # narrowest gap, in spans: narrower cells would vanish in the rounding of radii
 _FOOT_STEPS = 6
 _SAME = 1e-13  # of the distance to a wall, relative to the gap
 

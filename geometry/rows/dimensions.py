@@ -17,8 +17,7 @@ USUAL_SOLIDITIES = 0.3, 4.0
 """Usual range of the solidity: compressors have 0.4 to 2.2 (NASA SP-36), inducers up to 3.5."""
 USUAL_RADII = 0.001, 10.0
 """Usual range of casing radii in metres, from micro gas turbines to the largest water turbines."""
-_AXIAL = 0.2
-"""Largest relative change of the radius along a blade of an axial row, for which the solidity is judged."""
+_AXIAL = 0.2  # largest relative change of the radius along a blade whose solidity is judged
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,7 @@ _BASE = 0.1  # of the chord: corners that are no farther apart than this, and bl
 _ENDS = np.array([0.0, 0.5, 1.0])  # places of the edges
 _LONGER = "use longer curves of hub and casing, inlet and outlet away from the blade, and one unit for all"
 _SEAM = 4  # points that are taken along beyond the first and the last
-_ONE_POINT = np.radians(90.0)
-"""Turn in radians at one point of a round edge from which on the edge may have been meant as pointed."""
+_ONE_POINT = np.radians(90.0)  # an edge that turns more at one point may be meant as pointed
 _OTHER_UNIT = 1.5  # factor between radii of blade and channel from which on their units must differ
 
 

@@ -9,14 +9,10 @@ from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.self_intersection import find_crossing
 
 LEAST_POINTS = 12
-_SAME = 1e-9
-"""Consecutive points nearer than this fraction of the size of the profile count as one."""
-_THIN = 1e-5
-"""Smallest area of a profile, divided by the square of its size: that of a plate 1e-5 chords thick."""
-_OPEN = 0.1
-"""Widest base of a trailing edge between the first and the last point, divided by the size of the profile."""
-_STEPS = 3.0
-"""The same, divided by the longest distance of neighbouring points, for profiles of few points."""
+_SAME = 1e-9  # consecutive points nearer than this fraction of the size of the profile count as one
+_THIN = 1e-5  # smallest area of a profile over the square of its size: a plate 1e-5 chords thick
+_OPEN = 0.1  # largest distance between the first and the last point, relative to the size of the profile
+_STEPS = 3.0  # the same, divided by the longest distance of neighbouring points, for profiles of few points
 
 
 def as_points(values: ArrayLike, columns: int) -> Floats:

@@ -16,14 +16,9 @@ from meshonet.geometry.rows.profile import BladeProfile
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.trailing_edge import opened_base
 
-_CAP = np.linspace(0.0, 1.0, 33)[1:-1, None]
-"""Fractions of the rounded end at which it has points."""
-_BEFORE = 0.02
-"""Length before the edge, in chords, over which the directions of the two sides are measured."""
-_POINTED = 2.7
-"""Smallest turn in radians at a pointed edge: a wedge of 25 degrees. At a base, two corners share half a
-turn.
-"""
+_CAP = np.linspace(0.0, 1.0, 33)[1:-1, None]  # fractions of the rounded end at which it has points
+_BEFORE = 0.02  # length before the edge, in chords, over which the directions of the two sides are measured
+_POINTED = 2.7  # smallest turn in radians at a pointed edge, a wedge of 25 degrees; a base has two corners
 _SAME = 1e-9
 _SIGNS = 1.0, -1.0  # of the sides' distances from the chord: profiles are clockwise
 

@@ -16,12 +16,8 @@ _PLACES = "inlet", "outlet"
 _SAMPLES = 4001
 _HALVINGS = 60
 _NEAR = 0.02  # of a curve's length, from it, at which a point is on it
-_MOST_CONTINUED = 1.0
-"""Largest continuation of a curve, divided by its length: a longer one is a mistake in the unit."""
-_LEAST_AXIAL = 0.5
-"""Smallest cosine of the angle between the end of a curve and the axis for a continuation to a position on
-the axis.
-"""
+_MOST_CONTINUED = 1.0  # largest continuation of a curve, in its lengths: more is a mistake in the unit
+_LEAST_AXIAL = 0.5  # smallest cosine between the end of a curve and the axis for an axial continuation
 _BEYOND = 1.001  # of the way to a plane, to which a curve is continued before it is cut there
 _MOST_STEPS = 100
 _SAME = 1e-9  # of a curve's length

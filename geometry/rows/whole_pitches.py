@@ -4,10 +4,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 
-_WHOLE = 0.2
-"""Largest difference, in pitches, between a displacement and whole pitches; a larger one is lean of the
-blade.
-"""
+_WHOLE = 0.2  # largest deviation of a displacement from whole pitches; beyond it the blade leans
 
 
 def whole_pitches(angles: Floats, heights: Floats, pitch: float) -> Floats:

@@ -30,20 +30,13 @@ if TYPE_CHECKING:
 
 FIELDS = ("stem", "index", "name")
 """Fields of a pattern for output names."""
+# formats of fields: a width of up to three digits, no conversion of numbers to characters
 _FORM = re.compile(r"(?:[^{}]?[<>=^])?[-+ ]?#?\d{0,3}[,_]?(?:\.\d{0,3})?[sdxXobn]?")
-"""Permitted formats of fields: a width of at most three digits, and no conversion of numbers to
-characters.
-"""
-_LONGEST_NAME = 255
-"""Longest file name in bytes on Linux, macOS and Windows."""
+_LONGEST_NAME = 255  # longest file name in bytes on Linux, macOS and Windows
 MANY = 10_000
 """Largest number of inputs that are written as a dataset without parts."""
-_PART_BYTES, _LIKELY_NODES = 1 << 28, 40_000
-"""Largest size of a part in bytes, and assumed number of nodes of a grid whose size is not known in
-advance.
-"""
-_MOST_IN_PART, _MOST_FOR_MANY_WORKERS = 1000, 100
-"""Largest number of inputs per part, and the smaller number if many workers share the parts."""
+_PART_BYTES, _LIKELY_NODES = 1 << 28, 40_000  # largest size of a part in bytes; assumed nodes per grid
+_MOST_IN_PART, _MOST_FOR_MANY_WORKERS = 1000, 100  # inputs per part at most; if many workers share
 
 
 class Destination:

@@ -12,8 +12,7 @@ import numpy as np
 WITHOUT_EFFECT = ("threads", "percentiles", "history", "criteria", "detailed")
 """Fields of settings on which no node depends."""
 
-_MODEL = ".safetensors"
-"""Extension of model files."""
+_MODEL = ".safetensors"  # extension of model files
 
 
 def described(value: object) -> str:

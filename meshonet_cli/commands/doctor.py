@@ -9,8 +9,7 @@ if TYPE_CHECKING:
     from meshonet.api.doctor import Finding
 
 EXAMPLES = ("meshonet doctor", "meshonet doctor --json")
-_SIGNS = {True: "ok", False: "NO", None: "-"}
-"""Printed result of a check: passed, failed, not applicable."""
+_SIGNS = {True: "ok", False: "NO", None: "-"}  # printed result of a check: passed, failed, not applicable
 
 
 def doctor(as_json: o.AsJson = False) -> int:

@@ -13,12 +13,10 @@ EXAMPLES = (
     "meshonet plot rotor.cgns --span .1,.5,.9 -o sections.png",
     "meshonet plot wing.cgns -o wing.html",
 )
+# descriptions, remedies and parameters for errors
 _BOX = ("a box", "use x0,x1,y0,y1", "zoom")
-"""Description, remedy and parameter for errors about a box."""
 _DIRECTION = ("a direction", "use azimuth and elevation in degrees, e.g. -125,25", "seen_from")
-"""Description, remedy and parameter for errors about a direction."""
 _SPANS = ("parts of the span", "use numbers between 0 and 1, e.g. .1,.5,.9", "span")
-"""Description, remedy and parameter for errors about sections of a blade row."""
 _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from meshonet.solvers.progress import HistoryRow
     from meshonet_cli.terminal.summary import MemberRow
 
-_METHODS = {"conformal": "conformal map"}
-"""Descriptions of methods whose names are not clear."""
+_METHODS = {"conformal": "conformal map"}  # descriptions of methods whose names are not clear
 
 
 @dataclass

@@ -25,10 +25,8 @@ from meshonet_cli.terminal.text import aligned, figure
 if TYPE_CHECKING:
     from meshonet.geometry.quality.periodic import Period
 
-_PLACES = {2: "i, j", 3: "block, i, j", 4: "block, i, j, k"}
-"""Names of indices, by their number."""
-_AXES = {2: "at x, y", 3: "at x, y, z"}
-"""Headings of the column with centres of cells."""
+_PLACES = {2: "i, j", 3: "block, i, j", 4: "block, i, j, k"}  # names of indices, by their number
+_AXES = {2: "at x, y", 3: "at x, y, z"}  # headings of the column with centres of cells
 
 
 @dataclass

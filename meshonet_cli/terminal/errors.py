@@ -2,8 +2,7 @@
 
 _OPTIONS = {
     "from_format": "--from", "to_format": "--to", "output": "-o", "settings": "--set",
-}  # fmt: skip
-"""Parameters whose options have different names."""
+}  # fmt: skip  # parameters whose options have other names
 
 
 def explained(error: Exception, name: str = "") -> str:

@@ -2,8 +2,7 @@
 
 from meshonet.formats.source import printable
 
-_BAR_LENGTH = 24
-"""Number of characters of a progress bar."""
+_BAR_LENGTH = 24  # number of characters of a progress bar
 
 
 def aligned(rows: list[list[str]]) -> str:

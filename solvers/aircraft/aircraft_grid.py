@@ -38,18 +38,12 @@ from meshonet.solvers.rows.span_spacing import (
     two_sided,
 )
 
-_UNBOUNDED = 1e9
-"""Length of the last cells of lines: they are limited by the growth ratio only."""
-_FLAT = 1e-13
-"""Nodes nearer to the plane of symmetry than this fraction of the body's length lie in it."""
+_UNBOUNDED = 1e9  # length of the last cells of lines: they are limited by the growth ratio only
+_FLAT = 1e-13  # nodes nearer to the plane of symmetry than this fraction of the body's length lie in it
+# relative error of a first cell above which its whole line is measured, as at a pointed nose or tail
 _UNEVEN = 0.08
-"""Relative error of the height of the first cell of a line above which the line is measured at all its nodes:
-at a pointed nose or tail, distances from the body are not a smooth function of zeta.
-"""
-_MEASURED = 3
-"""Number of times that these lines are measured; between their nodes the map is assumed to be linear."""
-_FINE = 129
-"""Number of levels of the table by which lines beyond the tip are measured."""
+_MEASURED = 3  # number of times that these lines are measured
+_FINE = 129  # number of levels of the table by which lines beyond the tip are measured
 
 
 def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, float, tuple[str, ...]]:

@@ -13,8 +13,7 @@ from meshonet.solvers.aircraft.collar_level import FEWEST, WIDEST
 from meshonet.solvers.aircraft.level_lines import Points, Side, lines_between, ways_between
 from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
 
-_POLE_CELL = 0.5
-"""Ratio of the cells at nose and tail to the cells beside the collar."""
+_POLE_CELL = 0.5  # ratio of the cells at nose and tail to the cells beside the collar
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,15 +25,11 @@ from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.kernels._native import lattice_values, nearest_points
 from meshonet.solvers.conformal.solve import solve
 
-_LINES, _LEVELS = 513, 97
-"""Numbers of nodes of the table along s and zeta."""
-_AROUND = 385
-"""Number of nodes around the closed meridian of the conformal grid."""
+_LINES, _LEVELS = 513, 97  # numbers of nodes of the table along s and zeta
+_AROUND = 385  # number of nodes around the closed meridian of the conformal grid
 _NEWTON = 12
-_STEP = 1e-5
-"""Step of finite differences in s / length and in zeta."""
-_COARSE = 8
-"""Stride of the lines and levels of the table that are searched for the first guess of a place."""
+_STEP = 1e-5  # step of finite differences in s / length and in zeta
+_COARSE = 8  # stride of the lines and levels of the table that are searched for the first guess of a place
 
 
 class BodyMap:

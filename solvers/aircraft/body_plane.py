@@ -31,10 +31,8 @@ from meshonet.solvers.aircraft.column import ColumnLevel, ColumnPlan, planned_co
 from meshonet.solvers.aircraft.level_lines import Points, Side, lines_between, ways_between
 from meshonet.solvers.rows.span_spacing import smooth_cells
 
+# beside a fin: largest ratio of the cells next to a collar to the mean cell towards keel and crown
 _EVEN = 1.6
-"""Beside a fin: largest ratio of the cells next to a collar to the mean cell towards keel and crown. As many
-lines pass beside a fin as beside wings, and many of them are far from it.
-"""
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,26 +33,14 @@ MARGIN = 0.28
 It is larger near the tip, where nose, tail, keel and crown are far away, so that fewer cells are needed
 between.
 """
-_SHARE = 0.5
-"""Largest fraction of the way from the section to nose, tail, keel or crown that a collar takes."""
-_SHORTEST = 0.35
-"""Smallest ratio of the cells on the short sides of the rectangle to the mean cell of a long side."""
-_SHIFT = 0.3
-"""Largest displacement of the middle of a short side towards nose or edge, divided by half its length. Cells
-at one corner then have 0.4 of the length of cells in the middle.
-"""
-_NORMAL = 0.05
-"""Fraction of a line's length over which the line is turned to the normal of the root."""
-_BENT = 0.12
-"""Fraction of the length of a parabola over which it keeps the direction of the normal."""
-_ON_ROWS = 0.65
-"""Weight of the rows of the elliptic grid in the cell sizes in the middle of the collar; the rest are a
-line's own sizes.
-"""
-_FINE = 33
-"""Number of nodes on the lines of the elliptic grid."""
-_MIRROR = np.array([1.0, -1.0])
-"""Reflection to the plane of a `Boundary`, which runs clockwise."""
+_SHARE = 0.5  # largest fraction of the way from the section to nose, tail, keel or crown that a collar takes
+_SHORTEST = 0.35  # smallest ratio of cells on the short sides of the rectangle to those on its long sides
+_SHIFT = 0.3  # largest shift of the middle of a short side towards nose or trailing edge, in half its length
+_NORMAL = 0.05  # fraction of a line's length over which the line is turned to the normal of the root
+_BENT = 0.12  # fraction of the length of a parabola over which it keeps the direction of the normal
+_ON_ROWS = 0.65  # weight of the elliptic grid's rows in the cell sizes in the middle of the collar
+_FINE = 33  # number of nodes on the lines of the elliptic grid
+_MIRROR = np.array([1.0, -1.0])  # reflection to the plane of a `Boundary`, which runs clockwise
 
 
 Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]

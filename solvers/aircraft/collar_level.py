@@ -24,25 +24,16 @@ from meshonet.solvers.aircraft.collar import (
 from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
 from meshonet.solvers.stacking.tip import least_sine
 
-_CORNER = 4
-"""Smallest number of nodes from the middle of nose or trailing edge to a corner of the rectangle."""
+_CORNER = 4  # smallest number of nodes from the middle of nose or trailing edge to a corner of the rectangle
 FEWEST = 6
 """Smallest number of cells between a collar and the plane of symmetry."""
-_AHEAD = 1.2
-"""Largest ratio of the outermost cell of a collar to the last of cells that grow by a constant ratio."""
-_EVEN = 1.15
-"""Largest ratio of neighbouring outermost cells of a collar."""
+_AHEAD = 1.2  # largest ratio of a collar's outermost cell to that of constant growth
+_EVEN = 1.15  # largest ratio of neighbouring outermost cells of a collar
 WIDEST = 1.25
 """Growth of cells from a collar to nose, tail, keel and crown."""
+# weights of straight lines, tried in turn: elliptic grids may fold at thin, eccentric trailing edges
 _STRAIGHT = 0.0, 0.3, 0.6, 1.0
-"""Weights of straight lines in collars that are tried in turn, until all angles are good enough; otherwise
-the best.
-
-Elliptic grids may fold at a thin trailing edge that lies far from the middle of the rectangle.
-"""
-_SINE = 0.15
-_LINES = 0.05
-"""Smallest sine of an angle between the lines of a collar before nodes are placed on them (`collar`)."""
+_SINE, _LINES = 0.15, 0.05  # smallest sines: in a collar, and between its lines before nodes are placed
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,12 +37,8 @@ from meshonet.solvers.aircraft.collar_level import (
 from meshonet.solvers.aircraft.level_lines import Side
 from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
 
-_FOLLOWING = 0.7
-"""Weight of the angles theta beside a fin in the angles below it; the rest come from cells that change
-evenly.
-"""
-_HALVINGS = 40
-"""Steps of the bisection for the factor of the cells below a fin."""
+_FOLLOWING = 0.7  # weight of the theta beside a fin in the theta below it; the rest are evenly changing cells
+_HALVINGS = 40  # steps of the bisection for the factor of the cells below a fin
 
 
 @dataclass(frozen=True, eq=False)

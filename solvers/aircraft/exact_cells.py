@@ -6,12 +6,9 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.elementary import exp, log
 from meshonet.solvers.aircraft.body_map import BodyMap
 
-_ROUNDS = 6
-"""Number of trial values of t."""
-_STILL = 1e-12
-"""Smallest relative change of a distance from which the exponent is estimated."""
-_INVERSES = 0.2, 5.0
-"""Range of the reciprocal of the exponent."""
+_ROUNDS = 6  # number of trial values of t
+_STILL = 1e-12  # smallest relative change of a distance from which the exponent is estimated
+_INVERSES = 0.2, 5.0  # range of the reciprocal of the exponent
 
 
 def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Floats:

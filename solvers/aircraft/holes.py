@@ -17,12 +17,9 @@ from meshonet.solvers.aircraft.collar_level import Hole
 from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.rows.span_spacing import SAMPLES
 
-_CLEAR = 0.35
-"""Smallest distance between neighbouring wings, divided by the shorter of the two chords there."""
-_CLEAR_FIN = 0.9
-"""The same for a fin with a column of its own: levels are steep between a long wing and a fin close to it."""
-_PART = 2.0 / 3.0
-"""A collar takes at most half of this fraction of the distance."""
+_CLEAR = 0.35  # smallest distance between neighbouring wings, divided by the shorter of the two chords there
+_CLEAR_FIN = 0.9  # the same for a fin with its own column: levels between it and a long wing are steep
+_PART = 2.0 / 3.0  # a collar takes at most half of this fraction of the distance
 
 
 def columns_of(

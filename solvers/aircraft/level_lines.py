@@ -9,8 +9,7 @@ from meshonet.geometry.arrays import Floats, arc_lengths, smooth_step
 from meshonet.geometry.curves.sampled_lines import sampled
 from meshonet.solvers.rows.span_spacing import smooth_arcs
 
-_FINE = 65
-"""Number of places on a line at which its length is measured."""
+_FINE = 65  # number of places on a line at which its length is measured
 
 Points: TypeAlias = Callable[[Floats], Floats]
 """Function from places (..., 3) to points (..., 3) in space."""

@@ -15,18 +15,11 @@ from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.exact_cells import at_height
 
 _NEWTON = 16
-_STEP = 1e-5
-"""Step of finite differences in s / length, theta and zeta."""
-_FADING = 0.6
-"""Largest decrease of the distance from the axis, by its fading, over that distance's increase."""
-_ABOVE = np.array([0.0, 0.0, 1e-3])
-"""Step to the place by which the normal of a body of revolution is known."""
-_AROUND = 33
-"""Number of angles around a pole at which normals are computed."""
-_POLE = 1e-4
-"""Distance from nose or tail, divided by the body's length, within which a normal is the mean of those around
-the pole.
-"""
+_STEP = 1e-5  # step of finite differences in s / length, theta and zeta
+_FADING = 0.6  # largest decrease of the distance from the axis, by its fading, over that distance's increase
+_ABOVE = np.array([0.0, 0.0, 1e-3])  # step to the place by which the normal of a body of revolution is known
+_AROUND = 33  # number of angles around a pole at which normals are computed
+_POLE = 1e-4  # distance from nose or tail, in body lengths, within which normals are averaged
 
 
 class LoftedMap(BodyMap):

@@ -14,10 +14,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.sections.stack import Stack
 from meshonet.solvers.stacking.section_nodes import Around
 
-_INWARDS = 0.0, 0.01, 0.02, 0.05, 0.1
-"""Lengths, in chords, by which lines of a surface that ends on a body are continued into the body, in order
-of attempts.
-"""
+_INWARDS = 0.0, 0.01, 0.02, 0.05, 0.1  # tried continuations of lines into the body, in chords
 
 
 class Loft(Protocol):

@@ -26,23 +26,13 @@ GROWTHS = 1.2, 1.225, 1.25
 """Growth ratios away from walls if none is given: the first, or with a given number of cells the first that
 fits.
 """
-_PLANNED = (0, 4, 8, 12, 16)
-"""Number of key levels from which numbers of cells are derived."""
-_TRIED = 59, 97
-"""Smallest number of nodes around a wing from which others are derived. With fewer, cells would grow too
-much.
-"""
-_ALONG = (DEFAULT_SPAN - 1) / (DEFAULT_AROUND - 1)
-"""Largest ratio of cells along the span to cells around sections, if only the total number of cells is given.
-"""
-_ACUTE = math.radians(45.0)
-"""Angle between wing and body below which it is given as the reason for folded cells beside the root."""
-_OBLIQUE = math.radians(40.0)
-"""Smallest angle between the surfaces of wing and body, across the root: below it cells fold."""
-_AHEAD = 1e-3
-"""Fraction of the span over which the direction of a wing at its root is measured."""
-_ENOUGH = 1.15
-"""Ratio of the number of cells to the requested number from which on a note says so."""
+_PLANNED = (0, 4, 8, 12, 16)  # number of key levels from which numbers of cells are derived
+_TRIED = 59, 97  # node counts around a wing from which others are derived; with fewer, cells grow too much
+_ALONG = (DEFAULT_SPAN - 1) / (DEFAULT_AROUND - 1)  # cells along the span per cell around sections
+_ACUTE = math.radians(45.0)  # angle of wing and body below which an error names it as the cause of folds
+_OBLIQUE = math.radians(40.0)  # smallest angle between wing and body across the root; below it cells fold
+_AHEAD = 1e-3  # fraction of the span over which the direction of a wing at its root is measured
+_ENOUGH = 1.15  # ratio of the number of cells to the requested number from which on a note says so
 
 
 @dataclass(frozen=True, eq=False)

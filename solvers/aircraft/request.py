@@ -7,8 +7,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.keywords import refuse_given, request_from
 from meshonet.solvers.stacking.request import StackRequest
 
-_OTHERS = ("layers", "revolve", "axis", "copies")
-"""Options of stacks that do not apply to an aircraft."""
+_OTHERS = ("layers", "revolve", "axis", "copies")  # options of stacks that do not apply to an aircraft
 
 
 @dataclass(frozen=True)

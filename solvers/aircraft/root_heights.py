@@ -7,11 +7,9 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.aircraft.lofts import Loft
 
-_PLACES = 65
-"""Number of heights at which a line is compared with the body in each step."""
+_PLACES = 65  # number of heights at which a line is compared with the body in each step
 
-_PASSES = 6
-"""Number of steps; each divides the interval around a crossing."""
+_PASSES = 6  # number of steps; each divides the interval around a crossing
 
 
 def root_heights(loft: Loft, name: str, body: Body) -> Floats:

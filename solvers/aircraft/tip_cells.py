@@ -10,17 +10,12 @@ from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.elementary import exp, log
 from meshonet.solvers.rows.columns import arcs_of
 
+# exponent of the size ratio by which cells far away are thicker; with 1, levels would be very oblique
 _SHARE = 0.5
-"""Exponent of the ratio of even cells to first cells by which cells far away are thicker than first cells:
-with 1, levels beyond the tip would be very oblique.
-"""
-_WAY = 5.0
-"""Distance from the tip to these cells, divided by the thickness of layers up to the even cells."""
+_WAY = 5.0  # distance from the tip to these cells, divided by the thickness of layers up to the even cells
 
-_ROUNDS = 40
-"""Largest number of steps of Newton's method for the growth ratio."""
-_STILL = 1e-13
-"""Change of the logarithm of the growth ratio below which the iteration ends."""
+_ROUNDS = 40  # largest number of steps of Newton's method for the growth ratio
+_STILL = 1e-13  # change of the logarithm of the growth ratio below which the iteration ends
 
 
 def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:

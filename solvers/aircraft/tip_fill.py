@@ -7,10 +7,8 @@ from meshonet.geometry.sections.section import turned
 from meshonet.solvers.rows.span_spacing import smooth_arcs
 from meshonet.solvers.stacking.tip import ROWS, Cap
 
-_GROWTH = 1.27
-"""Growth ratio of the rows of the ring: the section is thin, and there is no boundary layer at its edge."""
-_LONGEST = 0.18, 0.05
-"""Outermost and innermost cells, divided by the length of a line that is too short for the wanted cells."""
+_GROWTH = 1.27  # growth ratio of the ring's rows: the section is thin and has no boundary layer there
+_LONGEST = 0.18, 0.05  # outermost and innermost cells of lines that are too short, in their lengths
 _MOST_ROWS = 200
 
 

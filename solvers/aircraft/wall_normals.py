@@ -15,16 +15,12 @@ from meshonet.geometry.arrays import Floats, Indices, arc_lengths, norms
 from meshonet.geometry.elementary import exp
 from meshonet.solvers.aircraft.wing_lines import WingLines
 
-_WAY = 0.6
-"""Length over which a line is displaced, divided by its distance from the other wall."""
+_WAY = 0.6  # length over which a line is displaced, divided by its distance from the other wall
 
-_TURN = 0.5
-"""Length that takes the place of this distance beyond a tip, in chords of the tip."""
+_TURN = 0.5  # length that takes the place of this distance beyond a tip, in chords of the tip
 
 
-_OBLIQUE = 0.4
-"""Largest cosine of the angle between the level at the edge of a tip and the mean direction of lines there.
-"""
+_OBLIQUE = 0.4  # largest cosine between the level and the mean direction of lines at the edge of a tip
 
 
 def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: float) -> Floats:

@@ -23,19 +23,11 @@ from meshonet.geometry.shapes.wake import rise
 from meshonet.solvers.hyperbolic.level_spacing import Edge, level_steps, sharpest_edge
 from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
 
-_OPENING = 5.0  # growth of first cells far behind the edge, in those of the wall per chord
-_NEAR = 0.3
-"""Height of first cells at x chords behind the trailing edge: the height at the wall times 1 + a x²/(x + b),
-with these a and b, plus `rise`.
-"""
+_OPENING = 5.0  # a, the growth of first cells far behind the edge, in wall cells per chord
+_NEAR = 0.3  # b; first cells x chords behind the edge are 1 + a x²/(x + b) wall cells high, plus `rise`
 
 _CLOSED_AHEAD, _ASIDE, _OPEN_AHEAD, _OPEN_MORE = 1.8, 0.055, 23.0, 0.015
-"""Corrections of the distance of levels, relative to levels around a circle; they are fitted on airfoils, and
-leave an error of 1 %. Around slender bodies the distance is larger by the first constant times slenderness
-times the square of the growth rate of steps, and the smallest distance is less than the mean by the second
-constant times slenderness. In front of C grids the distance is larger by the third constant times the cube of
-the growth rate; the fourth is a margin.
-"""
+"""Corrections of the distance of levels relative to those around a circle, fitted on airfoils to 1 %."""
 
 
 class Front:

@@ -17,10 +17,7 @@ from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.spacing.growth import growing_steps, growth_rate
 
 _LESS = 0.24  # largest reduction of growth, as a fraction, where lines from an edge of zero angle diverge
-_BEGIN, _FULL = 1.2, 3.0
-"""Distances from the wall, in lengths of the cell at the edge: at the first, half of the reduction of growth
-has begun; from the second on, the reduction fades.
-"""
+_BEGIN, _FULL = 1.2, 3.0  # distances from the wall, in edge cells, of half the reduction and of its fading
 _FADE = 0.45  # power of the height with which it fades
 _BEFORE = 0.04  # part of the growth left out nearer to the wall, where lines off a leading edge grow the most
 _LEAST_TURN = math.radians(60.0)  # of an edge that counts as sharp

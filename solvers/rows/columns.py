@@ -10,10 +10,7 @@ from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.layout import Layout
 
 _NEWTON, _SETTLED = 12, 1e-12  # steps at the most, and a step after which others would be rounding
-_STRAIGHT, _MARCHED = 0.5, 1.5
-"""Distances from a corner, in thicknesses of the layers, up to which columns are straight, and from which on
-they are as marched.
-"""
+_STRAIGHT, _MARCHED = 0.5, 1.5  # distances of straight and marched columns from corners, in thicknesses
 
 
 def layer_columns(layout: Layout) -> Indices:

@@ -8,8 +8,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, dots, norms
 
-_ROUNDS = 60
-"""Largest number of rounds in which first cells of nodes next to two walls are made exact."""
+_ROUNDS = 60  # largest number of rounds in which first cells of nodes next to two walls are made exact
 _CLOSE = 1e-13
 
 

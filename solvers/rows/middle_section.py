@@ -29,10 +29,7 @@ REMEDY = "use more {cells}, a larger {first_cell}, or profiles nearer to each ot
 COARSE = 300
 """Number of iterations of the first optimisation."""
 TOLERANCE = 1e-3
-_TRIES, _NEAR = 4, 0.03
-"""Largest number of times that counts are chosen, and the relative difference from the wanted number of cells
-at which this ends.
-"""
+_TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relative accuracy of the total
 
 
 def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:

@@ -23,8 +23,7 @@ from meshonet.solvers.rows.span_lines import SpanLines, key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, LineArcs, Spacing
 from meshonet.solvers.rows.zones import Zone
 
-_IN_GAP = 5
-"""Number of heights in a gap at which lines are measured."""
+_IN_GAP = 5  # number of heights in a gap at which lines are measured
 
 
 @dataclass(frozen=True, eq=False)

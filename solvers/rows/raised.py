@@ -28,12 +28,9 @@ OpenFOAM's skewness of a narrow face is this over 0.4, and is to be less than 4.
 """
 NARROW = 0.4
 """Cells along the span next to a gap, in first cells of the blade, below which layers rise."""
-_MOST = 0.12
-"""Largest move of nodes, as a fraction of the width of the gap."""
-_DEEP, _PART = 2.0, 0.25
-"""Nodes move up to this many widths of the gap from the end of the blade, at most this part of its span."""
-_STEP = 1e-5
-"""Steps of u and of the height from which tangents of the blade are computed."""
+_MOST = 0.12  # largest move of nodes, as a fraction of the width of the gap
+_DEEP, _PART = 2.0, 0.25  # how far nodes move below the blade's end: in gap widths, and at most in spans
+_STEP = 1e-5  # steps of u and of the height from which tangents of the blade are computed
 
 
 @dataclass(frozen=True, eq=False)

@@ -35,8 +35,7 @@ from meshonet.solvers.rows.request import RowRequest
 from meshonet.solvers.rows.stacked import StackedRow
 from meshonet.solvers.rows.zones import Zone, fewest_cells, section_cells, zones_of
 
-_OTHER = 0.15
-"""Relative difference from the requested number of cells above which a note says so."""
+_OTHER = 0.15  # relative difference from the requested number of cells above which a note says so
 
 
 def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:

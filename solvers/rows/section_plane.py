@@ -24,8 +24,7 @@ from meshonet.geometry.rows.row import Row
 from meshonet.solvers.cascade.cascade import Cascade
 from meshonet.solvers.layers.layer_settings import LayerSettings
 
-_AROUND = 400
-"""Number of points of a section."""
+_AROUND = 400  # number of points of a section
 _SHARES = np.array([-1.0, 0.0, 1.0, 2.0])
 STEEPEST = 45.0
 """Largest angle to the axis, in degrees, at which grid lines follow a wake: cells behind the blade are skewed

@@ -29,8 +29,7 @@ from meshonet.solvers.rows.zones import Zone
 DEGREE = 5
 """Degree of the polynomials along the span. It is low because optima of neighbouring sections contain noise.
 """
-_AT_ONCE = 1 << 16
-"""Number of nodes that are computed together, so that they fit into the cache."""
+_AT_ONCE = 1 << 16  # number of nodes that are computed together, so that they fit into the cache
 
 
 class StackedRow:

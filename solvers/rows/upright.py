@@ -17,14 +17,11 @@ from meshonet.solvers.rows.section_plane import SectionPlane
 LEAN = 1.1
 """Tangent of the largest angle between a line and the normal at which places stay."""
 _ROUNDS = 3  # places opposite each other are not linear in u
-_RIDGE = 0.05
-"""Weight of displacements, relative to the mean weight of lines."""
-_OPPOSITE = 0.3
-"""Fraction of the mean weight of lines above which two places count as opposite each other."""
+_RIDGE = 0.05  # weight of displacements, relative to the mean weight of lines
+_OPPOSITE = 0.3  # fraction of the mean weight of lines above which two places count as opposite each other
 _TAPER = 0.15  # of the lines, at both ends of the channel, in which moves die out
 _TINY = 1e-300  # in place of 0 in divisors
-_LEAST = 0.35
-"""Smallest ratio of a step between neighbouring nodes to the same step before."""
+_LEAST = 0.35  # smallest ratio of a step between neighbouring nodes to the same step before
 
 
 def upright(

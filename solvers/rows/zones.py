@@ -13,14 +13,9 @@ PARTS, PARTS_CELLS = 42.0, 800_000
 """Number of cells along the span, if all of it had the spacing that is used away from walls, in a row of so
 many cells.
 """
+# cells of a section: the first over log(growth), within the other two; fewer are too small at blade edges
 _NEEDED, _FEWEST, _ENOUGH = 740.0, 1700, 8000
-"""Smallest number of cells of a section: the first number divided by the logarithm of the growth ratio, but
-within the bounds that follow.
-
-With fewer cells, those at the edges of blades are too small for the growth limit between them.
-"""
-_INSIDE = 0.33
-"""Number of cells inside the outline of the blade in a gap, relative to that of a section around it."""
+_INSIDE = 0.33  # cells inside the outline of the blade in a gap, relative to those of a section
 _LONGER = 1.15  # than across the gap lines may be, which lean
 GAP_ROWS = 17
 """Smallest number of cells across a gap."""

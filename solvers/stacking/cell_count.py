@@ -8,11 +8,9 @@ from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.section_nodes import LEAST_AROUND, MOST_AROUND
 from meshonet.solvers.stacking.wing_surface import DEFAULT_AROUND, DEFAULT_SPAN, LEAST_SPAN, cap_of
 
-_ALONG = (DEFAULT_SPAN - 1) / (DEFAULT_AROUND - 1)
-"""Ratio of the number of cells along the span to that around a section, as in default grids."""
+_ALONG = (DEFAULT_SPAN - 1) / (DEFAULT_AROUND - 1)  # cells along the span per cell around a section
 
-_ENOUGH = 1.1
-"""Ratio of the number of cells to the requested one above which a note says so."""
+_ENOUGH = 1.1  # ratio of the number of cells to the requested one above which a note says so
 
 
 def with_counts(

@@ -13,16 +13,10 @@ TURN = math.radians(15.0)
 """Angle between neighbouring cells at a nose, as far as the following two bounds allow it."""
 MOST = 0.35
 """Length of the longest cells at a nose, in mean cells of a side."""
-_LEAST = 90.0
-"""Length of the shortest, in mean cells of a side, times the square of their number: with few
-cells, those around the section would grow too much.
-"""
-_FEWEST = 24
-"""Fewest cells on a side with which those at the nose follow its curvature: volumes of fewer could fold."""
-_ROUND = math.radians(25.0)
-"""Angle between neighbouring cells at a nose above which a note says what makes it smaller."""
-_SHORTEST = 1.0 / 64.0
-"""Ratio of the shortest spacing that a note recommends to that of the shortest cells."""
+_LEAST = 90.0  # shortest length, in mean cells, times the square of their number: few cells grow little
+_FEWEST = 24  # fewest cells on a side with which nose cells follow the curvature; volumes of fewer could fold
+_ROUND = math.radians(25.0)  # angle between nose cells above which a note names a remedy
+_SHORTEST = 1.0 / 64.0  # ratio of the shortest spacing that a note recommends to that of the shortest cells
 _TRIED = 33  # lengths that are tried
 _BESIDE = 4  # cells on each side of the nose whose angles count
 

@@ -11,10 +11,8 @@ from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.tanh_law import TanhLaw
 from meshonet.solvers.rows.span_spacing import smooth_arcs
 
-_ROOT_CELL = 1.4
-"""Length of the cell at the root relative to the mean cell along the span."""
-_EVEN = 1e-6
-"""Smallest fraction by which the largest ratio of cells must fall if a cell is to change its panel."""
+_ROOT_CELL = 1.4  # length of the cell at the root relative to the mean cell along the span
+_EVEN = 1e-6  # smallest relative decrease of the largest growth for which a cell changes its panel
 
 
 def span_heights(

@@ -31,8 +31,7 @@ _EVEN = 1.17  # ratio of the last cells of the ring and those of the core, which
 _RATIO = 1.7  # of neighbouring rows of the ring, at the most
 _SWEEPS = 50  # of smoothing around the ring
 _FINE = 65  # places on each line of the ring by which its length is measured
-_ENDS = tuple(0.5 + 0.1 * k for k in range(10))
-"""Factors on the distances of the core from nose and trailing edge that are tried."""
+_ENDS = tuple(0.5 + 0.1 * k for k in range(10))  # tried factors on the core's distances from both edges
 _CELL = 1.5  # length of the cells of the core at the nose, in cells of its short side there
 _SHORTER = 0.4  # and in those of the section at the least: where nodes are few, angles would be larger
 _REACH = 4.0  # fewest cells over which they become as long as the cells of the section

@@ -26,8 +26,7 @@ FADE = 8
 """Number of cells from the tip whose lengths vary around the section."""
 REACH = 0.05
 """Largest distance from the tip, in chords of the tip, over which such cells extend."""
-_NEAR = 1e-3
-"""Part of the last panel over which the slope of grid lines at the tip is measured."""
+_NEAR = 1e-3  # part of the last panel over which the slope of grid lines at the tip is measured
 
 
 @dataclass(frozen=True)

@@ -27,15 +27,11 @@ from meshonet.solvers.sweeping.ring_steps import TRIED, fewest_rows, largest_rat
 
 GROWTH = 1.2
 """Default of the largest ratio of neighbouring cells away from walls."""
-_BEND, _BEND_RADIAL = 0.25, 0.4
-"""Bending of the core's sides, from 0 for lines to 1 for arcs; the second value is for radial lines."""
+_BEND, _BEND_RADIAL = 0.25, 0.4  # of the core's sides, from 0, lines, to 1, arcs; the second for radial lines
+# sizes of the core relative to the section; the first one that the growth limit permits is used
 _SIZES = (0.6, 0.55, 0.5, 0.45, 0.4, 0.35, 0.3, 0.25, 0.2, 0.15, 0.1)
-"""Sizes of the core relative to the section; the first one that the growth limit permits is used."""
 _ROUNDING = 1e-9  # of ratios, by which the limit may be exceeded
-_RADIAL = (1.0, 0.75, 0.5, 0.25, 0.0)
-"""Alignment of the ring's lines with radii of a circle, tried in this order; 0 gives equal cells in the
-core.
-"""
+_RADIAL = (1.0, 0.75, 0.5, 0.25, 0.0)  # tried alignments with radii; 0 gives equal cells in the core
 
 Sides: TypeAlias = Sequence[Floats]
 """Nodes (n, 2) on east, north, west and south of a closed curve, counter-clockwise."""

@@ -16,8 +16,7 @@ AROUND = 88
 """Cells around a circle with which its area is accurate to 0.1 %: 1 - sin(x)/x with x = 2 pi / 88 is 0.08
 %.
 """
-_LEAST = 84
-"""Fewest cells around with which it is accurate to 0.1 %; its quarters cannot be halved."""
+_LEAST = 84  # fewest cells around with which it is accurate to 0.1 %; its quarters cannot be halved
 # quarter turns: east, north, west, south
 _TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1, 0)))
 

@@ -42,8 +42,7 @@ _SETTINGS = {
     "distributed.worker.profile.enabled": False,
     "distributed.admin.tick.interval": "1s",
     "distributed.admin.system-monitor.interval": "10s",
-}
-"""Settings of a cluster on this machine that differ from the defaults."""
+}  # settings of a cluster on this machine that differ from the defaults
 
 
 @contextmanager

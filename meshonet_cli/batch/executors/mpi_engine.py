@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 
     from meshonet_cli.batch.settings import Engine
 
-_ranks: MPIPoolExecutor | None = None
-"""Executor of the other ranks, while the program runs inside `on_ranks`."""
+_ranks: MPIPoolExecutor | None = None  # executor of the other ranks, while the program runs inside `on_ranks`
 
 
 def on_ranks(run: Callable[[], int]) -> int:

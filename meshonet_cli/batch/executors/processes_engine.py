@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 R = TypeVar("R")
-_TERMINATED = 143
-"""Exit code of a process after SIGTERM."""
+_TERMINATED = 143  # exit code of a process after SIGTERM
 _GRACE = 10.0  # seconds that a process has to remove what it was writing
 
 

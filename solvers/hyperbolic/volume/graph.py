@@ -24,10 +24,7 @@ from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
 
-_WIDTH, _FALL = 4, 0.35
-"""Number of rings of nodes around irregular nodes (without four neighbours) that are smoothed more; factor
-per ring.
-"""
+_WIDTH, _FALL = 4, 0.35  # rings of nodes around irregular ones that are smoothed more; factor per ring
 
 
 @dataclass(frozen=True, eq=False)

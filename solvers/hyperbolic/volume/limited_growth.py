@@ -7,8 +7,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.elementary import exp, log
 
-_MARGIN = 1e-3
-"""Fraction of the logarithm of the limit that is used: chords are shorter than the lines."""
+_MARGIN = 1e-3  # fraction of the logarithm of the limit that is used: chords are shorter than the lines
 _HALVINGS = 40  # of the range that the tilt of a line lies in
 _LEAST = 0.2  # of the growth, in logarithms: what that of steps is taken for where it is less
 _MOST = 0.5  # part by which growth is cut down at the most: what is beyond it is at few lines

@@ -8,8 +8,7 @@ from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.surface.surface import Surface
 
-_SAMPLES = 2000
-"""Nodes of a part, evenly drawn, by which its distance from others is measured."""
+_SAMPLES = 2000  # nodes of a part, evenly drawn, by which its distance from others is measured
 
 
 def check_parts(surface: Surface, far: float) -> None:

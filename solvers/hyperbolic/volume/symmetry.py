@@ -19,10 +19,7 @@ from meshonet.geometry.surface.surface import Surface
 
 ROUGH = 1e-3
 """Largest distance of nodes from a given plane of symmetry, relative to the size of the surface."""
-_FACING = 0.1
-"""Largest area that faces a plane of symmetry, less the area that faces away from it, as a fraction of the
-surface.
-"""
+_FACING = 0.1  # largest net area that faces a plane of symmetry, as a fraction of the surface
 
 
 class Symmetry(NamedTuple):
