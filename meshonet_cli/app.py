@@ -1,17 +1,8 @@
-"""The application: its commands, and the one place that maps errors to exit codes.
+"""The application: its commands, and the exit code of each error.
 
-===== ==========================================================================
-code  meaning
-===== ==========================================================================
-0     done
-1     a check of ``--fail-on`` or ``--profile`` failed
-2     bad usage or bad input
-3     no valid grid could be made
-130   interrupted
-143   terminated
-===== ==========================================================================
-
-A batch ends with the greatest code of its members: 3 is worse than 2, and 2 is worse than 1.
+0 done, 1 a check failed, 2 bad usage or input, 3 no valid grid, 130 interrupted, 143 terminated; a batch ends
+with
+the greatest code of its members.
 """
 
 import contextlib
@@ -53,7 +44,7 @@ class Plain(typer.core.TyperCommand):
     """A command with ``GRID...`` in its usage line, instead of typer's ``{GRID}``, and with option groups."""
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
-        """Return the words of the usage line; all arguments of our commands may be repeated."""
+        """Return the words of the usage line; all our arguments may be repeated."""
         pieces = super().collect_usage_pieces(ctx)
         words = [piece.strip("{}") for piece in pieces]
         return [word if word == "[OPTIONS]" or "..." in word else f"{word}..." for word in words]
@@ -76,9 +67,9 @@ class Plain(typer.core.TyperCommand):
 
 
 def application(commands: Sequence[Command] = COMMANDS, *, overview: bool = False) -> Any:
-    """Return the parser of `commands`, or of a single command; an `overview` has only names and summaries.
+    """Return the parser of `commands`, or of a single command.
 
-    Otherwise all commands are loaded for their options, which takes a tenth of a second.
+    With `overview`, commands have only names and summaries; without it, loading their options takes 0.1 s.
     """
     app = typer.Typer(
         add_completion=len(commands) > 1,
@@ -191,7 +182,7 @@ def _interrupted() -> int:
 
 
 def _unread() -> int:
-    """Return the exit code after the reader of the output has closed it, which is not an error."""
+    """Return the exit code, 0, after the reader of our output has closed it."""
     _silence_stdout()
     return 0
 

@@ -40,13 +40,19 @@ _MOST_IN_PART, _MOST_FOR_MANY_WORKERS = 1000, 100  # inputs per part at most; if
 
 
 class Destination:
-    """Output of a batch: ``-``, one file, or one per result (``{stem}``, ``{index}``, ``{name}`` in `text`).
+    """Output of a batch: ``-``, one file, or one file per result.
 
-    `put`, if given, is a function that writes to a path and replaces the format's own function for this
-    `kind`. A dataset is written in parts of `part_size` inputs; if it is None, the size follows from the
-    approximate number of `nodes` per result. `space` is the kind of blocks in space of all results, None for
-    planar results. Raises InputError: an unknown field or extension; a format that cannot be written, or has
-    no parts.
+    Parameters
+    ----------
+    text : the name, or a pattern with ``{stem}``, ``{index}`` or ``{name}``.
+    fmt : name of the format; None: by the extension.
+    kind : kind of the results.
+    put : function that writes to a path in place of the format's own.
+    part_size : number of inputs in a part of a dataset; None: derived from `nodes`.
+    nodes : approximate number of nodes per result.
+    space : kind of blocks in space of all results; None: planar.
+
+    Raises InputError: an unknown field or extension; a format that cannot be written, or has no parts.
     """
 
     def __init__(
@@ -96,7 +102,7 @@ class Destination:
         return path
 
     def check_room(self, remedy: str = "") -> None:
-        """Raise InputError, with `remedy`, if there are several inputs but the file can store only one."""
+        """Raise InputError, with `remedy`, if there are several inputs and the file stores one."""
         if not (self.each or self.format.many):
             raise InputError(
                 f"several inputs and one {self.format.name} file, which holds one",
@@ -107,9 +113,9 @@ class Destination:
     def part_size_for(self, inputs: Inputs | DrawnInputs, files: Files, *, elsewhere: bool) -> int:
         """Return the number of inputs in a part of the dataset, 0 for an output without parts.
 
-        Parts are written in four cases: if they are requested, for a shard, to continue existing parts, and
-        for more than `MANY` inputs. Parts are smaller for a shard and if workers may be on another machine
-        (`elsewhere`).
+        Parts are written if requested, for a shard, to continue existing parts, and for more than `MANY`
+        inputs. They are
+        smaller for a shard, and if workers may be on another machine (`elsewhere`).
 
         Raises InputError: an existing dataset would be replaced, or cannot be continued.
         """
@@ -131,7 +137,7 @@ class Destination:
         return self._part_size or _size_there(index) or usual_part_size(self._nodes, most)
 
     def part_files(self, make: object, size: int) -> PartFiles:
-        """Return the files of a dataset in parts of `size` inputs, whose results `make` computes."""
+        """Return the files of a dataset in parts of `size` inputs, computed by `make`."""
         from meshonet.formats.hdf5.parts import PartFiles, digest_of
         from meshonet_cli.batch.settings_text import described
 
@@ -139,7 +145,7 @@ class Destination:
         return PartFiles(Path(self.text), request, size)
 
     def check_several(self, item: Item[Any]) -> None:
-        """Raise InputError if the output stores only one result, and `item` is one of several in its file."""
+        """Raise InputError if the output stores one result and the file of `item` has several."""
         if not (self.each or self.format.many):
             raise InputError(
                 f"holds several grids or boundaries, and a {self.format.name} file holds one",
@@ -176,7 +182,7 @@ def usual_part_size(nodes: int | None, most: int = _MOST_IN_PART) -> int:
 
 
 def _escaped(text: str) -> str:
-    """Return `text` for an error message, in which names in single braces would be replaced by options."""
+    """Return `text` for an error message, which replaces names in single braces by options."""
     return re.sub(r"\{(\w+)\}", r"{{\1}}", text)
 
 
@@ -207,10 +213,7 @@ def _fields(text: str) -> list[str]:
 
 
 def same_size(what: Grid | Boundary | Layout, size: str) -> str:
-    """Return the size of a result for a dataset.
-
-    Raises InputError: it differs from `size`, the size of the first result.
-    """
+    """Return the size of a result for a dataset. Raises InputError: it differs from `size`."""
     if not isinstance(what, Grid | Boundary):  # files of layouts hold one
         return ""
     own = size_of(what)

@@ -1,4 +1,4 @@
-"""Digests of inputs, by which an existing part is recognised as made from the same inputs."""
+"""Digests of inputs, by which existing parts are recognised."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 def digests_of(entry: str | InputError | Draw) -> list[Input]:
-    """Return the input with a digest of its name and content; a dataset has one digest per sample.
+    """Return the input with a digest of its name and content; a dataset has one per sample.
 
-    If an input cannot be read, the digest is that of the reason.
+    The digest of an unreadable input is that of the error.
     """
     if isinstance(entry, InputError):
         return [Input(entry.source, digest_of(entry.source, str(entry)))]

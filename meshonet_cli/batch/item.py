@@ -33,7 +33,7 @@ class Item(Generic[T]):
     path: str = ""  # of its own file, where it has one
 
     def without_content(self) -> Item[None]:
-        """Return the member without its content, for the transfer to another process."""
+        """Return the member without its content, for another process."""
         return replace(self, what=None)  # type: ignore[arg-type, return-value]
 
     @property

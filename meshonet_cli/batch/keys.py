@@ -13,16 +13,13 @@ from meshonet_cli.batch.item import Item
 
 
 class Keys:
-    """The keys that samples of a dataset, or of a part of a dataset, have been given so far."""
+    """Keys that samples of a dataset, or of a part, have been given so far."""
 
     def __init__(self) -> None:
         self._names = UniqueNames()
 
     def named(self, item: Item[Any], what: Any) -> Any:
-        """Return the grid or boundary `what` with its key as name.
-
-        If it had another name before, that name becomes its title.
-        """
+        """Return the grid or boundary `what` with its key as name; another name becomes its title."""
         if not isinstance(what, Grid | Boundary):
             return what
         key = self._names.add(item.stem if _of_file(item) else what.name)
@@ -32,7 +29,7 @@ class Keys:
 
 
 def _of_file(item: Item[Any]) -> bool:
-    """Return whether a member is all of a file that is no dataset, whose samples have keys of their own."""
+    """Return whether a member is all of a file that is not a dataset."""
     source = item.source
     if not item.only or source == "-" or is_designation(source) or is_dataset(source):
         return False

@@ -1,4 +1,4 @@
-"""Datasets in parts: a task computes the samples of one part; an index presents all parts as one dataset."""
+"""Datasets in parts: each task computes one part, and an index presents all as one dataset."""
 
 from __future__ import annotations
 
@@ -35,9 +35,14 @@ class PartTask:
 
 @dataclass
 class PartDone:
-    """Result for a part: its file, whether it existed before, and a report or an error for each member.
+    """Result for a part.
 
-    For a part that existed before, `lacks` is the number of members that failed.
+    Parameters
+    ----------
+    number, path : number of the part, and its file.
+    state : whether the file existed before.
+    lacks : number of failed members of a part that existed before.
+    members : a report or an error for each member.
     """
 
     number: int
@@ -49,14 +54,14 @@ class PartDone:
 
 @dataclass(frozen=True)
 class PartMaker:
-    """Makes parts, in this process or another; only reports are returned.
+    """Makes parts, in this process or another, and returns reports.
 
     Parameters
     ----------
     files : paths of the parts.
     kind : grids or boundaries.
-    read : function that yields the content of an input.
-    work : function that computes the results of members.
+    read : yields the content of an input.
+    work : computes the results of members.
     skip_existing : whether an existing part with the same inputs and settings is kept.
     """
 
@@ -69,8 +74,8 @@ class PartMaker:
     def __call__(self, part: PartTask) -> PartDone:
         """Make a part atomically.
 
-        Raises OtherPartsError: the existing part has other inputs or settings, or existing parts must not be
-        skipped; InputError: the part cannot be written.
+        Raises OtherPartsError: the existing part differs, or must not be skipped; InputError: the part cannot
+        be written.
         """
         inputs = [each for entry in part.inputs for each in digests_of(entry)]
         state = self.files.state(part.number, inputs)
@@ -85,7 +90,7 @@ class PartMaker:
         return done
 
     def _samples(self, part: PartTask, done: PartDone, failed: list[Failed]) -> Iterator[Grid | Boundary]:
-        """Yield the samples of the part, and record a report or an error for each member."""
+        """Yield the samples of the part; record a report or an error for each member."""
         size, keys = "", Keys()
 
         def fail(item: Item[Any], error: Exception) -> None:
@@ -128,11 +133,14 @@ def deliver_parts(
 ) -> None:  # fmt: skip
     """Report every member when its part is complete, and write the index of all parts.
 
-    A part that fails is reported, and missing from the index until the command is repeated. `written` is
-    called with the report of each successful member and the path of the file. `whole` says that these are all
-    parts, not a shard.
+    A part that fails is reported, and missing from the index until the command is repeated.
 
-    Raises OtherPartsError: existing parts have other inputs or settings, or must not be skipped.
+    Parameters
+    ----------
+    written : called with the report of each successful member and the path of the file.
+    whole : whether these are all parts, not a shard.
+
+    Raises OtherPartsError: existing parts differ, or must not be skipped.
     """
     files.check(skip_existing=skip_existing)
     session.batch, session.dataset = True, str(files.index)

@@ -28,25 +28,25 @@ Written = Callable[[Any, str], None]
 
 
 def each(make: Callable[..., tuple[Any, Timed]], **settings: Any) -> Make:
-    """Return a function that computes the results of members one by one, with `settings`."""
+    """Return a function that computes the results of members one by one."""
     return partial(attempted, partial(make, **settings))
 
 
 @dataclass(frozen=True)
 class BatchTask:
-    """Functions that a command applies to each of its inputs; `read` and `make` may run in other processes.
+    """What a command does with each input; `read` and `make` may run in other processes.
 
     Parameters
     ----------
-    read : function that yields the content of an input.
-    make : function that computes the results of members.
+    read : yields the content of an input.
+    make : computes the results of members.
     kind : kind of the results.
-    put : function that writes to a path, instead of the format's own function.
+    put : writes to a path, in place of the format's own function.
     nodes : approximate number of nodes of a result; None if unknown.
-    space : kind of blocks in space of all results; formats that cannot store it are refused at once.
+    space : kind of blocks in space of all results; other formats are refused at once.
     together : number of members that a process is given at a time.
     assembled : sampling of the far field if all inputs form one domain.
-    joined : remedy if the output stores one result and there are several inputs.
+    joined : remedy if there are several inputs for an output of one result.
     """
 
     read: Callable[[Any], Iterator[Any]]
@@ -62,7 +62,7 @@ class BatchTask:
 
 @dataclass(frozen=True)
 class Batch:
-    """A run of a command: its inputs, its output, its messages, and its engine."""
+    """A run of a command: inputs, output, messages and engine."""
 
     inputs: Any  # `Inputs`, or `DrawnInputs`
     files: Files
@@ -77,7 +77,7 @@ class Batch:
     def deliver(self, task: BatchTask, written: Written) -> None:
         """Process every member, write its result, and report it by `written`.
 
-        A member that fails is reported and left out. With ``skip_existing``, members whose output file exists
+        A member that fails is reported and left out. With ``skip_existing``, members with existing outputs
         are skipped.
 
         Raises InputError: an output that cannot be written.
@@ -129,7 +129,6 @@ class Batch:
             destination.write(destination.text, chain([first], stream))
 
     def _deliver_parts(self, task: BatchTask, destination: Destination, size: int, written: Written) -> None:
-        """Write a dataset in parts of `size` inputs, each made by a worker."""
         from meshonet_cli.batch.parts import PartMaker, PartTask, deliver_parts
 
         files = destination.part_files(task.make, size)
@@ -146,7 +145,7 @@ class Batch:
             report(workers.in_order(maker, parts, workers.count))
 
     def _with_paths(self, members: Iterator[Item[Any]], destination: Destination) -> Iterator[Item[Any]]:
-        """Yield members with the paths of their output files; members with existing files are skipped."""
+        """Yield members with the paths of their outputs; members with existing files are skipped."""
         for item in members:
             with self.session.member(item.label, item.source):
                 path = destination.path(item)
@@ -182,7 +181,7 @@ class Batch:
 
 @dataclass(frozen=True)
 class MemberWork:
-    """Processes members in this process or another: computes results, and writes each to its own file."""
+    """Computes results of members, in this process or another, and writes each to its own file."""
 
     make: Make
     destination: Destination | None

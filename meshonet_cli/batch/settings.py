@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Files:
-    """Output of a command, the formats of input and output, and the treatment of existing results.
+    """Output of a command, formats, and treatment of existing results.
 
     Parameters
     ----------
-    output : a file, a pattern of files with ``{stem}``, ``{index}`` or ``{name}``, or ``-``.
-    from_format, to_format : formats, if names and content do not determine them.
+    output : a file, ``-``, or a pattern of files with ``{stem}``, ``{index}`` or ``{name}``.
+    from_format, to_format : formats that names and content do not determine.
     skip_existing : whether inputs with existing results are skipped.
     part_size : number of inputs in a part of a dataset.
     """
@@ -44,7 +44,7 @@ class Engine:
     ----------
     name : processes of this machine, a Dask cluster, or the ranks of MPI.
     jobs : number of processes, or of workers of a local Dask cluster.
-    scheduler : address of the scheduler of an existing Dask cluster.
+    scheduler : address of an existing Dask scheduler.
 
     Raises InputError: settings that exclude each other.
     """
@@ -71,10 +71,7 @@ class Engine:
         return self.name == "mpi" or self.scheduler is not None
 
     def threads(self, wanted: int | None = None) -> int | None:
-        """Return the number of threads of each worker: `wanted`, or else its share of the cores.
-
-        None: no limit.
-        """
+        """Return the threads of each worker: `wanted`, or its share of the cores; None: no limit."""
         if wanted is not None or self.here:
             return wanted
         return 1 if self.elsewhere else max(cores() // self.jobs, 1)

@@ -1,4 +1,4 @@
-"""Settings as text, which is equal for equal settings in all processes and on all machines."""
+"""Settings as text, equal for equal settings in all processes and on all machines."""
 
 import dataclasses
 import functools
@@ -16,9 +16,9 @@ _MODEL = ".safetensors"  # extension of model files
 
 
 def described(value: object) -> str:
-    """Return `value`, which consists of dataclasses, containers, arrays and plain values, as text.
+    """Return `value` as text: dataclasses, containers, arrays and plain values.
 
-    Models are described by the content of their files, objects of other classes by their attributes.
+    Models are described by the content of their files, other objects by their attributes.
 
     >>> described({"b": (1, 2.5), "a": None})
     "{'a': None, 'b': (1, 2.5,)}"

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def members_of(
     inputs: Inputs | DrawnInputs, read: Callable[[Any], Iterator[T]], session: Session
 ) -> Iterator[Item[T]]:
-    """Yield the members of every input; one that cannot be read is reported and skipped."""
+    """Yield the members of every input; an unreadable one is reported and skipped."""
     session.batch = session.batch or inputs.more_than(1)
     if session.live:
         session.watch()
@@ -40,9 +40,9 @@ def records(
     inputs: Iterable[Numbered | str | InputError | Draw], read: Callable[[Any], Iterator[Any]], *,
     alone: bool = False,
 ) -> Iterator[Item[Any]]:  # fmt: skip
-    """Yield every member of every input; where one cannot be read, yield an error.
+    """Yield every member of every input, or an error for an unreadable one.
 
-    With `alone`, a member of a family counts as the only member of its input.
+    With `alone`, a member of a family counts as the only one of its input.
     """
     count = 0
     for each in inputs:
@@ -100,7 +100,7 @@ def _entries(
 def assembly(
     inputs: Inputs, read: Callable[[str], Iterator[Shape]], sampling: Sampling, session: Session
 ) -> Iterator[Item[Shape]]:
-    """Yield the domain formed by the shapes of all inputs; report an error, and then yield nothing."""
+    """Yield the domain formed by the shapes of all inputs; report an error and yield nothing."""
     from meshonet.geometry.shapes.assembly import assembled
 
     label = " + ".join(inputs.words)

@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 class Command(NamedTuple):
     """Name and summary of a command, whose module is loaded when needed.
 
-    The module of ``solve-pde`` is ``solve_pde``. It contains the function ``solve_pde`` and its ``EXAMPLES``,
-    which a test runs.
+    The module of ``solve-pde`` is ``solve_pde``, with a function ``solve_pde`` and its tested ``EXAMPLES``.
     """
 
     name: str

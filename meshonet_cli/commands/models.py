@@ -47,7 +47,7 @@ def models_table(models: list[dict[str, Any]]) -> str:
 
 
 def model_text(facts: Mapping[str, Any]) -> str:
-    """Return the description of a model as text: its name, then one fact per line.
+    """Return the description of a model: its name, then one fact per line.
 
     >>> print(model_text({"name": "demo", "topology": "o", "recipe": {"shapes": 30, "seed": 1}}))
     demo

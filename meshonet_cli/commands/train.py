@@ -149,7 +149,7 @@ def train(
 
 
 def _values(words: Sequence[str]) -> dict[str, Any]:
-    """Return the values of ``name=value`` words by name, interpreted as JSON where possible."""
+    """Return the values of ``name=value`` words by name, read as JSON where possible."""
     values: dict[str, Any] = {}
     for word in words:
         name, mark, text = word.partition("=")

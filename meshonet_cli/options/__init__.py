@@ -1,7 +1,6 @@
-"""Options that several commands share; each module contains a group of the help text.
+"""Options that several commands share; each module is a group of the help text.
 
-A command accepts an option by its type (``res: o.Resolution = None``), or a block of options: a dataclass
-whose fields become options (``layers: o.LayerOptions``, see `meshonet_cli.options.groups`).
+A command takes an option by its type, or a block of options: a dataclass whose fields are options.
 """
 
 from meshonet_cli.options.boundary_layer import *  # noqa: F403

@@ -61,9 +61,9 @@ class GateOptions:
     )] = None
 
     def criteria(self, leave_out: bool = False, *, more: Sequence[str] = ()) -> "Criteria | None":
-        """Return gates and profiles, None if none is given; gates may refer to the names in `more` too.
+        """Return gates and profiles, None if there are none; gates may also use the names in `more`.
 
-        Raises InputError: an invalid gate; grids are to be left out and there is no gate and no profile.
+        Raises InputError: an invalid gate; grids are to be left out, but there is neither gate nor profile.
         """
         if not (self.fail_on or self.profile):
             if leave_out:

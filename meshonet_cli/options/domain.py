@@ -76,7 +76,7 @@ class DomainOptions:
     )] = None
 
     def parameters(self) -> dict[str, Any]:
-        """Return the options as parameters of the library. Raises InputError: a text that cannot be read."""
+        """Return the options as parameters of the library. Raises InputError: unreadable text."""
         values = dict(vars(self), walls=(), periodic=tuple(map(_pair, self.periodic or ())))
         del values["assemble"]
         if self.layout is not None:
@@ -93,7 +93,6 @@ class DomainOptions:
 
 
 def _pair(text: str) -> tuple[str, str]:
-    """Return the two names of a pair of periodic sides."""
     names = [name.strip() for name in text.split(",")]
     if len(names) != 2 or not all(names):
         problem = f"{text!r} is not two names"

@@ -26,7 +26,7 @@ class GridOptions(RunOptions, GateOptions, FileOptions):
         self, method: str, settings: Mapping[str, Any], sampling: SamplingOptions, layers: LayerOptions,
         *blocks: object, **more: Any,
     ) -> "GridRequest":  # fmt: skip
-        """Return the request for the grids, from blocks of options and additional fields `more`.
+        """Return the request for the grids, from blocks of options and the fields `more`.
 
         Raises InputError: see `GridRequest`.
         """

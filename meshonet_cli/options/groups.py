@@ -16,18 +16,14 @@ GROUPS = (IO, SAMPLING, BOUNDARY_LAYER, DOMAIN, VOLUME, METHOD, CHECKS)  # in th
 
 
 def option_of(group: str) -> Callable[..., Any]:
-    """Return `typer.Option` for an option of `group`.
-
-    Defaults are shown only where the help text contains them.
-    """
+    """Return `typer.Option` for an option of `group`; defaults are shown only in help texts."""
     return functools.partial(typer.Option, rich_help_panel=group, show_default=False)
 
 
 def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return `function` with the fields of its dataclass parameters as separate parameters.
 
-    The options of a block are declared once, with their defaults, and the function receives them as one
-    object::
+    The function receives the options of a block as one object::
 
         def tfi(boundary: Boundaries, grids: GridOptions, sides: SideOptions): ...
     """
@@ -56,16 +52,14 @@ def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:
-    """Return the InputError for an option with the value `text`; `what` describes the expected value."""
+    """Return the InputError for an option that is not `what` was expected."""
     from meshonet.geometry.errors import InputError
 
     return InputError(f"{text!r} is not {what}", remedy, parameter=parameter)
 
 
 def numbers(text: str | None, counts: tuple[int, ...], what: str, remedy: str, parameter: str) -> Any:
-    """Return the numbers in the text of an option; None for None.
-
-    The permitted numbers of numbers are `counts`.
+    """Return the numbers in the text of an option, None for None; `counts` are the permitted numbers of them.
 
     Raises InputError: other text.
 
@@ -94,7 +88,7 @@ def number(text: str, remedy: str, parameter: str) -> float:
 def by_name(text: str, kind: Callable[[str], Any], remedy: str, parameter: str) -> dict[str, Any]:
     """Return the values by name in an option NAME=VALUE,NAME=VALUE; `kind` reads a value.
 
-    Raises InputError: other text; a name that is repeated.
+    Raises InputError: other text; a repeated name.
 
     >>> by_name("inlet=40,outlet=20", int, "use NAME=N", "count")
     {'inlet': 40, 'outlet': 20}

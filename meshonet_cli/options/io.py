@@ -107,7 +107,7 @@ class InputOptions(PrintOptions):
     def inputs(
         self, words: Sequence[str], *, grids: bool = False, suffixes: Sequence[str] = ()
     ) -> "Inputs":
-        """Return the inputs that `words` name: shapes, `grids`, or files with the given extensions.
+        """Return the inputs that `words` name: shapes, `grids`, or files with these suffixes.
 
         Raises InputError: an invalid shard; see also `Inputs`.
         """

@@ -30,10 +30,7 @@ Axis = Annotated[str | None, _option(
 
 
 def axis_of(text: str | None) -> "AxisLine | None":
-    """Return the axis described by an option, None for None.
-
-    Raises InputError: neither a named axis nor four numbers.
-    """
+    """Return the axis in an option, None for None. Raises InputError: neither a name nor four numbers."""
     from meshonet.geometry.blocks.revolve import AxisLine
 
     named = {"x": "0,0,1,0", "y": "0,0,0,1"}
@@ -43,9 +40,7 @@ def axis_of(text: str | None) -> "AxisLine | None":
 
 
 def copies_of(text: str | None) -> int | tuple[int, ...]:
-    """Return the numbers of copies along each period in an option, 1 for None.
-
-    Raises InputError: a text that is not integers separated by x.
+    """Return the numbers of copies along each period, 1 for None. Raises InputError: other text.
 
     >>> copies_of("3x2"), copies_of("23")
     ((3, 2), 23)

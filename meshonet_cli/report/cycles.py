@@ -18,7 +18,7 @@ INTERVAL = 0.1  # least seconds between two texts on the terminal
 
 
 class Live:
-    """Shows cycles on the terminal, at most ten per second; `show` prints a line."""
+    """Shows cycles on the terminal, at most ten per second, by the function `show`."""
 
     def __init__(self, show: Callable[[str], None]) -> None:
         self._show = show
@@ -36,11 +36,11 @@ class Live:
 
 @contextlib.contextmanager
 def followed(session: Session, history: str | None) -> Iterator[Callable[[Report, str], None]]:
-    """Return a context that shows cycles on a terminal, and writes them to the file `history`.
+    """Return a context that shows cycles on a terminal and writes them to the file `history`.
 
-    The context gives a function that must be called with the report of each grid and its output file.
+    It gives a function to be called with the report of each grid and its output file.
 
-    Raises InputError: the name of the file does not end in ``.csv``, or its folder does not exist.
+    Raises InputError: `history` does not end in ``.csv``, or its folder does not exist.
     """
     if history is not None:
         if Path(history).suffix.lower() != ".csv":
@@ -61,7 +61,6 @@ def followed(session: Session, history: str | None) -> Iterator[Callable[[Report
 
 
 def _write(path: Path, members: Iterable[tuple[str, Iterable[HistoryRow]]]) -> None:
-    """Write the cycles of all members, each with its label, to `path`."""
     with path.open("w", newline="", encoding="utf-8") as stream:
         table = csv.writer(stream, lineterminator="\n")
         table.writerow(COLUMNS)

@@ -1,4 +1,4 @@
-"""Report of the content of a file that is written or drawn: sizes, names, notes."""
+"""Report of a file that is written or drawn: sizes, names, notes."""
 
 from __future__ import annotations
 

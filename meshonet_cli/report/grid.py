@@ -27,11 +27,11 @@ _METHODS = {"conformal": "conformal map"}  # descriptions of methods whose names
 
 @dataclass
 class Report(Timed):
-    """Report of one grid, in the form of ``--json``.
+    """Report of one grid.
 
-    `wake` is the number of cells along the wake of a C grid, 0 for other grids. `seconds` are wall-clock
-    seconds by stage: read, boundary, load (modules and models, once per process), grid (from boundary nodes
-    in memory to grid nodes in memory), guard, quality, write, and total.
+    `wake` is the number of cells along the wake of a C grid, else 0. `seconds` are wall-clock seconds by
+    stage: read,
+    boundary, load (modules and models), grid, guard, quality, write, and total.
     """
 
     method: str
@@ -57,7 +57,7 @@ class Report(Timed):
         return f"{self.item.label}: {folded} folded cells are in {self.output}" if folded else ""
 
     def row(self) -> MemberRow | None:
-        """Return the row of the grid in a table of verdicts; None if the grid was not judged."""
+        """Return the row of the grid in a table of verdicts; None if it was not judged."""
         if not self.judgement:
             return None
         from meshonet_cli.terminal.summary import MemberRow, figures
@@ -120,14 +120,13 @@ class Report(Timed):
         return "\n  ".join(lines)
 
     def _confidence_json(self) -> dict[str, Any] | None:
-        """Return the confidence in a network's answer; JSON has no infinite numbers."""
         if self.confidence is None:
             return None
         facts = asdict(self.confidence)
         return facts if math.isfinite(facts["expected_error"]) else {**facts, "expected_error": None}
 
     def line(self) -> str:
-        """Return the report of a member of a batch as text: one line, followed by lines about changes."""
+        """Return the report of a member of a batch: one line, then lines about changes."""
         angle = self.quality["max_angle"].max
         head = (
             f"{self.item.label} -> {self.output}: {self._size(short=True)}, "
@@ -139,10 +138,7 @@ class Report(Timed):
         return "\n  ".join([head, *changes_in(self.notes)])
 
     def _along_wall(self) -> dict[str, int]:
-        """Return the numbers of nodes on wake and wall of a C grid's south side.
-
-        The trailing edge is in both.
-        """
+        """Return the numbers of nodes on body and wake of a C grid; the trailing edge is in both."""
         if self.ni is None or not self.wake:
             return {}
         return {"body_nodes": self.ni - 2 * self.wake, "wake_nodes": self.wake + 1}
@@ -153,7 +149,6 @@ class Report(Timed):
         return f"{method}, then {', '.join(self.path)}" if self.path else method
 
     def _size(self, *, short: bool = False) -> str:
-        """Return the size of the grid."""
         if self.ni is None and self.blocks is None:
             return f"{self.quality.cells} cells"
         if self.blocks is None:

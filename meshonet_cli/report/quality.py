@@ -83,7 +83,7 @@ class Measured(Timed):
 
 
 def _largest_growth(grid: Grid, figures: Figures) -> list[str]:
-    """Return the largest growth of all directions, inside blocks and across sides, as a line."""
+    """Return the largest growth inside blocks and across their sides, as a line."""
     most = figures("growth")
     if most is None or most.at is None:
         return []
@@ -91,7 +91,6 @@ def _largest_growth(grid: Grid, figures: Figures) -> list[str]:
 
 
 def _period_line(row: Period) -> str:
-    """Return a period as text."""
     if row.angle:
         motion, size = f"turned by {row.angle:.6g} degrees", "the radius"
     else:
@@ -167,7 +166,6 @@ def _cell(grid: Grid, at: tuple[int, ...]) -> tuple[str, str]:
 
 
 def _axes(grid: Grid) -> str:
-    """Return the heading of the column with centres of cells."""
     return _AXES[2 if grid.form == "plane" else 3]
 
 
@@ -230,7 +228,6 @@ def profile_table(profile: ProfileReport) -> str:
 
 
 def _places_of(figures: Figures) -> str:
-    """Return the heading of the column with places."""
     grid = figures.grid
     return f"at {_PLACES[1 + len(grid.blocks[0].counts) if grid.topology == 'blocks' else 2]}"
 

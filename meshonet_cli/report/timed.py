@@ -1,4 +1,4 @@
-"""Base of the reports of members of a batch: the member, its output file, and times."""
+"""Base of the reports of members of a batch."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ STAGES = ("read", "boundary", "load", "layout", "grid", "guard", "quality", "com
 
 @dataclass
 class Timed:
-    """Report of a member of a batch: the member, its output file, and seconds by stage after reading.
+    """Report of a member of a batch: the member, its output file, and seconds by stage.
 
-    `left_out` says that the result of the member is not written.
+    `left_out`: the result is not written.
     """
 
     item: Item[Any]
@@ -39,7 +39,7 @@ class Timed:
 
     @property
     def failure(self) -> tuple[str, str, str, bool]:
-        """Input, member, reason and whether to try again, for the list of a dataset that lacks the result."""
+        """Input, member, reason and whether to try again, for the list of a dataset."""
         row = self.row()
         limits = ", ".join(row.judgement.beyond) if row and row.judgement else ""
         return self.item.source, self.item.label, f"left out, as it fails: {limits}", False
@@ -76,6 +76,6 @@ class Timed:
         return {stage: round(spent, 6) for stage, spent in times.items()}
 
     def _in_order(self) -> dict[str, float]:
-        """Return the seconds in the order of `STAGES`; others follow."""
+        """Return the seconds in the order of `STAGES`, then others."""
         order, spent = (*STAGES, *self.seconds), {"read": self.item.seconds, **self.seconds}
         return dict(sorted(spent.items(), key=lambda item: order.index(item[0])))

@@ -23,9 +23,9 @@ EDGE_NODES = 1000
 
 
 def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = None) -> int:
-    """Sample shapes, optionally with `sensors`, write them, and return the exit code.
+    """Sample shapes, write them, and return the exit code.
 
-    Raises InputError: a format that cannot store sensors, or several boundaries.
+    Raises InputError: a format that cannot store `sensors`, or several boundaries.
     """
     files = batch.files
     drawn = isinstance(batch.inputs, DrawnInputs)

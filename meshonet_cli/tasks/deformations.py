@@ -24,7 +24,7 @@ def write_deformed(
     batch: Batch, walls: Mapping[str, NewWall] | NewWall, criteria: Criteria | None, *, allow_invalid: bool,
     threads: int | None,
 ) -> int:  # fmt: skip
-    """Deform the grids of the inputs to their new `walls`, write them, and return the exit code."""
+    """Deform the grids to their new `walls`, write them, and return the exit code."""
     percentiles = criteria is not None and criteria.percentiles
     request = DeformRequest(allow_invalid, percentiles, batch.engine.threads(threads))
     batch.session.judges = criteria is not None
@@ -44,9 +44,9 @@ def _deformed(
 def walls_of(
     wall: Sequence[str], rotate: Sequence[str], shift: Sequence[str]
 ) -> Mapping[str, NewWall] | NewWall:
-    """Return the new walls that options describe: a dict by name, or a single wall.
+    """Return the new walls that options describe: by name, or a single wall.
 
-    Raises InputError: a word is invalid; a wall is named twice; a file cannot be read.
+    Raises InputError: an invalid word; a wall named twice; an unreadable file.
     """
     if not (wall or rotate or shift):
         raise InputError("nothing is moved", "give {wall}, {rotate} or {shift}", source="deform")
@@ -107,7 +107,7 @@ def _shifts(texts: Sequence[str]) -> dict[str, Motion]:
 
 
 def _numbers(words: Sequence[str]) -> list[float]:
-    """Return words as finite numbers; empty if one of them is not a number."""
+    """Return words as finite numbers; empty if one is not a number."""
     try:
         numbers = [float(word) for word in words]
     except ValueError:

@@ -45,11 +45,11 @@ def _grids(
 def reported(
     member: Item[Any], result: Result, criteria: Criteria | None, *, detailed: bool = True
 ) -> tuple[Grid, Report]:
-    """Return the grid of `member`, with command and verdict in its provenance, and the report of the grid.
+    """Return the grid of `member`, with command and verdict in its provenance, and its report.
 
-    A `detailed` report has angles and growth of grid lines in multi-block grids, which only JSON shows.
+    A `detailed` report has angles and growth of lines in multi-block grids, for JSON.
 
-    Raises InputError: a gate for a figure that is not defined for these cells.
+    Raises InputError: a gate for a figure that these cells do not have.
     """
     solution, grid = result.solution, result.solution.grid
     counts = grid.blocks[0].counts if len(grid.blocks) == 1 else (None, None)
@@ -79,10 +79,13 @@ def write_grids(
     batch: Batch, request: GridRequest, criteria: Criteria | None, *, history: str | None = None,
     assemble: bool = False,
 ) -> int:  # fmt: skip
-    """Make a grid from every boundary of the inputs and return the exit code.
+    """Make a grid from every boundary and return the exit code.
 
-    With `assemble` the inputs form one domain. The exit code is 1 if a grid does not meet the `criteria`.
-    Cycles are written to the file `history`.
+    Parameters
+    ----------
+    criteria : gates and profiles; the exit code is 1 if a grid fails them.
+    history : file to which cycles are written.
+    assemble : whether the inputs form one domain.
     """
     percentiles = criteria is not None and criteria.percentiles
     request = replace(request, threads=batch.engine.threads(request.threads), percentiles=percentiles)

@@ -21,7 +21,7 @@ from meshonet_cli.report.delivered import Delivered
 def write_layouts(
     batch: Batch, parameters: Mapping[str, Any], far_field: float | None, *, assemble: bool = False
 ) -> int:
-    """Split the domains of the inputs into blocks, write the layouts, and return the exit code.
+    """Split the domains into blocks, write the layouts, and return the exit code.
 
     With `assemble` the inputs form one domain.
     """

@@ -30,9 +30,12 @@ def measure_grids(
 ) -> int:  # fmt: skip
     """Measure every grid of `inputs`, print the reports and return the exit code.
 
-    `compare` is a file of reference grids, which are matched by `pairing`. `summary` prints one table for all
-    grids. `plot`, `per_cell` and `html` are files for pictures, metrics and the report. y+ is reported for
-    the Reynolds number and its reference length.
+    Parameters
+    ----------
+    compare, pairing : file of reference grids, and how they are matched.
+    summary : whether one table for all grids is printed.
+    plot, per_cell, html : files for pictures, metrics and the report.
+    reynolds, length : Reynolds number for y+, and its reference length.
     """
     gates, profiles = (criteria.gates, criteria.profiles) if criteria else ((), ())
     session.summary, session.judges = summary, criteria is not None
@@ -79,20 +82,17 @@ def measure_grids(
 
 
 def _page(output: str, gates: Sequence[Gate]) -> QualityPage:
-    """Return a page that collects reports and is written to `output`."""
     if format_for_output(output).name != "html":
         raise InputError("a report is a page", "name it FILE.html", parameter="html", source=output)
     return QualityPage(gates, f"meshonet {__version__}")
 
 
 def _picture_file(output: str) -> Destination:
-    """Return the destination of a picture. Raises InputError: `output` is not a picture."""
     kind = picture_format(output).name
     return Destination(output, kind, put=partial(Picture().draw, kind))
 
 
 def _metrics_file(output: str) -> Destination:
-    """Return the destination of a grid with all metrics as cell data."""
     name = format_for_output(output).name
     if name not in ("vts", "vtm"):
         remedy = "name it FILE.vts, or FILE.vtm for many blocks"

@@ -35,7 +35,7 @@ def option(parameter: str) -> str:
 
 
 def with_options(text: str) -> str:
-    """Return a message of the library in which ``{parameters}`` are replaced by options.
+    """Return a message of the library with ``{parameters}`` replaced by options.
 
     >>> with_options("the far field is cut off; set {far_field}")
     'the far field is cut off; set --far-field'

@@ -36,9 +36,15 @@ SAME_ERRORS = 3
 class Session:
     """Prints messages, and keeps the largest exit code.
 
-    Tables and results for programs (`as_json`) are printed on standard output, everything else on standard
-    error. With `quiet` only warnings and errors are printed, with `debug` also the tracebacks of failed
-    members. A terminal also shows a line of progress.
+    Tables and results for programs go to standard output, everything else to standard error. A terminal also
+    shows a
+    line of progress.
+
+    Parameters
+    ----------
+    quiet : whether only warnings and errors are printed.
+    as_json : whether results are printed as JSON.
+    debug : whether tracebacks of failed members are printed.
     """
 
     def __init__(self, *, quiet: bool = False, as_json: bool = False, debug: bool = False) -> None:
@@ -68,10 +74,7 @@ class Session:
 
     @contextlib.contextmanager
     def member(self, label: str, source: str | None = None) -> Iterator[None]:
-        """Return a context in which an error is reported for the member `label` of `source`.
-
-        The batch continues.
-        """
+        """Return a context that reports an error for the member `label` of `source`; the batch continues."""
         try:
             yield
         except (KeyboardInterrupt, GeneratorExit, BrokenPipeError):
@@ -80,10 +83,7 @@ class Session:
             self.fail(label, source or label, error, repeated=True)
 
     def fail(self, label: str, source: str, error: Exception, *, repeated: bool = False) -> None:
-        """Report a failed member.
-
-        `repeated`: the same error may occur for all members; it is then reported at most `SAME_ERRORS` times.
-        """
+        """Report a failed member; a `repeated` error, of many members, at most `SAME_ERRORS` times."""
         from meshonet_cli.terminal.summary import MemberRow
 
         self.failed += 1
@@ -141,7 +141,7 @@ class Session:
             self.judge(row)
 
     def show(self, report: Timed) -> None:
-        """Print a report that is itself the result of the command, on standard output, unless `quiet`."""
+        """Print a report that is the result of the command on standard output, unless `quiet`."""
         self.done += 1
         if self.as_json or not self.quiet:
             self.conclude(report)
@@ -170,7 +170,7 @@ class Session:
             print(quoted(text), flush=True)  # noqa: T201
 
     def check_output(self, output: str) -> None:
-        """Raise InputError if both results and JSON would be printed on standard output."""
+        """Raise InputError if both results and JSON would go to standard output."""
         self._stdout_is_taken = output == "-"
         if self.as_json and output == "-":
             raise InputError(
@@ -188,8 +188,7 @@ class Session:
     def watch(self) -> None:
         """Show the stage of a single input on a terminal, after one second.
 
-        It is not shown with JSON, nor if standard output is a pipe, because the reader of the pipe may show a
-        status too.
+        Nothing is shown with JSON, or if standard output is a pipe, whose reader may show a status too.
         """
         leads = os.environ.get("RANK", "0") == "0"  # of several processes under torchrun
         if self.live and leads and not (self.as_json or self.batch or self._line or _is_pipe(1)):
@@ -198,10 +197,7 @@ class Session:
             self._line = StageLine(self._draw, self._clear)
 
     def begin(self, name: str, count: int | None = None) -> None:
-        """Show the current member and the number of members, None if unknown.
-
-        Stop if a signal requested it.
-        """
+        """Show the current member and their number, None if unknown; stop if a signal requested it."""
         check()
         self.members += 1
         if self._line and self.batch:
@@ -282,7 +278,6 @@ class Session:
             self._line = None
 
     def _clear(self) -> None:
-        """Remove the status line, if it is still shown."""
         if self._shown:
             sys.stderr.write("\r\x1b[2K")
             sys.stderr.flush()

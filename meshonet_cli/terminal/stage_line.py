@@ -1,7 +1,6 @@
 """Status line for the stage of a single long input: ``12 s, grid: level 34/100, 23 s left``.
 
-A thread draws the line while the main thread runs kernels, which release the interpreter lock. It is used
-only for single inputs in the main process, because it would disturb the processes of a batch.
+A thread draws it while the main thread runs kernels, which release the interpreter lock.
 """
 
 import contextlib
@@ -43,10 +42,9 @@ class StageLine:
             self._clear()
 
     def text(self) -> str:
-        """Return the line: the elapsed time, the name of the stage, and its progress.
+        """Return the line: elapsed time, stage, and progress, or `detail` for a stage without steps.
 
-        For a stage without steps, `detail` replaces the progress. In the first second the line is only
-        `detail`.
+        In the first second the line is only `detail`.
         """
         stage, now = self._stage, time.perf_counter()
         spent = now - self._begun

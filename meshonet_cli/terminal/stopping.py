@@ -1,7 +1,6 @@
 """Reliable interrupts: Python drops an exception that a signal handler raises inside a clean-up callback.
 
-The handlers raise an exception immediately, like Python's own, and also record the signal. `check`, called
-between the members of a batch, raises a dropped exception again.
+Handlers therefore also record the signal, and `check`, called between members of a batch, raises it again.
 """
 
 import signal
@@ -19,8 +18,7 @@ _asked: list[BaseException] = []
 def install() -> None:
     """Install handlers: SIGINT raises KeyboardInterrupt, SIGTERM and SIGHUP raise SystemExit.
 
-    In this way, unfinished files are removed. A signal that was ignored when the program started (by nohup or
-    a shell's ``&``) stays ignored.
+    Unfinished files are then removed. A signal that was ignored at the start, as by nohup, stays ignored.
     """
     handlers = {"SIGINT": _interrupt, "SIGTERM": _terminate, "SIGHUP": _terminate}
     for name, handler in handlers.items():

@@ -1,4 +1,4 @@
-"""Table of many grids: one row each, and median, mean, 90th percentile and worst value of every column."""
+"""Table of many grids, with median, mean, 90th percentile and worst value of every column."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def gates_not_met(judgement: Judgement | None) -> list[str]:
 
 @dataclass(frozen=True)
 class MemberRow:
-    """A member of a batch with its values by column; there are no values if the member ended in an error."""
+    """A member of a batch with its values by column; none if it ended in an error."""
 
     label: str
     figures: Mapping[str, float] = field(default_factory=dict)

@@ -1,8 +1,6 @@
-"""The volume grid around an aircraft: levels from the body past the tip of the wing to the far field.
+"""The volume grid around an aircraft: levels from the body past the tips of wings to the far field.
 
-On each level the section of the wing is a hole with a collar around it; beyond the tip the hole is filled.
-Grid lines leave the body along the wing, so the junction of wing and body needs no march out of a concave
-edge. The other half of a whole aircraft is the mirror image.
+On each level the section of a wing is a hole with a collar around it; beyond the tip the hole is filled.
 """
 
 from collections.abc import Iterator, Sequence
@@ -30,13 +28,7 @@ from meshonet.solvers.aircraft.tip_cells import arcs_beyond, last_cells
 from meshonet.solvers.aircraft.wall_normals import across_tip, off_body, off_tip, off_wing
 from meshonet.solvers.rows.columns import resampled, with_first
 from meshonet.solvers.rows.span_lines import SpanLines
-from meshonet.solvers.rows.span_spacing import (
-    SAMPLES,
-    Ends,
-    LineArcs,
-    spaced_cells,
-    two_sided,
-)
+from meshonet.solvers.rows.span_spacing import SAMPLES, Ends, LineArcs, spaced_cells, two_sided
 
 _UNBOUNDED = 1e9  # length of the last cells of lines: they are limited by the growth ratio only
 _FLAT = 1e-13  # nodes nearer to the plane of symmetry than this fraction of the body's length lie in it
@@ -47,7 +39,7 @@ _FINE = 129  # number of levels of the table by which lines beyond the tip are m
 
 
 def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, float, tuple[str, ...]]:
-    """Return the grid of an aircraft or of its half, the growth ratio with which it was planned, and notes.
+    """Return the grid of an aircraft or of its half, the planned growth ratio, and notes.
 
     Raises InputError: a wing does not begin inside the body or does not leave it; wings are too close to each
     other.
@@ -94,20 +86,20 @@ def _flat_tips(aircraft: Aircraft) -> Iterator[str]:
 
 
 def _columns(patches: Sequence[Floats]) -> list[Indices]:
-    """Return the numbers (ni, nj) of the nodes of each patch (ni, nj, 3), patch after patch."""
+    """Return the node numbers (ni, nj) of each patch (ni, nj, 3), patch after patch."""
     sizes = [ni * nj for ni, nj, _ in (patch.shape for patch in patches)]
     numbers = np.split(np.arange(sum(sizes)), np.cumsum(sizes)[:-1])
     return [each.reshape(patch.shape[:2]) for each, patch in zip(numbers, patches, strict=True)]
 
 
 def _flat(points: Floats, aircraft: Aircraft) -> Floats:
-    """Return points (..., 3), those next to the plane of symmetry in it."""
+    """Return points (..., 3), those near the plane of symmetry moved into it."""
     points[np.abs(points[..., 2]) < _FLAT * aircraft.body.length, 2] = 0.0
     return points
 
 
 def _level(space: BodyMap, plan: AircraftPlan, k: int, first: float) -> list[Floats]:
-    """Return the patches (ni, nj, 3) of s, theta, zeta of the key level `k`."""
+    """Return the patches (ni, nj, 3) of s, theta, zeta on the key level `k`."""
     columns = [[each[k] for each in column] for column in plan.holes]
     patches = level_patches(space, plan.levels, columns)
     holes = [hole for column in columns for hole in column]
@@ -129,7 +121,7 @@ def _level(space: BodyMap, plan: AircraftPlan, k: int, first: float) -> list[Flo
 
 
 def _fade(columns: Floats) -> Floats:
-    """Return 1 at the first to 0 at the last of the nodes of columns (n, m, 2 or 3), by arc length."""
+    """Return weights (n, m) from 1 to 0 by arc length along columns of nodes (n, m, 2 or 3)."""
     return np.asarray(1.0 - arc_parts(columns))
 
 
@@ -161,31 +153,22 @@ def _along_wings(
 
 
 def _spaced(space: BodyMap, places: Floats, ends: Ends, growth: float) -> Floats:
-    """Return places (k, p, 3) on their lines again, at the arcs of `two_sided` in space."""
+    """Return places (k, p, 3) on the same lines, at the arcs of `two_sided` in space."""
     lines = np.moveaxis(places, 0, 1)
     for _ in range(_MEASURED):
-        lines = _resampled(lines, _arcs(space, lines), ends, growth, len(places) - 1)
+        arcs = arc_lengths(space.points(lines))
+        lines = sampled(lines, arcs, two_sided(arcs[:, -1], ends, growth, len(places) - 1))
     return np.moveaxis(lines, 1, 0)
 
 
-def _arcs(space: BodyMap, lines: Floats) -> Floats:
-    """Return the arc lengths (p, k) in space at places (p, k, 3) on lines."""
-    return arc_lengths(space.points(lines))
-
-
-def _resampled(lines: Floats, arcs: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return places (p, cells + 1, 3) on lines (p, k, 3) with `arcs` (p, k), at those of `two_sided`."""
-    return sampled(lines, arcs, two_sided(arcs[:, -1], ends, growth, cells))
-
-
 def _beyond_tip(space: BodyMap, tip: Floats, on_tip: Indices, first: Floats, growth: float) -> Floats:
-    """Return places (k, p, 3) on the levels from the tip to the far field, given those at the tip (p, 3).
+    """Return places (k, p, 3) from the tip (p, 3) to the far field; first cells are `first` (p,) high.
 
-    First cells are `first` (p,) high, to the last digits where lines are `on_tip`.
+    Where lines are `on_tip`, this height is exact.
     """
     table = np.repeat(tip[:, None], _FINE, axis=1)
     table[..., 2] += np.linspace(0.0, 1.0, _FINE) * (1.0 - tip[:, 2:])
-    arcs = _arcs(space, table)
+    arcs = arc_lengths(space.points(table))
     cells = spaced_cells(float(arcs[:, -1].max()), (float(first.min()), _UNBOUNDED), growth, _UNBOUNDED, 8)
     places = np.moveaxis(sampled(table, arcs, arcs_beyond(arcs[:, -1], first, cells)), 1, 0)
     places[1, on_tip] = at_height(space, places[0, on_tip], places[1, on_tip], float(first.min()))
@@ -195,7 +178,7 @@ def _beyond_tip(space: BodyMap, tip: Floats, on_tip: Indices, first: Floats, gro
 def _joined(
     aircraft: Aircraft, plan: AircraftPlan, lattices: Sequence[Indices], low: Floats, high: Floats
 ) -> Grid:
-    """Return the grid of points (k, p, 3) from the body to the tips, and from there to the far field.
+    """Return the grid of points (k, p, 3) from the body to the tips, and beyond.
 
     The first of `lattices` (ni, nj) are columns of all levels, the others fill the sections beyond the tips.
     """
@@ -213,7 +196,7 @@ def _joined(
 
 
 def _names(plan: AircraftPlan, aircraft: Aircraft) -> list[str]:
-    """Return the names of the blocks, after the wings and the parts of the body that they are beside."""
+    """Return the names of the blocks, by wing and by part of the body."""
     body, tips = aircraft.body.name, dict(aircraft.patches)
     wings = [wing.name for wing in plan.wings]
     names, firsts, members = list[str](), list[str](), iter(wings)
@@ -228,7 +211,7 @@ def _names(plan: AircraftPlan, aircraft: Aircraft) -> list[str]:
 
 
 def _right_handed(nodes: Floats) -> Block:
-    """Return the block of nodes (ni, nj, nk, 3), i reversed where it is left-handed."""
+    """Return the block of nodes (ni, nj, nk, 3), with i reversed if it is left-handed."""
     i, j, k = (
         nodes[tuple(1 if axis == other else 0 for other in range(3))] - nodes[0, 0, 0] for axis in range(3)
     )

@@ -1,4 +1,4 @@
-"""Nose and tail of a body on a level: a core in place of the pole, rows from there to a collar."""
+"""Nose and tail of a body on a level: a core at the pole, and rows from there to a collar."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -18,17 +18,15 @@ _POLE_CELL = 0.5  # ratio of the cells at nose and tail to the cells beside the 
 
 @dataclass(frozen=True, eq=False)
 class BodyEnd:
-    """The part of the grid at the nose or the tail; its nodes have the same s and theta on all levels.
-
-    A level is a surface of nodes around the body; the first level is the body itself.
+    """The part of the grid at the nose or the tail, with equal s and theta on all levels.
 
     Parameters
     ----------
-    theta : (n,) angles of the lines that leave the pole, the tip of the nose or of the tail.
-    core : block of nodes that covers the pole, in a plane with the polar coordinates s, theta.
-    at : s at which the rows of cells around the core end.
-    step : the last step of s in these rows.
-    cells : number of cells from the rows around the core to the next collar.
+    theta : (n,) angles of the lines from the pole, the tip of nose or tail.
+    core : block that covers the pole, in a plane with polar coordinates s, theta.
+    at : s at which the rows around the core end.
+    step : last step of s in these rows.
+    cells : number of cells from these rows to the next collar.
     """
 
     theta: Floats
@@ -39,9 +37,9 @@ class BodyEnd:
 
     @classmethod
     def of(cls, points: Points, sides: Sequence[Side]) -> Self:
-        """Return the end next to the first or last column of wings; `sides` are its nodes on some levels.
+        """Return the end beside the first or last column; `sides` are its nodes on some levels.
 
-        The first of these levels is the body. s is measured from the pole.
+        The first level is the body; s is measured from the pole.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))
@@ -61,7 +59,7 @@ class BodyEnd:
         )
 
     def _lines(self, side: Floats, last: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return places (n, 3) where lines to a `side` (n, 3) begin and end, and cells (n,) there in s."""
+        """Return begin and end (n, 3) of lines to a `side` (n, 3), and their end cells (n,) in s."""
         zeta = 0.5 * float(side[0, 2] + side[-1, 2])
         begin = np.stack([np.full(len(side), self.at), self.theta, np.full(len(side), zeta)], axis=1)
         return begin, side, np.full(len(side), self.step), last
@@ -69,8 +67,8 @@ class BodyEnd:
     def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
         """Return two patches, rows and core (., ., 3), between the `side` (n, 3) of a column and the pole.
 
-        `last` (n,) are the lengths of the cells at the side. All nodes are given by s, theta, zeta, with s
-        measured from the pole; `points` maps them to space.
+        `last` (n,) are the cells at the side. Nodes are s, theta, zeta, with s from the pole; `points` maps
+        them to space.
         """
         begin, end, *sizes = self._lines(side, last)
         lines = lines_between(points, begin, end, (sizes[0], sizes[1]), self.cells)

@@ -33,10 +33,11 @@ _COARSE = 8  # stride of the lines and levels of the table that are searched for
 
 
 class BodyMap:
-    """The map from (s, theta, zeta) to the space around a `body`, up to the distance `far` of the far field.
+    """The map from (s, theta, zeta) to the space around a `body`, up to the distance `far`.
 
-    s is 0 at the nose and the length of the body at the tail. theta is the angle about the axis: 0 at the
-    keel (bottom), pi at the crown (top). zeta is 0 on the body and 1 on the far field.
+    s is 0 at the nose and the body's length at the tail, theta 0 at the keel (bottom) and pi at the crown
+    (top), zeta 0 on
+    the body and 1 in the far field.
     """
 
     def __init__(self, body: Body, far: float) -> None:
@@ -54,7 +55,7 @@ class BodyMap:
         self._arcs = monotone_cubic(turns, body.arcs_near(table[:, 0]), even)[:, None, None]
 
     def points(self, places: Floats) -> Floats:
-        """Return the points (..., 3) in space at `places` (..., 3), which are s, theta, zeta."""
+        """Return the points (..., 3) in space at `places` (..., 3) of s, theta, zeta."""
         s, theta, zeta = np.moveaxis(places, -1, 0)
         x, r = np.moveaxis(self.meridional(s.ravel(), zeta.ravel()).reshape(*s.shape, 2), -1, 0)
         r = np.maximum(r, 0.0)
@@ -68,24 +69,23 @@ class BodyMap:
         return _between(self.table, along, across) + at_body * (away * away)[:, None]
 
     def arcs(self, s: Floats) -> Floats:
-        """Return the arc lengths (n,) along the meridian of the body, from the nose, at s (n,)."""
+        """Return the arc lengths (n,) along the meridian, from the nose, at s (n,)."""
         along = s * ((_LINES - 1) / self.body.length)
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
     def around(self, places: Floats) -> Floats:
-        """Return the length in space (...) of one radian of theta at each of the places (..., 3)."""
+        """Return the length in space (...) of one radian of theta at places (..., 3)."""
         points = self.points(places)
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angle (...), in radians, of the cross-section's tangent to the z axis at places."""
+        """Return the angle (...) in radians from the z axis to the cross-section at places (..., 3)."""
         return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
         """Return s, theta, zeta (..., 3) of points (..., 3), by Newton's method.
 
-        The iteration starts from s, theta, zeta in `near` (..., 3); if None, from the nearest nodes of the
-        table.
+        It starts from the places `near` (..., 3); None: from the nearest nodes of the table.
         """
         y, z = points[..., 1] - self.body.y, points[..., 2]
         theta = arctan2(z, -y)
@@ -103,7 +103,7 @@ class BodyMap:
         return np.stack([s, theta.ravel(), zeta], axis=-1).reshape(points.shape)
 
     def _nearest(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return s and zeta (n,) of the nodes of the coarse table that are nearest to points (n, 2)."""
+        """Return s and zeta (n,) of the nearest nodes of the coarse table to points (n, 2)."""
         coarse = self.table[::_COARSE, ::_COARSE]
         nearest = nearest_points(points, np.ascontiguousarray(coarse.reshape(-1, 2)))[0]
         s, zeta = np.divmod(nearest, coarse.shape[1])
@@ -111,10 +111,7 @@ class BodyMap:
 
 
 def _boundary(outline: Outline, far: float) -> Boundary:
-    """Return the boundary around a meridian, with nodes from which lines leave it at right angles.
-
-    Around a needle, over 19 times as long as thick and pointed at both ends, these are not known.
-    """
+    """Return the boundary around a meridian, with nodes where lines leave at right angles if possible."""
     sampling = Sampling(_AROUND, _LEVELS, topology="o", spacing="conformal", far_field=far)
     try:
         return outline.boundary(sampling)
@@ -123,7 +120,7 @@ def _boundary(outline: Outline, far: float) -> Boundary:
 
 
 def _upper_half(nodes: Floats, body: Body) -> Floats:
-    """Return the lines (n, levels, 2) of a grid around a closed meridian with r >= 0, from nose to tail."""
+    """Return the lines (n, levels, 2) with r >= 0 of a grid around a closed meridian, from nose to tail."""
     half = (len(nodes) - 1) // 2
     mirrored = 0.5 * (nodes + nodes[::-1] * [1.0, -1.0])
     nose = int(mirrored[: half + 1, 0, 0].argmin())

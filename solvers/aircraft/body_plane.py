@@ -41,7 +41,7 @@ class LevelPlan:
 
     Parameters
     ----------
-    columns : plans of the columns (each has a wing, a fin, or a fin above a wing), ordered from nose to tail.
+    columns : plans of the columns, from nose to tail.
     between : number of cells between each column and the next.
     ends : nose and tail.
     """
@@ -57,12 +57,12 @@ class LevelPlan:
 
     @property
     def collars(self) -> tuple[CollarPlan, ...]:
-        """The plans of the collars of all wings and fins."""
+        """Plans of the collars of all wings and fins."""
         return tuple(collar for column in self.columns for collar in column.collars)
 
     @property
     def collar_patches(self) -> tuple[int, ...]:
-        """For each wing and fin, the index of the patch that is its collar."""
+        """Index of the patch that is the collar of each wing and fin."""
         out, begin = [], 0
         for column in self.columns:
             out += [begin, begin + column.patches - 1][: len(column.collars)]
@@ -73,10 +73,14 @@ class LevelPlan:
 def planned(
     space: BodyMap, holes: Sequence[Sequence[Sequence[Hole]]], first: float, growth: float
 ) -> LevelPlan:
-    """Return numbers of cells that suit all `holes`, which are the sections of wings on some levels.
+    """Return numbers of cells that suit the sections of wings on some levels.
 
-    `holes` is indexed by column (from nose to tail), by wing of the column, and by level (the first is the
-    body). `first` is the height of first cells, `growth` the largest growth ratio.
+    Parameters
+    ----------
+    space : map around the body.
+    holes : sections by column from nose to tail, by wing of the column, and by level; the first level is the
+        body.
+    first, growth : height of first cells, and largest growth ratio.
     """
     plans, levels = zip(*(planned_column(each, first, growth) for each in holes), strict=True)
     columns = _with_equal_lines(plans)
@@ -102,7 +106,7 @@ def planned(
 
 
 def _cells_between(space: BodyMap, sides: Sequence[Side], others: Sequence[Side]) -> int:
-    """Return the number of cells from one column to the next, judged by all lines on some levels."""
+    """Return the number of cells between two columns, from their lines on some levels."""
     (begin, first), (end, last) = (
         tuple(np.concatenate(each) for each in zip(*some, strict=True)) for some in (sides, others)
     )
@@ -110,19 +114,18 @@ def _cells_between(space: BodyMap, sides: Sequence[Side], others: Sequence[Side]
 
 
 def _points_from_tail(space: BodyMap) -> Points:
-    """Return the map to space of places whose s is counted from the tail."""
     return lambda places: space.points(_from_tail(places, space.body.length))
 
 
 def _with_equal_lines(plans: Sequence[ColumnPlan]) -> tuple[ColumnPlan, ...]:
-    """Return the plans with wider bands, so that as many lines leave each column as come to the next one."""
+    """Return the plans with bands so wide that as many lines leave each column as reach the next."""
     more = np.cumsum([0] + [a.beside[1] - b.beside[0] for a, b in pairwise(plans)])
     bands = max(plan.bands - n for plan, n in zip(plans, more.tolist(), strict=True)) + more
     return tuple(plan.with_bands(cells) for plan, cells in zip(plans, bands.tolist(), strict=True))
 
 
 def _level_with_fin(columns: Sequence[ColumnPlan], plans: Sequence[ColumnPlan]) -> list[ColumnPlan]:
-    """Return columns of which those ahead of a fin above a wing have as many lines below as that.
+    """Return columns with as many lines below as the column of a wing with a fin behind them.
 
     They keep at least the bands of `plans`.
     """
@@ -138,10 +141,10 @@ def _level_with_fin(columns: Sequence[ColumnPlan], plans: Sequence[ColumnPlan]) 
 
 
 def level_patches(space: BodyMap, plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floats]:
-    """Return the patches (ni, nj, 3), s, theta, zeta of their nodes, of one level around its holes.
+    """Return the patches (ni, nj, 3) of s, theta, zeta of one level around its `holes`.
 
-    The order is: the patches of the columns, from nose to tail; the patches between columns; rows and core of
-    the nose; rows and core of the tail.
+    Their order: those of the columns from nose to tail; between columns; rows and core of the nose, then of
+    the tail.
     """
     levels = _beside_fins([ColumnLevel.of(*each) for each in zip(plan.columns, holes, strict=True)])
     patches = [patch for level in levels for patch in level.patches()]
@@ -156,7 +159,7 @@ def level_patches(space: BodyMap, plan: LevelPlan, holes: Sequence[Sequence[Hole
 
 
 def _beside_fins(levels: Sequence[ColumnLevel]) -> list[ColumnLevel]:
-    """Return the columns, where those of wings next to fins, and of fins next to wings, differ less."""
+    """Return the columns, with more similar zeta where one has a fin and the next has none."""
     out = list(levels)
     for k, level in enumerate(levels):
         near = [other for other in (k - 1, k + 1) if 0 <= other < len(levels)]
@@ -170,5 +173,5 @@ def _beside_fins(levels: Sequence[ColumnLevel]) -> list[ColumnLevel]:
 
 
 def _from_tail(nodes: Floats, length: float) -> Floats:
-    """Return places (..., 3) with s counted from the tail, or back."""
+    """Return places (..., 3) with s counted from the other end."""
     return nodes * [-1.0, 1.0, 1.0] + [length, 0.0, 0.0]

@@ -1,14 +1,8 @@
 """The collar of a wing on a level around a body: a ring of cells between its section and a rectangle.
 
-::
-
-    theta                             lines of an elliptic grid, turned to the normals at the section, with
-      ^   +------------------+        first cells of a given height. The corners of the rectangle are ends of
-      |   |  .------.___     |        lines from nodes near nose and trailing edge; those between them end at
-      |   | (          _>    |        the sides before the nose and behind the trailing edge.
-      |   |  '-----''`       |
-      |   +------------------+
-      +--------------------> s
+Lines are those of an elliptic grid, turned to the normals of the section. Lines from nodes near nose and
+trailing
+edge end at the corners of the rectangle.
 """
 
 import math
@@ -28,11 +22,7 @@ from meshonet.solvers.rows.span_spacing import smooth_arcs
 from meshonet.solvers.stacking.tip import least_sine
 
 MARGIN = 0.28
-"""Smallest distance of a collar's outer rectangle from the section, in chords, if the body is long enough.
-
-It is larger near the tip, where nose, tail, keel and crown are far away, so that fewer cells are needed
-between.
-"""
+"""Smallest distance of the rectangle from the section in chords, on long bodies; more near the tip."""
 _SHARE = 0.5  # largest fraction of the way from the section to nose, tail, keel or crown that a collar takes
 _SHORTEST = 0.35  # smallest ratio of cells on the short sides of the rectangle to those on its long sides
 _SHIFT = 0.3  # largest shift of the middle of a short side towards nose or trailing edge, in half its length
@@ -49,7 +39,7 @@ Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True)
 class Rectangle:
-    """The rectangle around the section of a wing: smallest and largest s, smallest and largest theta."""
+    """The rectangle around the section of a wing, by its limits of s and theta."""
 
     front: float
     back: float
@@ -58,10 +48,10 @@ class Rectangle:
 
 
 def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
-    """Return the rectangle, in lengths in space, around the `section` (n, 2) of a wing in s and theta.
+    """Return the rectangle, in lengths in space, around a `section` (n, 2) of s and theta.
 
-    `within` are limits of s and theta around the section; the rectangle covers at most half of the distance
-    from the section to each limit. `scale` (2,) is the length in space of a unit of s, and of theta.
+    It covers at most half of the distance to the limits `within`. `scale` (2,) is the length of a unit of s
+    and theta.
     """
     (front, low), (back, high) = (section * scale).min(axis=0), (section * scale).max(axis=0)
     (begin, end), (bottom, top) = (
@@ -75,13 +65,12 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return two counts that define the nodes of a `root` from which lines lead to the corners of `box`.
+    """Return the numbers of steps along a `root` to the nodes whose lines lead to the corners of `box`.
 
-    The first count is the number of steps along the root from the middle of the trailing edge to the nodes
-    for the two rear corners, upwards and downwards. The second is the number of steps from the middle of the
-    nose to the nodes for the two front corners. Counts are at least `fewest`, and cells on neighbouring sides
-    of the rectangle must have similar lengths. Of all such counts, those are chosen whose nodes have normals
-    that point most directly at the corners.
+    The first is counted from the middle of the trailing edge, the second from the nose, both upwards and
+    downwards. They
+    are at least `fewest`, and cells beside a corner have similar lengths. Normals point most directly to the
+    corners.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -102,7 +91,7 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return the cell lengths on two sides of a rectangle: the rear side and the front side.
+    """Return the cell lengths on the rear and on the front side of a rectangle.
 
     `corners` is the result of `corner_nodes`.
     """
@@ -111,10 +100,10 @@ def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]
 
 
 def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats:
-    """Return the nodes (n, 2) on the rectangle `box`; lines from the nodes of a `root` (n, 2) end there.
+    """Return the nodes (n, 2) on the rectangle `box` at which lines from a `root` (n, 2) end.
 
-    The root is a closed curve. It starts at the middle of the trailing edge and runs first along the side of
-    larger theta. `corners` is the result of `corner_nodes`.
+    The root starts in the middle of the trailing edge and runs to larger theta. `corners`: see
+    `corner_nodes`.
     """
     half = (len(root) - 1) // 2
     edge, nose = corners
@@ -143,7 +132,7 @@ def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats
 
 
 def _shifted(places: Floats, box: Rectangle, towards: float) -> Floats:
-    """Return places (n,) on a short side of a rectangle, its middle moved `towards` another place."""
+    """Return places (n,) on a short side of a rectangle, its middle moved `towards` a place."""
     middle, half = 0.5 * (box.low + box.high), 0.5 * (box.high - box.low)
     t = (places - middle) / half
     share = min(max((towards - middle) / half, -_SHIFT), _SHIFT)
@@ -155,10 +144,12 @@ def collar(
 ) -> tuple[Floats, float]:
     """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and a sine.
 
-    Cells have the height `first` at the root and `last` (n,) at the outer loop. With `straight` = 0 the lines
-    from root to outer loop are those of an elliptic grid; with 1 they are parabolas that start along the
-    normals of the root; values between 0 and 1 give weighted means. The second result is the smallest sine of
-    an angle between these lines and the lines around the root, before nodes are distributed along the lines.
+    The sine is the smallest between lines across and around, before nodes are placed.
+
+    Parameters
+    ----------
+    first, last : cells at the root, and at the outer loop (n,).
+    straight : from 0, lines of an elliptic grid, to 1, parabolas along the normals of the root.
     """
     arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)
@@ -176,9 +167,9 @@ def collar(
 
 
 def _rows(arcs: Floats, rows: int, first: float, last: Floats) -> Floats:
-    """Return arcs (n, rows + 1) of nodes on lines (n, m) of the elliptic grid, with `first` and `last` cells.
+    """Return arcs (n, rows + 1) of nodes on lines with arcs (n, m) of the elliptic grid.
 
-    In the middle of the collar they are nearly on rows of that grid, which turn corners smoothly.
+    In the middle of the collar nodes are nearly on rows of that grid, which turn corners smoothly.
     """
     own = smooth_arcs(arcs[:, -1], (first, last), rows)
     mean = own.mean(axis=0)
@@ -196,7 +187,7 @@ def _rows(arcs: Floats, rows: int, first: float, last: Floats) -> Floats:
 
 
 def lengths(root: Floats, outer: Floats) -> Floats:
-    """Return the lengths (n,) of the lines of a collar between the loops `root` and `outer` (n, 2)."""
+    """Return the lengths (n,) of the lines of a collar between two loops (n, 2)."""
     return _lines(root, outer)[0][:, -1]
 
 
@@ -215,7 +206,7 @@ def _lines(root: Floats, outer: Floats, straight: float = 0.0) -> tuple[Floats, 
 
 
 def _normals(loop: Floats) -> Floats:
-    """Return unit normals (n, 2) of a closed loop, counter-clockwise, away from its inside, smoothed."""
+    """Return smoothed outward unit normals (n, 2) of a closed counter-clockwise loop."""
     ring = loop[:-1]
     after, before = rolled(ring, -1) - ring, ring - rolled(ring, 1)
     tangent = after / np.hypot(*after.T)[:, None] + before / np.hypot(*before.T)[:, None]

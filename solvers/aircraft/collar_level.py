@@ -42,12 +42,11 @@ class Hole:
 
     Parameters
     ----------
-    section : (n, 2) s and theta of the nodes on the section.
-    scale : (2,) length in space of a unit of s, and of a unit of theta, at the section.
-    zeta : mean zeta of the section, which is also the zeta of the level around it.
+    section : (n, 2) s and theta of its nodes.
+    scale : (2,) length in space of a unit of s, and of theta.
+    zeta : mean zeta of the section and of the level around it.
     within : limits of s and theta for the collar.
-    fin : whether this is the section of a fin. Its middle line is on the crown, so that only one half of its
-        collar is in the grid.
+    fin : whether it belongs to a fin, whose middle is on the crown; half of its collar is in the grid.
     below : theta at which the cells below the collar end.
     """
 
@@ -60,7 +59,7 @@ class Hole:
 
     @cached_property
     def box(self) -> Rectangle:
-        """The rectangle around the section, in lengths in space."""
+        """Rectangle around the section, in lengths in space."""
         return rectangle(self.section, self.within, self.scale)
 
     @property
@@ -70,7 +69,7 @@ class Hole:
 
     @property
     def bands(self) -> tuple[float, float]:
-        """Lengths in space from the rectangle to keel and crown, or to where the next wing's part begins."""
+        """Lengths in space from the rectangle to keel and crown, or to the next wing."""
         bottom, top = (theta * float(self.scale[1]) for theta in (self.below, self.within[1][1]))
         if self.fin:
             top = self.box.high + self.box.low - bottom
@@ -79,19 +78,17 @@ class Hole:
 
 @dataclass(frozen=True, eq=False)
 class CollarPlan:
-    """Numbers of cells of the collar of a wing, which are the same on all levels.
+    """Numbers of cells of a collar, the same on all levels.
 
     Parameters
     ----------
-    edge, nose : the two counts of `corner_nodes`.
-    rows : cells across a collar.
-    low, top : numbers of cells from the keel to a collar, and from the collar to the crown. Between a wing
-        and the fin above it, `top` of the wing and `low` of the fin are the same.
+    edge, nose : the counts of `corner_nodes`.
+    rows : cells across the collar.
+    low, top : cells from the keel to the collar, and from the collar to the crown or to a fin above.
     first : height of the cells at the wing.
-    straight : weight of straight lines in the collars (`collar`).
+    straight : weight of straight lines (`collar`).
     sine : smallest sine of an angle in the collars.
-    widest : largest ratio of the cell next to the collar, above or below it, to the mean of the cells from
-        the collar to the crown or to the keel.
+    widest : largest ratio of the cells above and below the collar to their mean.
     """
 
     edge: int
@@ -106,7 +103,7 @@ class CollarPlan:
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
-    """Return the two counts of `corner_nodes`, each as a mean over `holes`."""
+    """Return the counts of `corner_nodes`, as means over `holes`."""
     corners = [corner_nodes(hole.plane, hole.box, _CORNER) for hole in holes]
     edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
     return edge, nose
@@ -115,10 +112,9 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> tuple[CollarPlan, list[CollarLevel]]:
-    """Return the plan for the collars of a wing on some levels, and the collars themselves.
+    """Return the plan for the collars around `holes` from the root on, and the collars.
 
-    `holes` are its sections on these levels, beginning at the root. At first, the plan has only few cells
-    above and below the collars.
+    The plan has the fewest cells above and below the collars.
     """
     edge, nose = corners
     plan = CollarPlan(edge, nose, 4, FEWEST, FEWEST, first)
@@ -149,9 +145,8 @@ class CollarLevel:
     ----------
     plan, hole : numbers of cells, and the section.
     ring : (n, rows + 1, 2) nodes of the collar, in lengths in space.
-    between : smallest sine of an angle between grid lines of the collar, before nodes are distributed along
-        the lines.
-    last : lengths in space of the outermost cells of the collar: before, below, above and behind the section.
+    between : smallest sine between its lines, before nodes are placed on them.
+    last : outermost cells in space: before, below, above and behind the section.
     """
 
     plan: CollarPlan
@@ -162,7 +157,7 @@ class CollarLevel:
 
     @classmethod
     def of(cls, plan: CollarPlan, hole: Hole) -> CollarLevel:
-        """Return the level of a hole."""
+        """Return the collar of a hole."""
         plane, box = hole.plane, hole.box
         edge, nose, half = plan.edge, plan.nose, (len(plane) - 1) // 2
         outer = outer_loop(plane, box, (edge, nose))
@@ -194,16 +189,13 @@ class CollarLevel:
 
     @property
     def sides(self) -> tuple[float, float]:
-        """Least and largest s of the rectangle."""
+        """Smallest and largest s of the rectangle."""
         unit = float(self.hole.scale[0])
         return self.hole.box.front / unit, self.hole.box.back / unit
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Lengths in s of the first cells outside the rectangle, before and behind it.
-
-        They lie between the lengths of the cells inside the collar and those of the cells above and below it.
-        """
+        """Lengths in s of the first cells outside the rectangle, before and behind it."""
         behind, before = outer_cells(self.hole.box, (self.plan.edge, self.plan.nose))
         unit = float(self.hole.scale[0])
         ahead, aft = (math.sqrt(a * b) for a, b in ((self.last[0], before), (self.last[3], behind)))
@@ -211,11 +203,7 @@ class CollarLevel:
 
     @cached_property
     def beside(self) -> tuple[float, float]:
-        """Lengths in space of the first cells outside the rectangle, below and above it.
-
-        They lie between the length of the outermost cells of the collar and that of the cells beside its
-        corners.
-        """
+        """Lengths in space of the first cells outside the rectangle, below and above it."""
         outer, half = self.ring[:, -1, 1], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         corners = (half + nose, len(outer) - 1 - edge), (half - nose, edge)
@@ -230,7 +218,7 @@ class CollarLevel:
 
     @cached_property
     def low_and_top(self) -> tuple[Floats, Floats]:
-        """Theta of the nodes from the keel to the rectangle, and from the rectangle to the crown."""
+        """Theta of the nodes from the keel to the rectangle, and from there to the crown."""
         out = []
         for cells, way, step in zip(
             (self.plan.low, self.plan.top), self.hole.bands, self.beside, strict=True
@@ -244,7 +232,7 @@ class CollarLevel:
 
     @property
     def across(self) -> tuple[Floats, Floats]:
-        """Theta of the nodes on the front side and on the back side of the rectangle, in ascending order."""
+        """Ascending theta of the nodes on the front and on the back of the rectangle."""
         outer, half, rho = self.ring[:, -1, 1], (len(self.ring) - 1) // 2, float(self.hole.scale[1])
         edge, nose = self.plan.edge, self.plan.nose
         front = outer[half + nose : half - nose - 1 : -1] / rho
@@ -257,16 +245,13 @@ class CollarLevel:
 
     @property
     def long_sides(self) -> tuple[Floats, Floats]:
-        """The s of the nodes on the lower side and on the upper side of the rectangle, from back to front."""
+        """The s of the nodes on the lower and on the upper side of the rectangle, from back to front."""
         s, half = self.ring[:, -1, 0] / self.hole.scale[0], (len(self.ring) - 1) // 2
         edge, nose = self.plan.edge, self.plan.nose
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]
 
     def collar(self) -> Floats:
-        """Return the nodes (n, rows + 1, 2) of the collar.
-
-        For a fin, only the half up to the crown is returned, from the nose to the trailing edge.
-        """
+        """Return the nodes (n, rows + 1, 2) of the collar; of a fin, the half from nose to trailing edge."""
         ring = self.ring / self.hole.scale
         if not self.hole.fin:
             return ring
@@ -276,13 +261,13 @@ class CollarLevel:
 
 
 def _longest(way: float, cells: int, widest: float = math.inf) -> float:
-    """Return the longest first cell of a band, whose cells may shrink: at most `widest` times their mean."""
+    """Return the longest first cell of a band: at most `widest` means, and not shrinking too fast."""
     shrinking = way * (1.0 - 1.0 / WIDEST) / (1.0 - math.pow(WIDEST, -cells))
     return min(shrinking, way * widest / cells)
 
 
 def _graded(sizes: Floats) -> Floats:
-    """Return sizes (n,) around a closed loop, made smaller until neighbours differ little."""
+    """Return sizes (n,) around a closed loop, reduced until neighbours are similar."""
     for _ in range(len(sizes)):
         least = _EVEN * np.minimum(np.roll(sizes[:-1], 1), np.roll(sizes[:-1], -1))
         sizes = np.minimum(sizes, np.append(least, least[:1]))

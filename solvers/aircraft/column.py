@@ -43,12 +43,12 @@ _HALVINGS = 40  # steps of the bisection for the factor of the cells below a fin
 
 @dataclass(frozen=True, eq=False)
 class ColumnPlan:
-    """Numbers of cells of a column, which are the same on all levels.
+    """Numbers of cells of a column, the same on all levels.
 
     Parameters
     ----------
-    collars : plans of the collars of the wing, of the fin, or of both; the fin is last.
-    fin : whether the column has a fin.
+    collars : plans of the collars of the wing, of the fin, or of both, the fin last.
+    fin : whether there is a fin.
     """
 
     collars: tuple[CollarPlan, ...]
@@ -61,7 +61,7 @@ class ColumnPlan:
 
     @property
     def bands(self) -> int:
-        """Number of cells above and below the collars, in the direction from keel to crown."""
+        """Number of cells above and below the collars, from keel to crown."""
         return self.collars[0].low + (0 if self.fin_alone else self.collars[0].top)
 
     @property
@@ -71,15 +71,15 @@ class ColumnPlan:
 
     @property
     def beside(self) -> tuple[int, int]:
-        """Numbers of cells from keel to crown: on the front side, and on the back side of the column."""
+        """Numbers of cells from keel to crown on the front and on the back."""
         shares = [1 if self.fin and each is self.collars[-1] else 2 for each in self.collars]
         before = sum(n * each.nose for n, each in zip(shares, self.collars, strict=True))
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))
 
     def with_bands(self, cells: int, low: int | None = None) -> ColumnPlan:
-        """Return the plan with `cells` cells above and below the collars in total, `low` of them below.
+        """Return the plan with `cells` cells above and below the collars, `low` of them below.
 
-        If `low` is None, the ratio of the numbers above and below stays the same.
+        None keeps the ratio of cells above and below.
         """
         first, *others = self.collars
         if self.fin_alone:
@@ -90,20 +90,14 @@ class ColumnPlan:
         return replace(self, collars=(replace(first, low=low, top=top), *fins))
 
     def evened(self, widest: float) -> ColumnPlan:
-        """Return the plan with `widest` as the largest ratio of the cells next to collars to the mean cell.
-
-        The mean is that of the cells from the collar to the keel or to the crown.
-        """
+        """Return the plan with `widest` in all its collars."""
         return replace(self, collars=tuple(replace(each, widest=widest) for each in self.collars))
 
 
 def planned_column(
     holes: Sequence[Sequence[Hole]], first: float, growth: float
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
-    """Return the plan for the column of a wing, a fin, or both, and the columns on some levels.
-
-    `holes` are the sections on these levels, beginning at the root.
-    """
+    """Return the plan for the column around `holes`, by wing and level, and its levels."""
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)
     plan = ColumnPlan(collars, holes[-1][0].fin)
@@ -121,10 +115,10 @@ class ColumnLevel:
 
     Parameters
     ----------
-    plan : numbers of cells of the column.
-    levels : the collars on this level: of the wing, of the fin, or of both; that of the fin is last.
-    below : theta of the nodes from the keel to the first collar, if they are prescribed.
-    keel, crown : zeta at the keel and at the crown, if they differ from the zeta of the first collar.
+    plan : numbers of cells.
+    levels : the collars: of the wing, of the fin, or of both, the fin last.
+    below : prescribed theta of the nodes from the keel to the first collar.
+    keel, crown : zeta there, if other than at the first collar.
     """
 
     plan: ColumnPlan
@@ -135,32 +129,29 @@ class ColumnLevel:
 
     @classmethod
     def of(cls, plan: ColumnPlan, holes: Sequence[Hole]) -> ColumnLevel:
-        """Return the column around `holes`; if one is the section of a fin, it is the last."""
+        """Return the column around `holes`, that of a fin last."""
         levels = (CollarLevel.of(*each) for each in zip(plan.collars, holes, strict=True))
         return cls(plan, tuple(levels))
 
     def with_counts(self, plan: ColumnPlan) -> ColumnLevel:
-        """Return the column with the numbers of cells of another `plan`; those inside its collars stay."""
+        """Return the column with the numbers of cells of another `plan`, except inside its collars."""
         levels = (replace(each, plan=counts) for each, counts in zip(self.levels, plan.collars, strict=True))
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return this column of a wing beside that of a `fin`: zeta at the crown becomes the mean of both."""
+        """Return this column of a wing with zeta at the crown between its own and that of a `fin`."""
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
-        """Return this column of a fin without a wing, changed beside the column of a `wing`.
-
-        The nodes below the fin have nearly the theta of those on the `side` of the wing's column.
-        """
+        """Return this column of a fin, with nodes below it at nearly the theta of a wing's `side`."""
         own, others = self.low, side[0][: len(self.low), 1]
         keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
         return replace(self, below=_followed(own, others), keel=keel)
 
     @property
     def zeta(self) -> float:
-        """The zeta of the first collar."""
+        """Zeta of the first collar."""
         return self.levels[0].hole.zeta
 
     @property
@@ -169,7 +160,7 @@ class ColumnLevel:
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return the length in space from the wing's collar to the fin's, and of the cells at both ends."""
+        """Return the length in space from the wing's collar to the fin's, and of its first and last cell."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])
@@ -177,15 +168,12 @@ class ColumnLevel:
 
     @property
     def _gap(self) -> tuple[float, float]:
-        """Theta at which the wing's rectangle ends, and theta at which the fin's rectangle begins."""
+        """Theta at which the wing's rectangle ends and the fin's begins."""
         wing, fin = (each.hole for each in self.levels)
         return wing.box.high / float(wing.scale[1]), fin.box.low / float(fin.scale[1])
 
     def _above(self) -> tuple[Floats, Floats]:
-        """Return theta (n,) of lines from the first collar to that of a fin or the crown, and weights.
-
-        The blending weights (n,) rise smoothly from 0 at the first collar to 1 at the other end.
-        """
+        """Return theta (n,) of lines above the first collar, and weights (n,) from 0 to 1."""
         if len(self.levels) == 1:
             theta = self.levels[0].low_and_top[1]
             return theta, _fade(theta)
@@ -223,7 +211,6 @@ class ColumnLevel:
 
     @property
     def _keel_zeta(self) -> float:
-        """Zeta at the keel."""
         return self.zeta if self.keel is None else self.keel
 
     @property
@@ -249,14 +236,14 @@ class ColumnLevel:
 
 
 def _fade(theta: Floats) -> Floats:
-    """Return blending weights (n,), from 0 at the first of angles `theta` (n,) smoothly to 1 at the last."""
+    """Return smooth weights (n,) from 0 at the first to 1 at the last of angles (n,)."""
     return smooth_step((theta - theta[0]) / (theta[-1] - theta[0]))
 
 
 def _followed(own: Floats, others: Floats) -> Floats:
-    """Return angles (n,) whose cells are means of those of `own` and `others`, with weight `_FOLLOWING`.
+    """Return angles (n,) between `own` and `others`, with the last cell of `own`.
 
-    The last cell is that of `own`, and cells away from it change by a factor of at most `WIDEST` each.
+    Cells away from it change by at most the factor `WIDEST`.
     """
     mine, wanted = (log(np.diff(each)[::-1]) for each in (own, others))
     cone = log(np.float64(WIDEST)) * np.arange(len(mine))
@@ -273,10 +260,8 @@ def _followed(own: Floats, others: Floats) -> Floats:
 
 
 def _lattice(s: Floats, theta: Floats, zeta: Floats | float) -> Floats:
-    """Return nodes (m, n, 3) of s (m, n or 1), theta (n,) and zeta (n,)."""
     return np.stack(np.broadcast_arrays(s, theta[None], zeta), axis=-1)
 
 
 def _on(patch: Floats, zeta: float) -> Floats:
-    """Return nodes (ni, nj, 3) of a patch (ni, nj, 2) at zeta."""
     return np.concatenate([patch, np.full((*patch.shape[:2], 1), zeta)], axis=-1)

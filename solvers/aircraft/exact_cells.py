@@ -1,4 +1,4 @@
-"""First cells of a given height in space, of lines whose nodes are places in the map around a body."""
+"""First cells of given height in space, for lines in the map around a body."""
 
 import numpy as np
 
@@ -12,11 +12,11 @@ _INVERSES = 0.2, 5.0  # range of the reciprocal of the exponent
 
 
 def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Floats:
-    """Return s, theta, zeta (..., 3) of the points on lines at the distance `first` in space from the wall.
+    """Return the places (..., 3) at the distance `first` from `wall` on lines towards `beside` (..., 3).
 
-    Each line leads from `wall` to `beside` (..., 3), both s, theta, zeta. Near the wall, the distance is
-    proportional to a power of the fraction t of the line. The exponent (1 except at a pointed nose or tail)
-    is estimated from the last two trial values of t.
+    Places are s, theta, zeta. Distances near the wall are a power of the fraction t of the line; the
+    exponent, 1 except at
+    a pointed nose or tail, is estimated from the last two trial values of t.
     """
     away, foot = beside - wall, space.points(wall)
     scale = inverse = np.ones(away.shape[:-1])
@@ -33,10 +33,9 @@ def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Flo
 
 
 def between_walls(walls: tuple[Floats, Floats], beside: Floats, first: float) -> Floats:
-    """Return points (n, 3) at the distance `first` from the corresponding points (n, 3) of two `walls`.
+    """Return the points (n, 3) at the distance `first` from both `walls` (n, 3), on the side of `beside`.
 
-    Of all such points, those nearest to `beside` (n, 3) are returned. The two points on the walls must be at
-    most twice `first` apart.
+    The two points on the walls must be at most twice `first` apart.
     """
     middle, half = 0.5 * (walls[0] + walls[1]), 0.5 * (walls[1] - walls[0])
     away, square = beside - middle, (half * half).sum(axis=-1)

@@ -1,4 +1,4 @@
-"""The sections of wings on key levels, and the parts of the body that their collars have there."""
+"""Sections of wings on key levels, and the limits of their collars."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ _PART = 2.0 / 3.0  # a collar takes at most half of this fraction of the distanc
 def columns_of(
     space: BodyMap, wings: Sequence[WingLines], sections: Sequence[Floats]
 ) -> tuple[tuple[int, ...], ...]:
-    """Return, for each column from nose to tail, the indices of its wings.
+    """Return the indices of the wings of each column, from nose to tail.
 
-    `sections` (k, n, 3) are the sections of each wing on the key levels. A fin above a wing, or so near to it
-    along the body that there is no room between them, is in the column of the wing.
+    A fin above a wing, or close to it along the body, shares its column. `sections` (k, n, 3) are those on
+    key levels.
 
     Raises InputError: a fin above two wings.
     """
@@ -49,7 +49,7 @@ def columns_of(
 
 
 def _near(one: _Along, other: _Along) -> bool:
-    """Return whether none of two wings is before the other on all levels, with enough room between them."""
+    """Return whether two wings overlap along the body, or nearly so, on some level."""
     rooms = _room(one, other, _CLEAR_FIN), _room(other, one, _CLEAR_FIN)
     return not any(bool((gaps >= needed).all()) for gaps, needed in rooms)
 
@@ -58,19 +58,19 @@ Each = TypeVar("Each")
 
 
 def ordered(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[Each]:
-    """Return `values` (one per wing, by index) in the order in which `columns` list the indices."""
+    """Return `values`, one per wing by index, in the order of `columns`."""
     return [values[k] for column in columns for k in column]
 
 
 def grouped(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[list[Each]]:
-    """Return `values`, one per wing and already in the order of `columns`, as a list for each column."""
+    """Return `values`, one per wing in the order of `columns`, as a list for each column."""
     rest = iter(values)
     return [list(islice(rest, len(column))) for column in columns]
 
 
 @dataclass(frozen=True, eq=False)
 class _Along:
-    """What sections on key levels have along the body: least and largest s (k,), lengths of a unit of s."""
+    """Extent of sections along the body: least and largest s (k,), lengths of a unit of s (k,)."""
 
     front: Floats
     back: Floats
@@ -87,7 +87,7 @@ def _along(space: BodyMap, wing: WingLines, sections: Floats) -> _Along:
 
 
 def _room(before: _Along, after: _Along, clear: float = _CLEAR) -> tuple[Floats, Floats]:
-    """Return the gaps between two wings on levels (k,), and those that are needed."""
+    """Return the gaps between two wings on levels (k,), and the gaps needed."""
     gaps = (after.front - before.back) * np.minimum(before.scale, after.scale)
     return gaps, clear * np.minimum(before.chord, after.chord)
 
@@ -95,7 +95,7 @@ def _room(before: _Along, after: _Along, clear: float = _CLEAR) -> tuple[Floats,
 def holes_of(
     space: BodyMap, columns: Sequence[Sequence[WingLines]], sections: Sequence[Sequence[Floats]]
 ) -> tuple[tuple[tuple[Hole, ...], ...], ...]:
-    """Return the holes by column (from nose to tail), wing and key level; a hole is a section of a wing.
+    """Return the holes, which are sections of wings, by column from nose to tail, wing and key level.
 
     `sections` (k, n, 3) are the sections of each wing on these levels.
 
@@ -134,7 +134,7 @@ def holes_of(
 
 
 def _bounds(wings: Sequence[WingLines], sections: Sequence[Floats]) -> list[tuple[Floats, Floats]]:
-    """Return least and largest theta (k,) of the collars of wings in a column, if they took all of the way.
+    """Return limits of theta (k,) for the collars of a column's wings.
 
     Raises InputError: a wing that meets the fin above it.
     """
@@ -152,7 +152,7 @@ def _bounds(wings: Sequence[WingLines], sections: Sequence[Floats]) -> list[tupl
 def _holes(
     space: BodyMap, wing: WingLines, sections: Floats, within: Sequence[Within], *, above: bool
 ) -> tuple[Hole, ...]:
-    """Return the holes of a wing, or of a fin `above` one, whose sections on key levels are (k, n, 3)."""
+    """Return the holes of a wing, or of a fin `above` one, from sections (k, n, 3) on key levels."""
     loops = sections[..., :2]
     if wing.fin:
         image = loops[:, :0:-1] * [1.0, -1.0] + [0.0, 2.0 * np.pi]
@@ -164,7 +164,7 @@ def _holes(
 
 
 def _refuse_symmetric(wing: WingLines, sections: Floats, length: float) -> None:
-    """Raise InputError for sections (k, n, 3) of a wing that meet the plane of symmetry."""
+    """Raise InputError for a wing whose sections (k, n, 3) meet the plane of symmetry."""
     (s, theta, _), (far, high, _) = sections.min(axis=(0, 1)), sections.max(axis=(0, 1))
     if s <= 0.0 or far >= length or (not wing.fin and (theta <= 0.0 or high >= np.pi)):
         where = (
@@ -177,7 +177,7 @@ def _refuse_symmetric(wing: WingLines, sections: Floats, length: float) -> None:
 
 
 def _refuse_close(before: str, after: str, gaps: Floats, needed: Floats) -> None:
-    """Raise InputError where the gap between two wings (k,) is smaller than needed (k,) on a level."""
+    """Raise InputError if a gap between two wings (k,) is smaller than needed (k,)."""
     worst = int((gaps - needed).argmin())
     if gaps[worst] < needed[worst]:
         problem = f"{after} begins {gaps[worst]:.3g} behind the end of {before}"
@@ -188,7 +188,7 @@ def _refuse_close(before: str, after: str, gaps: Floats, needed: Floats) -> None
 
 
 def _scales(space: BodyMap, wing: WingLines, sections: Floats) -> Floats:
-    """Return the lengths in space (k, 2) of units of s and theta, the means over sections (k, n, 3)."""
+    """Return the mean lengths in space (k, 2) of a unit of s and theta on sections (k, n, 3)."""
     points, radius = space.points(sections), space.around(sections).mean(axis=1)
     other = -1 if wing.fin else (sections.shape[1] - 1) // 2
     chord = norms(points[:, 0] - points[:, other])

@@ -1,4 +1,4 @@
-"""Lines of a level between the sides of columns, or from there to nose and tail, with even cells in space."""
+"""Lines of a level between columns, or from there to nose and tail, with even cells in space."""
 
 from collections.abc import Callable
 from typing import TypeAlias
@@ -15,18 +15,15 @@ Points: TypeAlias = Callable[[Floats], Floats]
 """Function from places (..., 3) to points (..., 3) in space."""
 
 Side: TypeAlias = tuple[Floats, Floats]
-"""Nodes (n, 3), s, theta, zeta, on the front or back of a column, from the keel, and the cell lengths (n,)
-there in s.
-"""
+"""Nodes (n, 3) of s, theta, zeta from keel to crown beside a column, and the cell lengths (n,) there in s."""
 
 
 def lines_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats], cells: int
 ) -> Floats:
-    """Return nodes (n, cells + 1, 3) on n lines from `begin` (n, 3) to `end` (n, 3).
+    """Return nodes (n, cells + 1, 3) of s, theta, zeta on lines from `begin` to `end` (n, 3).
 
-    Nodes, `begin` and `end` are given by s, theta, zeta. Cell lengths in space change evenly along a line;
-    the lengths of the first and of the last cell in s are `sizes` (n,).
+    Cell lengths in space change evenly; the first and the last in s are `sizes` (n,).
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
     nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))
@@ -37,7 +34,7 @@ def lines_between(
 def ways_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats]
 ) -> tuple[Floats, tuple[Floats, Floats]]:
-    """Return the lengths (n,) in space: of the lines of `lines_between`, of their first and last cells."""
+    """Return the lengths (n,) in space of the lines of `lines_between`, and of their end cells."""
     _, arcs, ends = _measured(points, begin, end, sizes)
     return arcs[:, -1], ends
 
@@ -45,7 +42,7 @@ def ways_between(
 def _measured(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats]
 ) -> tuple[Floats, Floats, tuple[Floats, Floats]]:
-    """Return places (n, m, 3) on lines, arc lengths (n, m) there, first and last cells (n,) in space."""
+    """Return places (n, m, 3) and arc lengths (n, m) on lines, and end cells (n,) in space."""
     lines = _lines(begin, end)
     s, arcs = lines[..., 0], arc_lengths(points(lines))
     first, last = ((arcs[:, k + 1] - arcs[:, k]) / (s[:, k + 1] - s[:, k]) for k in (0, -2))
@@ -53,10 +50,7 @@ def _measured(
 
 
 def _lines(begin: Floats, end: Floats) -> Floats:
-    """Return places (n, m, 3) on lines from places (n, 3) to others, at even s.
-
-    What follows s changes smoothly from one to the other, on the part of the way that all lines share.
-    """
+    """Return places (n, m, 3) at even s on lines between places (n, 3); theta and zeta change smoothly."""
     along = begin[:, :1] + (end - begin)[:, :1] * np.linspace(0.0, 1.0, _FINE)
     first, last = float(along[:, 0].max()), float(along[:, -1].min())
     t = np.clip((along - first) / (last - first), 0.0, 1.0)[..., None]

@@ -1,8 +1,6 @@
-"""The space around a body given by cross-sections: the space around a similar body of revolution, displaced.
+"""The space around a lofted body: that around a similar body of revolution, displaced.
 
-Points on the body of revolution are moved to the sections. Away from the body the displacement decreases as
-the inverse distance from the axis, so that lines leave an ellipse at right angles; the differences in height
-between sections decrease towards the far field.
+Away from the body the displacement decreases as the inverse distance from the axis.
 """
 
 import numpy as np
@@ -23,10 +21,7 @@ _POLE = 1e-4  # distance from nose or tail, in body lengths, within which normal
 
 
 class LoftedMap(BodyMap):
-    """The map from (s, theta, zeta) to the space around a lofted `body`, up to the far field.
-
-    The three coordinates are those of `BodyMap`.
-    """
+    """The map from (s, theta, zeta) to the space around a lofted `body`; see `BodyMap`."""
 
     body: LoftedBody
 
@@ -41,7 +36,7 @@ class LoftedMap(BodyMap):
         self._fading = min(1.0, _FADING / more) if more > 0.0 else 1.0
 
     def points(self, places: Floats) -> Floats:
-        """Return the points (..., 3) in space at `places` (..., 3), which are s, theta, zeta."""
+        """Return the points (..., 3) in space at `places` (..., 3) of s, theta, zeta."""
         s, theta, zeta = np.moveaxis(places, -1, 0).reshape(3, -1)
         x, r = self.meridional(s, zeta).T
         r = np.maximum(r, 0.0)
@@ -72,34 +67,27 @@ class LoftedMap(BodyMap):
         return at.reshape(points.shape)
 
     def _first_places(self, points: Floats) -> Floats:
-        """Return places (n, 3) near points (n, 3): those around the body of revolution, at its own height."""
+        """Return places (n, 3) near points (n, 3), from the body of revolution."""
         _, _, middle = self.body.sizes(self.body.arc_at(points[:, 0]))
         lowered = points.copy()
         lowered[:, 1] -= middle - self.body.y
         return super().places(lowered)
 
     def around(self, places: Floats) -> Floats:
-        """Return the length in space (...) of one radian of theta at each of the places (..., 3)."""
+        """Return the length in space (...) of one radian of theta at places (..., 3)."""
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angles (...) in radians between z axis and cross-section of the body at places (..., 3).
-
-        The places lie on the body.
-        """
+        """Return the angle (...) in radians from the z axis to the cross-section at places (..., 3)."""
         around = np.abs(self._around(places))
         return np.asarray(arctan2(around[..., 1], around[..., 2]))
 
     def _around(self, places: Floats) -> Floats:
-        """Return the derivatives (..., 3) of points by theta at places (..., 3)."""
         step = np.array([0.0, _STEP, 0.0])
         return (self.points(places + step) - self.points(places - step)) / (2.0 * _STEP)
 
     def normals(self, foot: Floats) -> Floats:
-        """Return the unit normals (n, 3) of the body at points `foot` (n, 3), given by s, theta, zeta = 0.
-
-        At nose and tail, where meridians meet, the normal is the mean of the normals around the pole.
-        """
+        """Return unit normals (n, 3) of the body at places `foot` (n, 3) on it; at poles, mean normals."""
         length, normals = self.body.length, self._normals(_off_poles(foot, self.body.length))
         theta = np.linspace(0.0, np.pi, _AROUND)
         for end in (0.0, length):
@@ -109,7 +97,6 @@ class LoftedMap(BodyMap):
         return normals
 
     def _normals(self, places: Floats) -> Floats:
-        """Return unit normals (n, 3) of the body at places (n, 3) on it."""
         ds, dt = np.diag([_STEP * self.body.length, _STEP, 0.0])[:2]
         along, around = (self.points(places + step) - self.points(places - step) for step in (ds, dt))
         normal = np.cross(along, around)
@@ -117,14 +104,13 @@ class LoftedMap(BodyMap):
 
 
 def _off_poles(places: Floats, length: float) -> Floats:
-    """Return places (n, 3) a little away from nose and tail."""
     out = places.copy()
     out[:, 0] = np.clip(out[:, 0], _POLE * length, (1.0 - _POLE) * length)
     return out
 
 
 def _solved(columns: list[Floats], right: Floats) -> Floats:
-    """Return the solutions (n, 3) of systems with three `columns` (n, 3), by Cramer's rule."""
+    """Return the solutions (n, 3) of systems with three columns (n, 3), by Cramer's rule."""
     a, b, c = columns
     det = (a * np.cross(b, c)).sum(axis=1)
     parts = [(right * np.cross(b, c)), (right * np.cross(c, a)), (right * np.cross(a, b))]
@@ -137,10 +123,9 @@ def map_around(body: Body, far: float) -> BodyMap:
 
 
 def points_above(space: BodyMap, foot: Floats, first: float) -> Floats:
-    """Return the points (n, 3) on normals of the body at the distance `first` from it.
+    """Return the points (n, 3) at the distance `first` on normals of the body.
 
-    `foot` (n, 3) are s, theta, zeta = 0 of the points where the normals start. Around a body of revolution,
-    lines of constant s and theta are used, which are normal to the body.
+    `foot` (n, 3) are their places on the body. Lines of a body of revolution are normal to it.
     """
     if isinstance(space, LoftedMap):
         return np.asarray(space.points(foot) + first * space.normals(foot))

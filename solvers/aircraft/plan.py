@@ -1,4 +1,4 @@
-"""Plan of an aircraft grid before its nodes are made: lines of wings, sections on key levels, counts."""
+"""Plan of an aircraft grid: lines of wings, sections on key levels, counts."""
 
 import math
 from collections.abc import Iterator
@@ -23,9 +23,7 @@ from meshonet.solvers.rows.span_spacing import SAMPLES, spaced_cells
 from meshonet.solvers.stacking.wing_surface import DEFAULT_AROUND, DEFAULT_SPAN
 
 GROWTHS = 1.2, 1.225, 1.25
-"""Growth ratios away from walls if none is given: the first, or with a given number of cells the first that
-fits.
-"""
+"""Growth ratios if none is given: the first, or the first that permits the number of cells."""
 _PLANNED = (0, 4, 8, 12, 16)  # number of key levels from which numbers of cells are derived
 _TRIED = 59, 97  # node counts around a wing from which others are derived; with fewer, cells grow too much
 _ALONG = (DEFAULT_SPAN - 1) / (DEFAULT_AROUND - 1)  # cells along the span per cell around sections
@@ -41,13 +39,12 @@ class AircraftPlan:
 
     Parameters
     ----------
-    wings : lines along the span of each wing, in order from nose to tail; a fin comes after the wing below
-        it.
-    sections : for each wing, (SAMPLES, n, 3) s, theta and zeta of the nodes around it on the key levels.
-    holes : the section of a wing, by column, wing and key level.
+    wings : lines along the span of each wing, from nose to tail; a fin follows the wing below it.
+    sections : (SAMPLES, n, 3) s, theta and zeta around each wing on the key levels.
+    holes : sections by column, wing and key level.
     levels : numbers of cells that are the same on all levels.
-    tips : for each wing, the nodes (m, k, 3) of the ring and of the core that fill the section at its tip.
-    span, beyond : numbers of cells from the body to the tips, and from the tips to the far field.
+    tips : nodes (m, k, 3) of ring and core that fill the tip of each wing.
+    span, beyond : numbers of cells from the body to the tips, and beyond.
     growth : largest growth ratio away from walls.
     halves : 2 if the grid has both halves of the aircraft, else 1.
     """
@@ -64,12 +61,11 @@ class AircraftPlan:
 
     @classmethod
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> Self:
-        """Return the plan for `around` nodes around each wing.
-
-        If the request has no growth ratio, the first of `GROWTHS` is used.
+        """Return the plan for `around` nodes around each wing; the default growth is the first of `GROWTHS`.
 
         Raises InputError: a wing does not begin inside the body or does not leave it; wings are too close to
-        each other; a root is too close to keel or crown.
+        each other; a
+        root is too close to keel or crown.
         """
         chord = aircraft.wing.chord
         first, growth = request.height() * chord, request.growth or GROWTHS[0]
@@ -104,7 +100,7 @@ class AircraftPlan:
 
     @property
     def cells(self) -> int:
-        """Approximate number of cells of the grid."""
+        """Approximate number of cells."""
         columns = sum(
             (each.shape[1] - 1) * made.rows
             for each, made in zip(self.sections, self.levels.collars, strict=True)
@@ -123,9 +119,9 @@ class AircraftPlan:
 def plan_of(
     aircraft: Aircraft, request: AircraftRequest, space: BodyMap
 ) -> tuple[AircraftPlan, tuple[str, ...]]:
-    """Return the plan of a grid with the requested number of cells, or of nodes around wings, and notes.
+    """Return the plan with the requested number of cells, or of nodes around wings, and notes.
 
-    Raises InputError: the errors of `AircraftPlan.of`.
+    Raises InputError: as `AircraftPlan.of`.
     """
     if request.cells is None:
         plan = AircraftPlan.of(aircraft, request, space, request.surface.around)
@@ -149,19 +145,19 @@ def plan_of(
 
 
 def _too_many(plan: AircraftPlan, cells: int) -> Iterator[str]:
-    """Yield a note where the fewest cells are clearly more than those wanted."""
+    """Yield a note if the fewest cells are clearly more than requested."""
     if plan.cells > _ENOUGH * cells:
         yield f"layers need about {plan.cells} cells, more than {cells}"
 
 
 def _steeper(plan: AircraftPlan, request: AircraftRequest) -> Iterator[str]:
-    """Yield a note where cells grow by more than usual so that there are few enough."""
+    """Yield a note if cells grow by more than usual so that there are few enough."""
     if request.growth is None and plan.growth != GROWTHS[0]:
         yield f"cells grow by {plan.growth:g} in place of {GROWTHS[0]:g}, so that there are fewer"
 
 
 def _refuse_oblique(space: BodyMap, wing: WingLines, root: Floats) -> None:
-    """Raise InputError for a wing whose lines from its `root` (n, 3) lean too much on it, as by sweep."""
+    """Raise InputError for a wing that leans too much on its `root` (n, 3), as by sweep."""
     at, step = space.points(root), _AHEAD * space.body.length
     along_s, along_theta = (
         _unit(space.points(root + np.eye(3)[axis] * way) - at) for axis, way in ((0, step), (1, _AHEAD))
@@ -191,7 +187,7 @@ def _unit(vectors: Floats) -> Floats:
 
 
 def _refuse_acute(space: BodyMap, name: str, root: Floats) -> None:
-    """Raise InputError for a wing whose `root` (n, 3) is so near to keel or crown that collars fold there."""
+    """Raise InputError for a `root` (n, 3) so near to keel or crown that collars fold."""
     angles = space.steepness(root)
     least = int(angles.argmin())
     if angles[least] < _ACUTE:
@@ -205,7 +201,6 @@ def _refuse_acute(space: BodyMap, name: str, root: Floats) -> None:
 
 
 def _tip(wing: WingLines, first: float) -> tuple[Floats, Floats]:
-    """Return the patches that fill the last section of a wing."""
     loop = wing.points(np.ones((1, len(wing.roots))))[0]
     if wing.fin:
         return half_tip_patches(loop, first)
@@ -217,7 +212,7 @@ def _cells(patch: Floats) -> int:
 
 
 def _on_keys(space: BodyMap, wing: WingLines) -> Floats:
-    """Return s, theta and zeta (SAMPLES, n, 3) around a wing on the key levels."""
+    """Return s, theta, zeta (SAMPLES, n, 3) around a wing on the key levels."""
     sections = space.places(wing.points(key_heights(SAMPLES)[:, None] + np.zeros(len(wing.roots))))
     sections[0, :, 2] = 0.0
     if wing.fin:

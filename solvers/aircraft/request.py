@@ -1,4 +1,4 @@
-"""Options of the grid of an aircraft: those of a stack that it has a use for."""
+"""Options of the grid of an aircraft."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -12,7 +12,7 @@ _OTHERS = ("layers", "revolve", "axis", "copies")  # options of stacks that do n
 
 @dataclass(frozen=True)
 class AircraftRequest(StackRequest):
-    """Options of the grid of an aircraft: those of `StackRequest`, and `cells` may replace `around`."""
+    """Options of `StackRequest`; `cells` may replace `around`."""
 
     fewest_cells: ClassVar[int] = 20_000
 
@@ -20,8 +20,7 @@ class AircraftRequest(StackRequest):
 def aircraft_request(**parameters: Any) -> AircraftRequest:
     """Return an `AircraftRequest` with the parameters as its fields.
 
-    Raises InputError: the errors of `AircraftRequest`; a parameter that does not apply to an aircraft; both
-    `cells` and `around`.
+    Raises InputError: as `AircraftRequest`; a parameter of other stacks; both `cells` and `around`.
     """
     refuse_given("an aircraft", {name: name in parameters for name in _OTHERS})
     if "cells" in parameters and "around" in parameters:

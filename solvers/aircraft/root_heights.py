@@ -1,4 +1,4 @@
-"""Points at which the lines of a wing along its span leave a body."""
+"""Heights at which the lines of a wing leave a body."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ _PASSES = 6  # number of steps; each divides the interval around a crossing
 
 
 def root_heights(loft: Loft, name: str, body: Body) -> Floats:
-    """Return the heights z (n,) at which the lines of a `loft` leave a body; `name` is that of the wing.
+    """Return the heights z (n,) at which the lines of a wing's `loft` leave a body.
 
     Raises InputError: a line that begins outside of the body, or never leaves it.
     """
@@ -38,7 +38,7 @@ def root_heights(loft: Loft, name: str, body: Body) -> Floats:
 
 
 def _error(loft: Loft, name: str, line: int, z: float, body: Body, what: str) -> InputError:
-    """Return the error for a line at the height z, with its place in relation to the body."""
+    """Return the error for a line at the height z, with its place beside the body."""
     x, y, z = point = loft.line(line, np.array([z]))[0]
     nose, tail = body.meridian[0, 0], body.meridian[-1, 0]
     if nose < x < tail:

@@ -1,8 +1,4 @@
-"""Heights of cells on both sides of the level of the tip: of its layers beside the wing, thicker far away.
-
-Without this the layers of the tip would go around the aircraft as a shell of thin cells. Beyond the tip cells
-far away keep their height until those of its layers have it too: from there on levels are parallel.
-"""
+"""Heights of cells at the level of the tip: thin in its layers beside the wing, thicker far away."""
 
 import numpy as np
 
@@ -19,13 +15,11 @@ _STILL = 1e-13  # change of the logarithm of the growth ratio below which the it
 
 
 def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
-    """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,) that begin at the tip.
+    """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,) from the tip on.
 
-    `first` (n,) are the sizes of the first cells.
-
-    `first` (n,) are the sizes of the first cells. Let h be the sizes of cells that grow by a constant ratio,
-    starting with the smallest of all first cells. The cells of a line have the sizes (h^4 + c)^(1/4); the
-    constant c is such that the first cell of the line has its prescribed size.
+    First cells are `first` (n,). Cells are (h^4 + c)^(1/4) with sizes h of constant growth from the least
+    first cell; c is
+    the constant that gives the prescribed first cell.
     """
     least = float(first.min())
     more = (np.square(np.square(first / least)) - 1.0)[:, None]
@@ -45,10 +39,10 @@ def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
 
 
 def last_cells(points: Floats, section: Indices, even: Floats, first: float, growth: float) -> Floats:
-    """Return the heights (p,) of cells at the level of the tip, for lines that cross it at `points` (p, 3).
+    """Return the heights (p,) of cells at the level of the tip, on lines through `points` (p, 3).
 
-    On the lines with the indices `section`, which lie on the wing, the height is `first`; far away it is
-    between `first` and `even` (p,).
+    They are `first` on the wing, which the lines `section` reach, and between `first` and `even` (p,) far
+    away.
     """
     wing = points[section]
     away = np.array([norms(wing - point).min() for point in points])

@@ -13,13 +13,11 @@ _MOST_ROWS = 200
 
 
 def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
-    """Return the nodes of the two patches that fill a `loop`: ring (n, rows + 1, 3) and core (m, k, 3).
+    """Return the ring (n, rows + 1, 3) and the core (m, k, 3) that fill a closed `loop` (n, 3).
 
-    `loop` (n, 3) is closed, with its first node repeated at the end; it starts at the trailing edge and runs
-    first along the upper side.
-
-    The outermost cells of the ring are `first` long, so that they match those of a collar outside, or shorter
-    where the section is too thin for them.
+    The loop starts at the trailing edge, along the upper side. Outermost cells are `first` long, or shorter
+    where the
+    section is too thin.
     """
     ring, core = Cap(bulge=0.0).patches(loop)
     edge, inner = ring[:, 0], ring[:, -1]
@@ -36,7 +34,7 @@ def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
 
 
 def canted_tip_patches(loop: Floats, first: float, cant: float) -> tuple[Floats, Floats]:
-    """Return the patches inside a closed `loop` in a plane with a `cant`, in radians (see `tip_patches`)."""
+    """Return the patches inside a closed `loop` in a plane with a `cant` in radians (see `tip_patches`)."""
     if not cant:
         return tip_patches(loop, first)
     place, cants = loop[0, 1:], np.array([-cant, cant])
@@ -47,10 +45,9 @@ def canted_tip_patches(loop: Floats, first: float, cant: float) -> tuple[Floats,
 
 
 def half_tip_patches(half: Floats, first: float) -> tuple[Floats, Floats]:
-    """Return half the patches inside the tip of a fin.
+    """Return half the patches inside the tip of a fin, on one side of the plane z = 0.
 
-    `half` (n, 3) are the nodes of half of the section, from nose to trailing edge; the plane of symmetry is y
-    = 0. The patches are computed as those of a wing with y and z exchanged.
+    `half` (n, 3) are the nodes of half of the section, from nose to trailing edge.
     """
     flat = half[:, [0, 2, 1]]
     loop = np.concatenate([flat[::-1], flat[1:] * [1.0, -1.0, 1.0]])
@@ -61,11 +58,7 @@ def half_tip_patches(half: Floats, first: float) -> tuple[Floats, Floats]:
 
 
 def _arcs(lengths: Floats, first: float, last: Floats, rows: int) -> Floats:
-    """Return arcs (n, rows + 1) on lines of `lengths` (n,), with cells of about `first` and `last` (n,).
-
-    On short lines the last ones are those of cells that grow by a constant ratio; on the shortest both are a
-    share of the length.
-    """
+    """Return arcs (n, rows + 1) on lines of `lengths` (n,), with end cells near `first` and `last` (n,)."""
     outer, inner = (max(share, 1.0 / rows) * lengths for share in _LONGEST)
     outermost = np.minimum(first, outer)
     constant = smooth_arcs(lengths, (outermost, None), rows)

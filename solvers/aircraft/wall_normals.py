@@ -1,10 +1,6 @@
-"""Turns grid lines to the normals of body and wing near these walls; away from the walls lines do not change.
+"""Turns grid lines to the normals of body and wing near these walls.
 
-::
-
-    wing |  :  :   :       A line at the distance a from another wall is moved over about half of a: beside
-         | :  :   :        the junction it has to follow that wall, further away it turns to the normal.
-    -----+---------- body
+A line at the distance a from another wall is moved over about half of a.
 """
 
 from collections.abc import Sequence
@@ -24,11 +20,12 @@ _OBLIQUE = 0.4  # largest cosine between the level and the mean direction of lin
 
 
 def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: float) -> Floats:
-    """Return `points` (k, p, 3) of p lines, moved so that the lines leave the body along its normals.
+    """Return `points` (k, p, 3) of p lines, moved to leave the body, at k = 0, along its normals.
 
-    Lines begin on the body, at k = 0. `normal` (p, 3) are the points on the body's normals at the distance
-    `first`, which becomes the height of first cells. For each collar, `rings` has the indices (n, m) of its
-    lines; the second direction leads from the wing outwards.
+    Parameters
+    ----------
+    normal : (p, 3) points on the normals at the distance `first`, the height of first cells.
+    rings : indices (n, m) of the lines of each collar, from the wing outwards.
     """
     turned = (normal - points[1]) / first
     turned[points[0, :, 2] == 0.0, 2] = 0.0
@@ -45,9 +42,9 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
 
 
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
-    """Return `points` (k, p, 3), moved so that the lines of a collar are normal to the span of the wing.
+    """Return `points` (k, p, 3), moved so that the lines of a collar are normal to the span.
 
-    Lines have the indices p. `ring` (n, m) are those of the collar; `first` is the height of its first cells.
+    `ring` (n, m) are the indices of these lines; first cells are `first` high.
     """
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first
@@ -76,10 +73,9 @@ def across_tip(
 ) -> tuple[Floats, Floats]:
     """Return the nodes `low` below and `high` beyond a tip, moved so that cells at its edge are less oblique.
 
-    Lines reach the tip along the span and leave it along the normal of the tip. Near the edge of the tip, the
-    level of nodes in the collar `ring` (n, m) is turned, if it is too oblique, until it is about
-    perpendicular to the mean of these two directions. The displacement decreases along the lines to 0 at
-    their ends. First cells keep the height `first`.
+    In the collar `ring` (n, m) the level is turned towards a right angle to the lines there, with
+    displacements that fade
+    to 0 at the ends of the lines. First cells stay `first` high.
     """
     level = high[0, ring]
     along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]
@@ -110,17 +106,14 @@ def across_tip(
 
 
 def _chord(edge: Floats, wing: WingLines) -> float:
-    """Return the chord of a tip with nodes (n, 3) around it."""
     return (1.0 if wing.fin else 0.5) * float(norms(np.diff(edge, axis=0)).sum())
 
 
 def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
-    """Return `points` (k, p, 3) of p lines beyond a tip, moved so that they leave it along its normals.
+    """Return `points` (k, p, 3) of lines beyond a tip, moved to leave it, at k = 0, along its normals.
 
-    Lines begin at the level of the tip, at k = 0.
-
-    `cap` (c,) are the indices p of the lines that fill the section at the tip, `ring` (n, m) those of its
-    collar. A line of the collar is turned less, the farther it is from the section.
+    `cap` (c,) are the indices of the lines that fill the tip, `ring` (n, m) those of its collar, which turn
+    less.
     """
     apart = arc_lengths(points[0, ring])
     fade = 1.0 - apart / apart[:, -1:]
@@ -139,7 +132,7 @@ def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Flo
 
 
 def _moved(lines: Floats, beside: Floats) -> Floats:
-    """Return how far nodes of lines (k, p, 3) move by a unit of turn, given distances (p,) beside them."""
+    """Return the moves of nodes of lines (k, p, 3) per unit of turn, at distances (p,) from another wall."""
     arcs = arc_lengths(lines.swapaxes(0, 1)).T
     way = np.where(beside > 0.0, _WAY * beside, 1.0)
     fade = 1.0 - arcs / arcs[-1]
@@ -147,6 +140,6 @@ def _moved(lines: Floats, beside: Floats) -> Floats:
 
 
 def _at(wall: Floats, beside: Floats, first: Floats | float) -> Floats:
-    """Return points (..., 3) towards `beside` at the distance `first`, one or (...), from a wall."""
+    """Return points (..., 3) towards `beside` at the distance `first` from a wall."""
     away = beside - wall
     return wall + away * (first / norms(away))[..., None]

@@ -1,4 +1,4 @@
-"""The lines along the span of a wing on a body, from its root on the body to its tip."""
+"""The lines along the span of a wing, from its root on a body to its tip."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from meshonet.geometry.aircraft.surface_wing import SurfaceWing
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.sections.section import turned
 from meshonet.geometry.sections.stack import Stack
-from meshonet.solvers.aircraft.lofts import FinLoft, Loft, SectionLoft, SurfaceLoft
+from meshonet.solvers.aircraft.lofts import Loft, fin_loft, section_loft, surface_loft
 from meshonet.solvers.aircraft.root_heights import root_heights
 from meshonet.solvers.rows.span_spacing import spaced_cells, two_sided
 from meshonet.solvers.stacking.section_nodes import GAP, Around, around, unit_nodes
@@ -27,12 +27,12 @@ _ROUNDS = 6  # scalings of a fraction: lines are nearly straight over a first ce
 
 @dataclass(frozen=True)
 class EvenAround(Around):
-    """Distribution of nodes around sections, with the smallest growth ratio possible for their number."""
+    """Distribution of nodes around sections with the smallest possible growth."""
 
     follows_nose = False  # cells at the nose are a fraction of the mean cell
 
     def law(self, height: float, length: float, nose: float | None = None) -> Callable[[Floats], Floats]:
-        """Return the node distribution on one side of a section, from its base (trailing edge) to the nose.
+        """Return the node distribution on a side from the base to the nose.
 
         The `height` of the base, the `length` of the side and the cell at the `nose` are in chords.
         """
@@ -56,8 +56,7 @@ class WingLines:
     name : name of the wing.
     roots : (n,) heights z at which the lines leave the body.
     notes : sentences on changes of the wing.
-    fin : whether this is a fin, with its span along y. A fin has only the lines of its half z >= 0, from the
-        nose to the trailing edge.
+    fin : whether this is a fin, with its span along y and only the lines of its half z >= 0.
     """
 
     loft: Loft
@@ -70,14 +69,14 @@ class WingLines:
     def of(
         cls, wing: Stack | SurfaceWing, name: str, body: Body, nodes: int, base: float | None = None
     ) -> Self:
-        """Return `nodes` lines of a wing, with trailing edges opened to a thickness of `base` chords.
+        """Return `nodes` lines of a wing, with trailing edges opened to `base` chords.
 
         Raises InputError: too few nodes; a wing that does not begin inside the body or does not leave it.
         """
         if isinstance(wing, SurfaceWing):
             least = _SHARP if base is None else base
             opened = wing.opened(least)
-            loft: Loft = SurfaceLoft.of(opened, body, _around(nodes, least))
+            loft = surface_loft(opened, body, _around(nodes, least))
             notes = opened.notes
         else:
             loft, notes = _through_sections(wing, nodes, GAP if base is None else base)
@@ -87,12 +86,12 @@ class WingLines:
         return cls(loft, name, roots, notes, fin)
 
     def points(self, parts: Floats) -> Floats:
-        """Return points (k, n, 3) on the lines; `parts` (k, n) are fractions of the height z, root to tip."""
+        """Return points (k, n, 3) on the lines at `parts` (k, n) of the height from root to tip."""
         z = self.roots + parts * (self.loft.tip - self.roots)
         return np.stack([self.loft.line(k, z[:, k]) for k in range(z.shape[1])], axis=1)
 
     def with_first(self, parts: Floats, first: float) -> Floats:
-        """Return `parts` (k, n) with its second row changed so that its points are `first` from the root."""
+        """Return `parts` (k, n), the second row changed to be `first` away from the root."""
         parts = parts.copy()
         for _ in range(_ROUNDS):
             root, second = self.points(parts[:2])
@@ -118,10 +117,9 @@ def _around(nodes: int, base: float, edge: float | None = None, nose: float | No
 
 
 def _through_sections(wing: Stack, nodes: int, base: float) -> tuple[Loft, tuple[str, ...]]:
-    """Return lines through nodes around the sections of a wing, and notes."""
     plan = _around(nodes, base, wing.te_spacing, wing.le_spacing)
     units, notes = zip(*(unit_nodes(section, plan) for section in wing.sections), strict=True)
     unit = np.stack(units)
     refuse_crossing(wing, unit)
-    loft = FinLoft.of(wing, unit) if isinstance(wing, Fin) else SectionLoft(wing, unit)
+    loft = fin_loft(wing, unit) if isinstance(wing, Fin) else section_loft(wing, unit)
     return loft, (*wing.notes, *dict.fromkeys(filter(None, notes)))

@@ -1,6 +1,6 @@
 """Workers of a Dask cluster: an existing one, or one of processes on this machine.
 
-Dask itself repeats the tasks of a dead worker. A task whose workers keep dying ends in KilledWorker.
+Dask repeats the tasks of a dead worker, and raises KilledWorker if workers keep dying:
 https://distributed.dask.org
 """
 
@@ -47,7 +47,7 @@ _SETTINGS = {
 
 @contextmanager
 def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:
-    """Return a context with the workers of the cluster at the engine's scheduler, or of a local cluster."""
+    """Return a context with the workers of the engine's scheduler, or of a local cluster."""
     try:
         import distributed  # noqa: F401  (a second)
     except ImportError:
@@ -63,7 +63,7 @@ def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:
 
 
 def _silence() -> None:
-    """Suppress the log messages of Dask; the program itself reports dead workers in one line."""
+    """Suppress the log messages of Dask; dead workers are reported in one line."""
     for name in list(logging.root.manager.loggerDict):
         if name.startswith(("distributed", "tornado")):
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
@@ -71,7 +71,7 @@ def _silence() -> None:
 
 @contextmanager
 def _local(count: int) -> Iterator[Client]:
-    """Return a context with the client of a local cluster, whose processes work on one task at a time."""
+    """Return a context with the client of a local cluster; each process does one task at a time."""
     import dask
     from distributed import Client, LocalCluster
 
@@ -91,10 +91,7 @@ def _local(count: int) -> Iterator[Client]:
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Return a context in which new threads and processes ignore Ctrl-C.
-
-    It takes effect after the context.
-    """
+    """Return a context in which new threads and processes ignore Ctrl-C, also after the context."""
     ensure_running()  # which would let interrupts through in the thread that starts the first process
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
@@ -105,7 +102,6 @@ def _without_interrupts() -> Iterator[None]:
 
 @contextmanager
 def _at(address: str) -> Iterator[Client]:
-    """Return a context with the client of the scheduler at an address."""
     from distributed import Client
 
     try:
@@ -123,10 +119,7 @@ def _at(address: str) -> Iterator[Client]:
 
 
 class _Dask(Workers):
-    """Workers of a Dask cluster.
-
-    Their deaths are events of the scheduler, reported while waiting for results.
-    """
+    """Workers of a Dask cluster; their deaths are reported while waiting for results."""
 
     def __init__(self, client: Client, warn: Warn) -> None:
         self._client, self._warn = client, warn
@@ -140,7 +133,7 @@ class _Dask(Workers):
         self._check_versions()
 
     def leave(self) -> None:
-        """Cancel the tasks in progress, and stop listening to events."""
+        """Cancel the tasks in progress and stop listening to events."""
         with suppress(Exception):  # the scheduler may be gone
             self._client.unsubscribe_topic("all")
             self.executor.shutdown(wait=False)
@@ -161,7 +154,7 @@ class _Dask(Workers):
         return EngineLostError(problem, "run it again with another one; {skip_existing} keeps what is done")
 
     def submit(self, function: Callable[[T], R], task: T) -> Future[R]:
-        """Submit a task, which runs in the working directory and with the command line of this program."""
+        """Submit a task that runs in our working directory, with our command line."""
         from distributed.client import ClosedClientError
 
         try:
@@ -197,7 +190,6 @@ class _Dask(Workers):
             self._client.wait_for_workers(1)
 
     def _check_versions(self) -> None:
-        """Raise InputError if a worker cannot run this program."""
         for worker, version in self._client.run(_version, on_error="return").items():
             if version != __version__:
                 has = f"meshonet {version}" if isinstance(version, str) else "no meshonet"
@@ -208,11 +200,8 @@ class _Dask(Workers):
 
 
 def _died_with_its_result(error: TypeError) -> bool:
-    """Return whether a worker died while its result was transferred.
-
-    Dask's executor then interprets the result as an error with three parts (distributed 2026.8,
-    cfexecutor.py).
-    """
+    """Return whether a worker died while it sent its result."""
+    # the executor takes the result for an error of three parts (distributed 2026.8, cfexecutor.py)
     frames = list(walk_tb(error.__traceback__))
     return bool(frames) and frames[-1][0].f_code.co_name == "_cascade_future"
 
@@ -225,10 +214,7 @@ _one_at_a_time = threading.Lock()
 
 
 def _call(function: Callable[[T], R], task: T, folder: str, words: list[str]) -> R:
-    """Run a task like the program itself, one at a time, since a process has one working directory.
-
-    Raises InputError: the directory does not exist.
-    """
+    """Run a task in `folder`; only one at a time, since a process has one working directory."""
     with _one_at_a_time:
         sys.argv = words  # which grids have in their provenance
         try:

@@ -1,9 +1,6 @@
-"""Ranks of MPI as workers: ``mpiexec -n 9 meshonet ...
+"""Ranks of MPI as workers: rank 0 of ``mpiexec -n 9 meshonet ... --engine mpi`` has eight.
 
---engine mpi`` has eight workers; rank 0 is the program.
-
-MPI starts the program on every rank, so it runs inside `on_ranks`. Rank 0 reads the command line; the other
-ranks work for it until it ends. If a rank dies, MPI ends all ranks.
+The other ranks work inside `on_ranks` until it ends:
 https://mpi4py.readthedocs.io/en/stable/mpi4py.futures.html
 """
 
@@ -26,10 +23,7 @@ _ranks: MPIPoolExecutor | None = None  # executor of the other ranks, while the 
 
 
 def on_ranks(run: Callable[[], int]) -> int:
-    """Call `run` on rank 0 with the other ranks as workers, and return its exit code.
-
-    Other ranks return 0.
-    """
+    """Call `run` on rank 0, with the other ranks as workers, and return its exit code, 0 on other ranks."""
     global _ranks
     try:
         from mpi4py import MPI

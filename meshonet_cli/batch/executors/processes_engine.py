@@ -76,7 +76,7 @@ def _begin() -> None:
 
 
 class _Here:
-    """State of this process for signal handlers: whether it runs a task, and whether it should end."""
+    """State of this process for signal handlers."""
 
     working = ending = False
 

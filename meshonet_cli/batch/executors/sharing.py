@@ -36,7 +36,7 @@ def shared(
 ) -> Iterator[Pair]:  # fmt: skip
     """Yield members in order with their results, computed by the workers of `engine`.
 
-    A task has `size` members; if `size` is 1, members that take little time are grouped.
+    A task has `size` members; if `size` is 1, fast members are grouped.
     """
     timed, grows, most = _Timed(work), size == 1, size
 
@@ -58,7 +58,7 @@ def shared(
 
 
 def _apart(timed: _Timed, group: Group, error: Exception, workers: Workers) -> Iterator[Pair]:
-    """Yield the members of a group one by one with their results, after the group ended its worker twice."""
+    """Yield the members of a group one by one, after the group ended its worker twice."""
     for item in group:
         pairs: list[Pair] = [(item.without_content(), error)]
         if len(group) > 1:

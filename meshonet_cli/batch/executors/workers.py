@@ -1,4 +1,4 @@
-"""Workers behind an executor: results in order, few tasks in progress, repetition after a worker died."""
+"""Workers behind an executor: ordered results, and repetition after a worker died."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -14,7 +14,7 @@ _PATIENCE = 0.5  # seconds between looks at the engine while a result is waited 
 
 
 class WorkerDiedError(MeshonetError):
-    """Error: the worker of a task died, and so did the worker that repeated the task."""
+    """Error: the worker of a task died twice."""
 
     exit_code = 3
 
@@ -26,7 +26,7 @@ class WorkerDiedError(MeshonetError):
 
 
 class EngineLostError(InputError):
-    """Error: the executor cannot be recovered, and the tasks in progress are lost."""
+    """Error: the executor and its tasks are lost."""
 
 
 class Workers:
@@ -49,11 +49,11 @@ class Workers:
         """Report dead workers. Raises EngineLostError: no worker is left."""
 
     def renew(self) -> None:
-        """Replace a broken executor. Raises EngineLostError: this is impossible."""
+        """Replace a broken executor. Raises EngineLostError: impossible."""
         raise self.lost()
 
     def lost(self) -> EngineLostError:
-        """Return the error for an executor that cannot be recovered."""
+        """Return the error for a lost executor."""
         return EngineLostError("the workers are gone", "run it again, with {skip_existing}")
 
     def result(self, future: Future[R]) -> R:
@@ -74,8 +74,7 @@ class Workers:
     ) -> Iterator[tuple[T, R | Exception]]:
         """Yield each of the `tasks` with the result of `function`, or with its error.
 
-        Tasks are read when results are requested; the number of tasks in progress is that of workers plus
-        `ahead`.
+        Tasks are read when results are requested; `ahead` more tasks than workers are in progress.
         """
         under_way: deque[tuple[T, Future[R]]] = deque()
         for task in tasks:
