@@ -1,12 +1,6 @@
-"""C grids around a blunt base: a block marched around section and both wake lines, one between these.
+"""C grids around a blunt base: a C block marched from section and wake, and an H block behind the base.
 
-::
-
-    C block: south is lower wake, wall, upper wake; marched from there
-    H block: west is the base, south the lower wake, north the upper one, east the outlet
-
-First cells on both sides of a wake line have equal heights, which increase with the distance behind the base
-up to about the mean cell of the H block.
+The south of the H block is the lower wake line, its north the upper one, its west the base.
 """
 
 import math
@@ -30,7 +24,7 @@ from meshonet.geometry.shapes.wake import BEHIND_BASE, rise
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import redistribute
 from meshonet.solvers.hyperbolic.front import Front, opening
-from meshonet.solvers.hyperbolic.march import check_layers, marched
+from meshonet.solvers.hyperbolic.march import MarchLayers, check_layers, marched
 from meshonet.solvers.layers.limited import limit_growth
 from meshonet.solvers.solution import Solution, timed
 
@@ -45,11 +39,11 @@ _FADE = 1.0  # widths of the base over which the correction of first cells off i
 def around_base(
     lines: BaseWake, *, first: float, growth: float | None, free_rows: bool, constant: int, multiple: int = 1
 ) -> Solution:
-    """Return the grid of two blocks around `lines`; `first` is the first-cell height in the lines' unit.
+    """Return the grid of two blocks around `lines`; `first` is the first-cell height in their unit.
 
     The other parameters are those of `march.hyperbolic`.
 
-    Raises InputError: the errors of `hyperbolic`. Raises SolverError: the march diverged.
+    Raises InputError: as `hyperbolic`. Raises SolverError: the march diverged.
     """
     check_layers(first / lines.chord, growth)
     ends, between = _h_block(lines, first, growth)
@@ -58,35 +52,31 @@ def around_base(
     west, east = (straight(south[k], lines.north[k], lines.nj) for k in (0, -1))
     boundary = Boundary(south, lines.north, west, east, "quad", name=lines.name, chord=lines.chord)
     front = Front(boundary, first, wake, ends / first, concave=lines.turned)
-    nodes = marched(front, lines.nj - 1, first, growth, free_rows, constant, multiple)
+    nodes = marched(front, lines.nj - 1, MarchLayers(first, growth, free_rows, constant, multiple))
     grid = _joined(nodes, between, wake, lines.name, first)
-    heights = norms(
-        np.concatenate([nodes[wake : len(nodes) - wake, 1] - lines.wall, between[1] - between[0]])
-    )
+    around = nodes[wake : len(nodes) - wake]
+    heights = norms(np.concatenate([around[:, 1] - lines.wall, between[1] - between[0]]))
     off = float(np.abs(heights / first - 1.0).max())
     note = f"the first-cell height is {first:.6g} at every node of wall and base, to {off:.1g}"
     base = f"the base has {len(lines.base)} nodes, the H block behind it {wake + 1} x {len(lines.base)}"
     advice = *_thick(lines, first, ends), *_oblique(grid, wake)
     if growth is None:
-        advice = *advice, *_growing(nodes[wake : len(nodes) - wake], between)
+        advice = *advice, *_growing(around, between)
     return Solution(grid, "hyperbolic", notes=(*lines.notes, note, base, *advice))
 
 
 def _thick(lines: BaseWake, first: float, ends: Floats) -> tuple[str, ...]:
-    """Return advice if cells behind the base are thinner than those of height `first` on the wall."""
+    """Return advice if cells behind the base are thinner than `first` on the wall."""
     if ends[1] >= _SAME * first:
         return ()
     width = float(norms(lines.base[-1] - lines.base[0]))
-    problem = (
-        f"first cells of {first:.3g} are too thick for a base {width:.3g} wide: lines bend at its corners"
-    )
-    return (
-        Advice(f"{problem}; use {{first_cell}} {_THIN * width / lines.chord:.1g} or less, or {{te}} wedge"),
-    )
+    problem = f"first cells of {first:.3g} are too thick for a base {width:.3g} wide"
+    remedy = f"use {{first_cell}} {_THIN * width / lines.chord:.1g} or less, or {{te}} wedge"
+    return (Advice(f"{problem}: lines bend at its corners; {remedy}"),)
 
 
 def _growing(around: Floats, between: Floats) -> tuple[str, ...]:
-    """Return advice if cells along lines from the wall, or from the base, grow by more than `GROWTH`."""
+    """Return advice if cells along lines from wall or base grow by more than `GROWTH`."""
     most = max(float(ratios(around.swapaxes(0, 1)).max()), float(ratios(between).max()))
     if most <= GROWTH * (1.0 + 1e-6):
         return ()
@@ -95,7 +85,7 @@ def _growing(around: Floats, between: Floats) -> tuple[str, ...]:
 
 
 def _oblique(grid: Grid, wake: int) -> tuple[str, ...]:
-    """Return advice if faces are far from normal to the lines between the centres of their cells."""
+    """Return advice if faces are very oblique to the lines between the centres of their cells."""
     worst = faces(grid).non_orthogonality
     if worst is None or worst.max <= _OBLIQUE:
         return ()
@@ -111,10 +101,7 @@ def _oblique(grid: Grid, wake: int) -> tuple[str, ...]:
 
 
 def _h_block(lines: BaseWake, first: float, growth: float | None) -> tuple[Floats, Floats]:
-    """Return the steps (k,) at both wake lines and the nodes (k, m, 2) of the block between them.
-
-    `growth` limits the growth ratio along lines from the base.
-    """
+    """Return the steps (k,) at both wake lines, and nodes (k, m, 2) between them with this growth."""
     ways = lines.upper - lines.lower
     width, cells = norms(ways), len(lines.base) - 1
     behind = norms(lines.lower - lines.lower[0])
@@ -138,7 +125,6 @@ def _h_block(lines: BaseWake, first: float, growth: float | None) -> tuple[Float
 
 
 def _joined(nodes: Floats, between: Floats, wake: int, name: str, first: float) -> Grid:
-    """Return the grid of both blocks."""
     ni, nj = nodes.shape[:2]
     cells, across = len(between) - 1, between.shape[1] - 1
     whole = ((0, cells),)

@@ -1,9 +1,6 @@
-"""Marched C grids without a given first-cell height: it is chosen from the node spacing of the wall.
+"""Marched C grids whose first-cell height follows from the node spacing of the wall.
 
-In elliptic C grids, whose wake nodes are fixed, small cells behind the trailing edge face large ones of the
-far field, so their first cells are as high as a tenth of the chord. In a grid marched from wall and wake the
-first-cell height is a fraction of the smallest cell along the wall, and cells grow by one ratio to the far
-field.
+Elliptic C grids, whose wake nodes are fixed, have first cells of up to a tenth of the chord.
 """
 
 from dataclasses import replace
@@ -19,10 +16,7 @@ from meshonet.solvers.hyperbolic.march import hyperbolic
 from meshonet.solvers.solution import Solution
 
 PART = 0.05
-"""Ratio of the first-cell height to the smallest cell of the wall. With 0.25 and 400 rows, lines deviate from
-the normals by up to 80 degrees around some sections; with 0.05 by at most 29 degrees, around most sections by
-4.
-"""
+"""Ratio of the first-cell height to the smallest wall cell; with 0.25, lines lean by up to 80 degrees."""
 MOST = 0.25  # the same where rows are few, so that they grow by no more than `GROWTH`
 GROWTH = 1.2  # largest ratio of neighbouring rows
 CHOSEN = "no first cell was asked for: it follows from the smallest one along the wall"
@@ -31,7 +25,7 @@ STEEPEST = 1.3  # growth beyond which marched grids have larger angles than vari
 
 
 def first_cell(boundary: Boundary) -> float:
-    """Return the default first-cell height for a C `boundary`, in the unit of the boundary."""
+    """Return the default first-cell height for a C `boundary`, in its unit."""
     behind = boundary.wake
     wall = boundary.south[behind : boundary.ni - behind]
     smallest = float(np.hypot(*np.diff(wall, axis=0).T).min())
@@ -40,9 +34,9 @@ def first_cell(boundary: Boundary) -> float:
 
 
 def first_cell_around_base(width: float, away: float, chord: float, ni: int, nj: int) -> float:
-    """Return the first-cell height of a C grid of `ni` x `nj` nodes that keeps a blunt base of this `width`.
+    """Return the first-cell height of a C grid that keeps a blunt base of this `width`.
 
-    The grid is not needed: its smallest cell is assumed to be that behind a sharp edge, or one on the base.
+    The smallest cell is assumed to be that behind a sharp edge, or one on the base.
     """
     return _height(min(C_EDGE / ni * chord, COARSEST * width), away, nj)
 
@@ -53,10 +47,10 @@ def _height(smallest: float, away: float, nj: int) -> float:
 
 
 def march_by_default(boundary: Boundary) -> Solution | None:
-    """Return the C grid marched from `boundary`, or None where another method suits better.
+    """Return the C grid marched from `boundary`, or None if another method suits better.
 
-    Another method is better in three cases: the nodes of the far field are given (a march makes its own far
-    field); there are so few rows that cells would grow by more than `STEEPEST`; cells are folded.
+    That is so if the nodes of the far field are given, if cells would grow by more than `STEEPEST`, or if
+    cells are folded.
     """
     if boundary.wall is None:
         return None

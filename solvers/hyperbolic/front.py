@@ -1,15 +1,8 @@
-"""The front of a march: the wall, or wake, wall and wake, from which it starts, and the distance it covers.
+"""The front of a march, which is the wall, or wake, wall and wake; and the distance to march.
 
-A level is a grid line along xi, made by one step of the march.
-
-::
-
-    o: the front is closed; the far field is a circle that encloses the area of the boundary's far field
-    c: the front runs from outlet to outlet, and its ends move along the outlet; cells beside the wake may
-       become higher downstream; the far field is half a circle with two straight sides, of the same area
-
-The last level has not exactly this shape; the march is to reach its radius with the least distance of the
-last level from the centre of the body.
+The far field of an ``o`` front is a circle, that of a ``c`` front half a circle with two straight sides, both
+of the
+area of the boundary's far field.
 """
 
 import math
@@ -34,10 +27,7 @@ class Front:
     """Level 0 of a march from an ``o`` or ``c`` boundary, and the distance that the last level must reach."""
 
     inner: float  # radius of the circle of the body's area
-    slender: float
-    """Slenderness 1 - l/L: L is the perimeter of the body, l that of a circle of the same area; 0 for a
-    circle.
-    """
+    slender: float  # 1 - l/L, with the perimeters L of the body and l of a circle of the same area
     outer: float  # radius of the far field: least distance of the last level from the centre of the body
     ends: Floats | None  # (2, 2) unit directions in which the ends of an open front move
     widening: Floats | None  # (n,) factors of the first step, relative to the wall, for an open front
@@ -46,18 +36,12 @@ class Front:
     concave: bool  # some of them turn towards the grid
 
     def __init__(
-        self,
-        boundary: Boundary,
-        first: float,
-        wake: int = 0,
-        widening: Floats | None = None,
-        *,
+        self, boundary: Boundary, first: float, wake: int = 0, widening: Floats | None = None, *,
         concave: bool = False,
-    ) -> None:
-        """Take an ``o`` or ``c`` boundary, or a ``quad`` with a wake of `wake` cells at both ends of south.
+    ) -> None:  # fmt: skip
+        """Take an ``o`` or ``c`` boundary, or a ``quad`` with `wake` wake cells at both ends of south.
 
-        `first` is the height of first cells at the wall; `widening` (wake + 1,) are the factors of that
-        height along this wake, from the edge on.
+        `first` is the first-cell height at the wall, `widening` (wake + 1,) its factors along the wake.
         """
         self._south, self.concave, self.narrow = boundary.south, concave, wake > 0
         self._closed = boundary.periodic
@@ -87,11 +71,11 @@ class Front:
         self.outer = self._far(boundary.north)
 
     def start(self) -> Floats:
-        """Return the nodes (n, 2) of level 0; a closed front does not repeat its first node."""
+        """Return the nodes (n, 2) of level 0, without the repeated node of a closed front."""
         return self._south[:-1] if self._closed else self._south
 
     def reach(self, levels: Floats) -> float:
-        """Return the smallest distance from the body's centre to the last of the `levels` (2, m, n)."""
+        """Return the smallest distance from the centre to the last of the `levels` (2, m, n)."""
         return float(np.hypot(*(levels[:, -1].T - self._middle).T).min())
 
     def nodes(self, levels: Floats) -> Floats:
@@ -122,8 +106,8 @@ class Front:
 def opening(behind: Floats, higher: Floats) -> Floats:
     """Return the factors (n,) by which first cells along a wake are higher than at the wall.
 
-    `behind` (n,) are the distances behind the trailing edge in chords. `higher` (n,) is the `rise` of first
-    cells there, divided by the height at the wall.
+    `behind` (n,) are distances behind the trailing edge in chords, `higher` (n,) the `rise` in heights at the
+    wall.
     """
     return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR) + higher)
 
@@ -134,7 +118,7 @@ def _radius(ring: Floats) -> float:
 
 
 def _middle(wall: Floats) -> Floats:
-    """Return the midpoint (2,) of the first node of a wall (n, 2) and the node farthest from it."""
+    """Return the midpoint (2,) of the first node of a wall (n, 2) and the farthest node."""
     farthest = wall[np.argmax(np.hypot(*(wall - wall[0]).T))]
     return np.asarray(0.5 * (wall[0] + farthest))
 
@@ -142,12 +126,13 @@ def _middle(wall: Floats) -> Floats:
 def distance_to_march(
     front: Front, first: float, cells: int, settings: MarchSettings, constant: int, edge: Edge | None
 ) -> float:
-    """Return the sum of all steps that a march from the body needs to reach the radius of the far field.
+    """Return the sum of steps by which a march from the body reaches the far field.
 
     Around a circle of n nodes a step s leads from radius r to r + s (1 - e)/(1 + f s/r + 2 e s/r): f is the
-    weight of the flux along a level; e = 2π ε q/n + b h/r is the dissipation, where q is its reduction where
-    lines diverge. The same holds in front of the body in a C grid. For other bodies, constants fitted on
-    airfoils correct the distance.
+    weight of the
+    flux along a level, e = 2π ε q/n + b h/r the dissipation, q its reduction where lines diverge. Constants
+    fitted on
+    airfoils correct this for other bodies.
     """
     distance = front.outer - front.inner
     around = 2.0 * math.pi * settings.dissipation / len(front.start())

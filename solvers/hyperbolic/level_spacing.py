@@ -1,9 +1,7 @@
-"""Spacing of the levels of a march: growth by one ratio, but slower where lines from a sharp edge diverge.
+"""Spacing of the levels of a march: constant growth, but slower where lines from a sharp edge diverge.
 
-At a sharp edge a front of cells much longer than high lags behind. At a distance of about the length of these
-cells the lines from the edge diverge like a fan and the front catches up, so that cells grow faster along the
-line from the edge than along all others. Steps grow more slowly there, and faster elsewhere, so that growth
-is nearly the same along all lines.
+There, the front catches up after lagging behind at the edge, and cells would grow faster than along other
+lines.
 """
 
 import math
@@ -24,16 +22,16 @@ _LEAST_TURN = math.radians(60.0)  # of an edge that counts as sharp
 
 
 class Edge(NamedTuple):
-    """A sharp edge of a wall: the size of the cells next to it, and its sharpness, from 0 to 1."""
+    """A sharp edge of a wall: size of the cells next to it, and sharpness from 0 to 1."""
 
     size: float
     sharpness: float
 
 
 def sharpest_edge(ring: Floats) -> Edge | None:
-    """Return the sharpest convex corner of a closed, clockwise wall (n, 2), whose first node is not repeated.
+    """Return the sharpest convex corner of a closed, clockwise wall (n, 2), if one turns by 60 degrees.
 
-    Return None if no corner turns by at least 60 degrees.
+    The first node is not repeated.
     """
     turn = -turning(ring, closed=True)
     k = int(np.argmax(turn))
@@ -44,17 +42,19 @@ def sharpest_edge(ring: Floats) -> Edge | None:
 
 
 def fastest(nodes: Floats) -> Floats:
-    """Return the log (nj - 2,) of the largest growth ratio at each inner level of `nodes` (ni, nj, 2)."""
+    """Return the log (nj - 2,) of the largest growth at inner levels of `nodes` (ni, nj, 2)."""
     heights = norms(np.diff(nodes, axis=1))
     return np.asarray(log(heights[:, 1:] / heights[:, :-1]).max(axis=0))
 
 
 def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Floats:
-    """Return the weights (n,) for `level_steps` with which cells should grow equally fast at each level.
+    """Return the weights (n,) for `level_steps` with which cells grow equally fast at each level.
 
-    `rate` is the logarithm of the largest permitted growth ratio. `nodes` is a grid marched with `steps`
-    (n,). At each level, the logarithm of the growth ratio of the steps is changed by `rate` minus the
-    logarithm of the largest growth ratio of cells there.
+    Parameters
+    ----------
+    nodes, steps : a marched grid (ni, nj, 2), and its steps (n,).
+    rate : logarithm of the largest permitted growth ratio.
+    constant : number of equal first steps.
     """
     grown = np.diff(log(steps))
     shares = np.maximum(grown + rate - fastest(nodes), 0.0)
@@ -65,12 +65,13 @@ def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Flo
 def level_steps(
     first: float, distance: float, cells: int, constant: int, edge: Edge | None, shares: Floats | None = None
 ) -> Floats:
-    """Return `cells` step lengths (cells,), which start with `first` and add up to `distance`.
+    """Return step lengths (cells,) that start with `first` and add up to `distance`.
 
-    The first `constant` steps are equal; the others grow by one ratio. If there is a sharp `edge`, the ratio
-    is reduced at those distances from the wall at which lines diverge from the edge (the sharper the edge,
-    the more), so that growth is nearly equal along all lines. Constants are fitted on airfoils. With `shares`
-    (cells,), the logarithms of growth ratios are proportional to `shares`.
+    Parameters
+    ----------
+    constant : number of equal first steps; the others grow by one ratio.
+    edge : sharp edge; growth is reduced where lines diverge from it. Constants are fitted on airfoils.
+    shares : (cells,) weights of the logarithms of growth ratios.
 
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]

@@ -1,18 +1,13 @@
 """Hyperbolic grids for boundary layers, marched from the wall, with exact first-cell height.
 
-::
-
-    wall --march--> levels, as far out as the far field --snap--> first cell exact --count folds--> grid
-              ^                    |                                                     |
-              +-- other distance --+<--------------- more dissipation ------------------+
-
-The equations are in ``kernels/hyperbolic/march.c``. The last level is the far field: nearly a circle or a C,
-with the area of the boundary's far field.
+The distance to march is corrected until the far field is reached; folded cells are marched again with more
+dissipation.
+The equations are in ``kernels/hyperbolic/march.c``.
 """
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -42,21 +37,13 @@ from meshonet.solvers.stages import filling
 
 FADE_ROWS = 12.0  # rows over which the correction of the first cell fades out
 NEAREST, FARTHEST = 1.001, 1.025
-"""Accepted range of the distance of the last level, divided by that of the far field. Further marches aim at
-a quarter of the way from the lower to the upper limit.
-"""
+"""Accepted distances of the last level, relative to the far field."""
 
 MOST_GROWTH = 1.5
-"""Largest growth ratio with which a march is tried: with a larger one, levels would not get away from the
-wall.
-"""
+"""Largest growth ratio that is tried; with larger ones levels do not get away from the wall."""
 
 SPARE_WAY = 1.6
-"""If the number of rows is free: the distance that the rows could reach, divided by the prescribed distance.
-
-With fewer rows some lines would be at the growth limit everywhere and their neighbours not, which bends the
-rows.
-"""
+"""If the number of rows is free, the ratio of the distance that they could reach to the distance."""
 
 EVENINGS = 6  # most marches in which steps are corrected so that growth is even
 WITHIN = 0.998  # fraction of the growth beyond 1 that these aim at
@@ -68,22 +55,47 @@ EQUAL = 1e-9  # relative difference of steps that are equal
 AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a level
 
 
+@dataclass(frozen=True)
+class MarchLayers:
+    """Rows of cells that a march makes.
+
+    Parameters
+    ----------
+    first : first-cell height, in the unit of the boundary.
+    growth : largest growth ratio; None: not limited.
+    free : whether their number follows from `growth`; it is then a multiple of `multiple`.
+    constant : number of rows with the first-cell height.
+    """
+
+    first: float
+    growth: float | None
+    free: bool
+    constant: int
+    multiple: int = 1
+
+
 @timed
 def hyperbolic(
     boundary: Boundary, *, wall_spacing: float, growth: float | None = None, free_rows: bool = False,
     constant: int = 1, multiple: int = 1,
 ) -> Solution:  # fmt: skip
-    """Return an O or C grid marched from the wall of `boundary`; the nodes of the wall are kept bitwise.
+    """Return an O or C grid marched from the wall of `boundary`, whose wall nodes are kept bitwise.
 
-    The far field of `boundary` determines the distance to march, and its `nj` the number of rows. With
-    `free_rows`, the number of rows follows from `growth`, the largest growth ratio; it is then a multiple of
-    `multiple`. In a C grid, both ends of each row move along the sides west and east, which are assumed to be
-    straight. `wall_spacing` is the first-cell height in chords, met to a relative error of 1e-8; the first
-    `constant` rows have this height. The far field of the solution is where the march ended. If all attempts
-    have folded cells, the grid has folded cells.
+    The far field of the solution is where the march ended. The ends of C rows move along the sides west and
+    east, which
+    are assumed to be straight. If all attempts have folded cells, so has the grid.
 
-    Raises InputError: the boundary is four-sided; spacing or growth is out of range; there are too few rows.
-    Raises SolverError: no attempt gave finite nodes.
+    Parameters
+    ----------
+    boundary : its far field determines the distance, its `nj` the number of rows.
+    wall_spacing : first-cell height in chords, met to 1e-8.
+    growth : largest growth ratio.
+    free_rows : whether the number of rows follows from `growth`, as a multiple of `multiple`.
+    constant : number of rows with the first-cell height.
+
+    Raises InputError: a four-sided boundary; spacing or growth out of range; too few rows. Raises
+    SolverError: no attempt
+    gave finite nodes.
     """
     check_layers(wall_spacing, growth)
     if boundary.topology == "quad":
@@ -94,44 +106,33 @@ def hyperbolic(
             parameter="method",
         )
     first = wall_spacing * boundary.chord
-    nodes = marched(Front(boundary, first), boundary.nj - 1, first, growth, free_rows, constant, multiple)
+    layers = MarchLayers(first, growth, free_rows, constant, multiple)
+    nodes = marched(Front(boundary, first), boundary.nj - 1, layers)
     return _solution(boundary, nodes, first)
 
 
-def marched(
-    front: Front,
-    rows: int,
-    first: float,
-    growth: float | None,
-    free_rows: bool,
-    constant: int,
-    multiple: int = 1,
-) -> Floats:
-    """Return the nodes (ni, nj, 2) of a march with `rows` rows of cells.
-
-    With `free_rows` the number of rows follows from `growth`, and is a multiple of `multiple`.
+def marched(front: Front, rows: int, layers: MarchLayers) -> Floats:
+    """Return the nodes (ni, nj, 2) of a march with `rows` rows of cells, or as many as `layers` need.
 
     Raises InputError: too few rows. Raises SolverError: no attempt gave finite nodes.
     """
-    distance = front.outer - front.inner
-    least = cells = _rows(rows, first, distance, growth, free_rows, constant, multiple)
-    if free_rows:
+    growth, multiple = layers.growth, layers.multiple
+    least = cells = _rows(rows, front.outer - front.inner, layers)
+    if layers.free:
         cells = -(-cells // multiple) * multiple
-    nodes = _unfolded(front, cells, first, growth, constant, free_rows)
+    nodes = _unfolded(front, cells, layers)
     while growth and float(fastest(nodes).max()) > math.log(growth):
         cells += -(-(1 + (cells - least) // 8) // multiple) * multiple
         if cells > 2 * least + 8:
             problem = f"no number of rows keeps to a growth of {growth:g}"
             raise InputError(problem, "allow more", parameter="growth")
-        nodes = _unfolded(front, cells, first, growth, constant, free_rows)
-    if cells > rows and not free_rows:
+        nodes = _unfolded(front, cells, layers)
+    if cells > rows and not layers.free:
         raise _too_few(rows, cells, growth or MOST_GROWTH, multiple)
     return nodes
 
 
-def _unfolded(
-    front: Front, cells: int, first: float, growth: float | None, constant: int, free_rows: bool
-) -> Floats:
+def _unfolded(front: Front, cells: int, layers: MarchLayers) -> Floats:
     """Return the nodes (ni, cells + 1, 2) of the attempt with the fewest folded cells.
 
     Raises SolverError: no attempt gave finite nodes.
@@ -139,12 +140,12 @@ def _unfolded(
     best, least = None, math.inf
     attempts: Sequence[MarchSettings] = SHARP_ATTEMPTS if front.edge else ATTEMPTS
     if front.narrow:
-        ratio = growth_ratio(first, front.outer - front.inner, cells)
+        ratio = growth_ratio(layers.first, front.outer - front.inner, cells)
         attempts = attempts_around_base(ratio, concave=front.concave)
     elif front.ends is not None:
         attempts = OPEN_ATTEMPTS
     for settings in attempts:
-        nodes = _evened(front, cells, first, settings, constant, growth, free_rows)
+        nodes = _evened(front, cells, layers, settings)
         folded = math.inf if nodes is None else count_folded(nodes)
         if folded < least:
             best, least = nodes, folded
@@ -164,54 +165,37 @@ def check_layers(wall_spacing: float, growth: float | None = None) -> None:
 
 
 def _too_few(cells: int, needed: int, growth: float, multiple: int) -> InputError:
-    """Return the error for a march of too few rows of cells, `multiple` times as many as were asked for."""
+    """Return the error for a march of too few cells from the wall, `multiple` times the requested number."""
     problem = f"{cells + 1} rows of nodes cannot reach the far field growing by {growth:g} each"
     before = " before {refine}" if multiple > 1 else ""
     return InputError(problem, f"use {-(-needed // multiple) + 1} rows or more{before}")
 
 
-def _rows(
-    cells: int,
-    first: float,
-    distance: float,
-    growth: float | None,
-    free: bool,
-    constant: int,
-    multiple: int,
-) -> int:
+def _rows(cells: int, distance: float, layers: MarchLayers) -> int:
     """Return the number of cells from the wall to the far field, increased if the limit requires it."""
-    allowed = growth or MOST_GROWTH
-    equal = constant - 1
+    first, allowed, equal = layers.first, layers.growth or MOST_GROWTH, layers.constant - 1
     if equal * first >= distance:
-        raise InputError(
-            f"{constant} layers of {first:.3g} reach the far field", "use fewer", parameter="constant_layers"
-        )
+        problem = f"{layers.constant} layers of {first:.3g} reach the far field"
+        raise InputError(problem, "use fewer", parameter="constant_layers")
     free_way = distance - equal * first
-    if growth and free:
+    if layers.growth and layers.free:
         return equal + cells_for_growth(first, SPARE_WAY * free_way, allowed)
     needed = equal + cells_for_growth(first, free_way, allowed)
-    if growth and needed > cells:
+    if layers.growth and needed > cells:
         return needed
     if needed > cells:
-        raise _too_few(cells, needed, allowed, multiple)
+        raise _too_few(cells, needed, allowed, layers.multiple)
     growth_ratio(first, free_way, cells - equal)  # raises when even equal cells reach too far
     return cells
 
 
-def _evened(
-    front: Front,
-    cells: int,
-    first: float,
-    settings: MarchSettings,
-    constant: int,
-    growth: float | None,
-    free_rows: bool,
-) -> Floats | None:
-    """Return the nodes of a march whose steps are corrected so that cells grow by at most `growth`.
+def _evened(front: Front, cells: int, layers: MarchLayers, settings: MarchSettings) -> Floats | None:
+    """Return the nodes of a march whose steps are corrected so that cells grow by at most the limit.
 
     They may still grow faster at concave corners and beside narrow bases, if only more rows would help there.
     """
-    nodes, steps = _marched(front, cells, first, settings, constant, edge=None if growth else front.edge)
+    growth, constant = layers.growth, layers.constant
+    nodes, steps = _marched(front, cells, layers, settings, edge=None if growth else front.edge)
     for _ in range(EVENINGS):
         if nodes is None or growth is None or cells < 3:
             break
@@ -219,12 +203,12 @@ def _evened(
             break
         rate = math.log(1.0 + (growth - 1.0) * WITHIN)
         shares = even_shares(nodes, steps, rate, constant)
-        nodes, steps = _marched(front, cells, first, settings, constant, edge=None, shares=shares)
+        nodes, steps = _marched(front, cells, layers, settings, edge=None, shares=shares)
     if nodes is not None and growth is not None:
         faster = fastest(nodes) > math.log(growth)
         # beside a concave corner even equal steps grow; other levels need more rows there and beside a base,
         # since nodes moved along some lines but not along their neighbours bend cells as narrow as those are
-        more_rows = front.concave or (front.narrow and free_rows)
+        more_rows = front.concave or (front.narrow and layers.free)
         more_rows = more_rows and bool((faster & (np.diff(steps) > EQUAL * steps[1:])).any())
         if faster.any() and not more_rows:
             limit_growth(nodes, growth, constant)
@@ -232,30 +216,17 @@ def _evened(
 
 
 def _marched(
-    front: Front,
-    cells: int,
-    first: float,
-    settings: MarchSettings,
-    constant: int,
-    *,
-    edge: Edge | None,
+    front: Front, cells: int, layers: MarchLayers, settings: MarchSettings, *, edge: Edge | None,
     shares: Floats | None = None,
-) -> tuple[Floats | None, Floats]:
+) -> tuple[Floats | None, Floats]:  # fmt: skip
     """Return nodes (ni, cells + 1, 2) that reach the far field of `front`, None if not finite, and steps."""
-    start = front.start()
-    n = len(start)
-    levels = np.empty((2, cells + 1, n))
+    start, first, constant = front.start(), layers.first, layers.constant
+    levels = np.empty((2, cells + 1, len(start)))
     levels[:, 0] = start.T
     knobs = (
-        settings.dissipation,
-        settings.even,
-        settings.tolerated,
-        settings.bend,
-        1.0 + settings.theta,
-        AREA_SMOOTHING,
-        settings.sweeps,
-        round(RISING * cells),
-    )
+        settings.dissipation, settings.even, settings.tolerated, settings.bend, 1.0 + settings.theta,
+        AREA_SMOOTHING, settings.sweeps, round(RISING * cells),
+    )  # fmt: skip
     threads = threads_for(levels[0].size)
     distance = distance_to_march(front, first, cells, settings, constant, edge)
     widening = front.widening
@@ -285,7 +256,7 @@ def _marched(
 
 
 def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
-    """Move nodes along lines, in place, so that first cells have `heights` (ni,); less away from the wall."""
+    """Move nodes along lines, in place, to first cells of `heights` (ni,); less away from the wall."""
     rows = nodes.shape[1]
     rate = math.log(steps[-1] / steps[-2]) if rows > 2 else 1.0
     fade = exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(FADE_ROWS, 1.5 / max(rate, 1e-3)))
@@ -294,14 +265,12 @@ def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
 
 
 def _equalise(nodes: Floats, constant: int, widening: Floats) -> None:
-    """Make the first `constant` cells of every line as high as its first one, in place; less along a wake."""
+    """Make the first `constant` cells of lines as high as the first one, in place; less along a wake."""
     away = np.arange(nodes.shape[1])
     fade = exp(-np.maximum(away - constant, 0.0) / FADE_ROWS)
     fade[-1] = 0.0
     share = 1.0 / widening[:, None] ** 2
-    for _ in range(
-        4 if constant > 1 else 0
-    ):  # straight pieces: what is left falls by the part of a cell moved
+    for _ in range(4 if constant > 1 else 0):  # pieces are straight: each pass leaves less
         step = np.diff(nodes, axis=1)
         height = np.hypot(step[..., 0], step[..., 1])
         arc = np.pad(np.cumsum(height, axis=1), ((0, 0), (1, 0)))
@@ -332,7 +301,6 @@ def _solution(boundary: Boundary, nodes: Floats, first: float) -> Solution:
 
 
 def _first_cell_note(boundary: Boundary, nodes: Floats, first: float) -> str:
-    """Return a note of the first-cell heights and of the growth ratio."""
     behind = boundary.wake
     wall = nodes[behind : len(nodes) - behind]
     heights = np.hypot(*(wall[:, 1] - wall[:, 0]).T)

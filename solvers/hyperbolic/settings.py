@@ -47,10 +47,9 @@ OPEN_ATTEMPTS = (
 def attempts_around_base(ratio: float, *, concave: bool) -> tuple[MarchSettings, ...]:
     """Return the settings for C grids around a blunt base; rows grow by `ratio`.
 
-    Lines from the corners of a base start at a distance of only one first-cell height. Without more evening
-    they would stay as close while rows become 10,000 times as high, especially if rows grow fast. From
-    `concave` corners lines converge; without more smoothing there, neighbouring cells along a row would
-    differ by a ratio of up to 1.7.
+    Lines from the corners of a base start one first-cell height apart, and need more evening the faster rows
+    grow. Lines
+    from `concave` corners converge, and need more smoothing.
     """
     even = max(0.05, 0.5 * (ratio - 1.0) - 0.05)
     first = replace(OPEN_ATTEMPTS[0], even=even)

@@ -1,4 +1,4 @@
-"""The grid of a volume marched from a surface: one block per patch, with sides named or connected."""
+"""The grid of a volume marched from a surface: one block per patch."""
 
 from dataclasses import replace
 from itertools import groupby
@@ -17,15 +17,12 @@ SYMMETRY, FREE = "symmetry", "free"
 
 
 def blocks_of(surface: Surface, lines: Floats) -> tuple[Block, ...]:
-    """Return a block for each patch of a surface; `lines` (3, n, levels) are the lines from its n nodes."""
+    """Return a block for each patch of a surface with lines (3, n, levels) from its n nodes."""
     return tuple(Block(np.moveaxis(lines[:, lattice], 0, -1)) for lattice in surface.lattices)
 
 
 def volume_grid(surface: Surface, blocks: tuple[Block, ...], in_plane: Indices) -> Grid:
-    """Return the grid of `blocks` on a surface.
-
-    `in_plane` (k,) is the mask of those open edges that lie in planes of symmetry.
-    """
+    """Return the grid of `blocks`; mask `in_plane` (k,) marks open edges in planes of symmetry."""
     top = blocks[0].counts[2] - 1
     sides = [
         (b, side, face_of(lattice, side)) for b, lattice in enumerate(surface.lattices) for side in _SIDES

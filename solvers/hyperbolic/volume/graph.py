@@ -1,16 +1,8 @@
 """The graph of a surface for the march: ordered neighbours, ghost nodes beyond open edges, two colours.
 
-::
-
-    in the plane of symmetry            at a free edge
-
-        b                                   b
-        |         rings a b c B             |         rings a b c B
-    a---o---c     B is b mirrored       a---o---c     B is b extrapolated: o - s (b - o)
-        :                                   :
-        B                                   B
-
-Red nodes, the first colour, are not neighbours of each other; ``kernels/surfaces/graph.h`` has the arrays.
+Ghosts are mirror images in planes of symmetry, extrapolated at free edges. Red nodes are not neighbours of
+each other;
+``kernels/surfaces/graph.h`` has the arrays.
 """
 
 from __future__ import annotations
@@ -29,10 +21,7 @@ _WIDTH, _FALL = 4, 0.35  # rings of nodes around irregular ones that are smoothe
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A neighbour of a node, real or ghost.
-
-    Its position is own x(node) + sign x(base) + shift, with sign and shift (3,).
-    """
+    """A neighbour of a node, real or ghost, at own x(node) + sign x(base) + shift."""
 
     base: int
     own: float = 0.0
@@ -41,25 +30,25 @@ class Seen:
 
     @property
     def real(self) -> bool:
-        """Whether the neighbour is a node of the surface."""
+        """Whether it is a node of the surface."""
         return self.own == 0.0 and bool((self.sign == 1.0).all())
 
     def mirrored(self, plane: Plane) -> Seen:
-        """Return the mirror image of this neighbour in a plane."""
+        """Return its mirror image in a plane."""
         turned = np.where(np.arange(3) == plane.axis, -1.0, 1.0)
         return Seen(
             self.base, self.own, turned * self.sign, turned * self.shift + (1.0 - turned) * plane.value
         )
 
     def opposite(self, splay: float) -> Seen:
-        """Return the ghost node opposite this neighbour, 1 + `splay` times as far from the node."""
+        """Return the ghost node opposite, 1 + `splay` times as far from the node."""
         far = 1.0 + splay
         return Seen(self.base, 1.0 + far, -far * self.sign, -far * self.shift)
 
 
 @dataclass(frozen=True, eq=False)
 class MarchGraph:
-    """Arrays of ``kernels/surfaces/graph.h``; `order` (n,) has the surface index of each of its nodes."""
+    """Arrays of ``kernels/surfaces/graph.h``; `order` (n,) are the surface nodes in its order."""
 
     order: Indices
     red: int
@@ -81,11 +70,14 @@ class MarchGraph:
 def march_graph(
     surface: Surface, planes: Sequence[Plane], in_plane: Indices, hollow: Floats, splay: float, boost: float
 ) -> MarchGraph:
-    """Return the graph of a surface; mask `in_plane` (p, k) marks the open edges that lie in `planes`.
+    """Return the graph of a surface.
 
-    `hollow` (n,) are the distances from concave edges (`meshonet.geometry.surface.hollows`). `splay` says how
-    much farther ghost nodes are at free edges (`Seen.opposite`). `boost` is the additional smoothing at
-    irregular nodes, relative to that at other nodes.
+    Parameters
+    ----------
+    planes, in_plane : planes of symmetry, and mask (p, k) of the open edges in each.
+    hollow : (n,) distances from concave edges (`meshonet.geometry.surface.hollows`).
+    splay : relative excess distance of ghosts at free edges (`Seen.opposite`).
+    boost : additional smoothing at irregular nodes.
     """
     n = len(surface.nodes)
     regular = surface.valence == 4
@@ -114,7 +106,7 @@ def march_graph(
 
 
 def _closed(arc: list[Seen], before: list[Plane], after: list[Plane], splay: float) -> list[Seen]:
-    """Return the ring of a node at an open edge, from its neighbours and the planes of its two open edges."""
+    """Return the ring of a node at an open edge, from its neighbours and the planes of its open edges."""
     shared = [plane for plane in before if plane in after]
     if shared and len(arc) > 2:
         return arc + [seen.mirrored(shared[0]) for seen in arc[-2:0:-1]]
@@ -131,7 +123,7 @@ def _closed(arc: list[Seen], before: list[Plane], after: list[Plane], splay: flo
 
 
 def _with_diagonals(surface: Surface, node: int, pair: list[Seen]) -> list[Seen]:
-    """Return both neighbours of a node of two faces and the corners opposite to it, in order."""
+    """Return both neighbours of a node of two faces and the opposite corners, in order."""
     quads = surface.quads
     opposite = []
     for a, b in ((pair[0], pair[1]), (pair[1], pair[0])):
@@ -143,7 +135,7 @@ def _with_diagonals(surface: Surface, node: int, pair: list[Seen]) -> list[Seen]
 
 
 def _oddness(surface: Surface) -> Floats:
-    """Return 1 at irregular (not 4-valent) nodes (n,) inside the surface, and less around them."""
+    """Return 1 at irregular inner nodes, less around them (n,)."""
     odd = (surface.valence != 4).astype(float)
     odd[surface.open_edges.ravel()] = 0.0
     for _ in range(_WIDTH):
@@ -153,7 +145,7 @@ def _oddness(surface: Surface) -> Floats:
 
 
 def _independent(surface: Surface, coupled: Indices) -> Indices:
-    """Return which nodes (n,) are red: not `coupled` to themselves, and no neighbours of each other."""
+    """Return which nodes (n,) are red: neither `coupled` to themselves nor to each other."""
     ring, n = surface.ring, len(surface.nodes)
     colour = np.full(n, -1)
     for seed in range(n):
@@ -182,7 +174,6 @@ def _independent(surface: Surface, coupled: Indices) -> Indices:
 def _sorted(
     surface: Surface, red: Indices, rings: dict[int, list[Seen]], held: dict[int, set[int]]
 ) -> MarchGraph:
-    """Return the arrays, nodes in their new order."""
     n = len(surface.nodes)
     order = np.concatenate([np.flatnonzero(red), np.flatnonzero(~red)])
     new = np.empty(n, dtype=np.intp)

@@ -1,4 +1,4 @@
-"""Nodes moved along the lines of a volume so that neighbouring cells differ by at most a ratio."""
+"""Nodes moved along the lines of a volume to limit the growth of cells."""
 
 import math
 
@@ -17,7 +17,7 @@ _PASSES = 12  # chords change a little when nodes move
 
 
 def growth_of_levels(lines: Floats) -> Floats:
-    """Return the largest ratio of neighbouring cells (m - 1,) at inner levels of `lines` (3, n, m + 1)."""
+    """Return the largest growth (m - 1,) at inner levels of `lines` (3, n, m + 1)."""
     largest = np.ones(lines.shape[2] - 2)
     for k in range(0, lines.shape[1], _TOGETHER):
         steps = norms(np.moveaxis(np.diff(lines[:, k : k + _TOGETHER], axis=2), 0, -1))
@@ -27,11 +27,11 @@ def growth_of_levels(lines: Floats) -> Floats:
 
 
 def slower_steps(steps: Floats, last_growth: Floats, growth: float) -> Floats:
-    """Return `steps` (m,), those of the last march, changed to grow less where cells grew too much.
+    """Return `steps` (m,) of the last march, changed to grow less where cells grew too much.
 
-    `last_growth` (m - 1,) are the largest growth ratios of cells in the last march. They exceed the ratios of
-    the steps because levels spread and turn. The quotient of both ratios' logarithms is assumed to stay the
-    same at the same distance from the wall. `growth` is the largest permitted growth ratio.
+    `last_growth` (m - 1,) are the largest ratios of cells there. They exceed those of the steps by a factor,
+    on logarithms,
+    that is assumed to depend on the distance from the wall. `growth` is the limit.
     """
     length, most = float(steps.sum()), math.log(growth)
     ratio = np.maximum(log(steps[1:] / steps[:-1]), _LEAST * most)
@@ -61,8 +61,7 @@ def slower_steps(steps: Floats, last_growth: Floats, growth: float) -> Floats:
 def limit_growth(lines: Floats, growth: float) -> None:
     """Move nodes of `lines` (3, n, levels) along the lines, in place; first cells and last nodes stay.
 
-    Lines whose cells differ by at most `growth` do not change. On lines that are too long for this limit,
-    cells grow by the smallest possible constant ratio.
+    Lines within the limit do not change. On lines that are too long for it, cells grow by one ratio.
     """
     if math.isinf(growth):
         return
@@ -80,10 +79,7 @@ def limit_growth(lines: Floats, growth: float) -> None:
 
 
 def _limited(steps: Floats, change: Floats, most: float) -> Floats:
-    """Return steps (k, m) with the same firsts and sums whose logarithms change by at most `most`.
-
-    Every change is clipped, tilted by what makes up for the length.
-    """
+    """Return steps (k, m) with the same firsts and sums whose logarithms change by at most `most`."""
     length = steps.sum(axis=1)
     longest = steps[:, 0] * math.expm1(most * steps.shape[1]) / math.expm1(most)
     bound = np.where(longest < length, math.inf, most)[:, None]  # too long: all changes are the tilt
@@ -102,7 +98,7 @@ def _limited(steps: Floats, change: Floats, most: float) -> Floats:
 
 
 def _move(lines: Floats, which: Indices, old: Floats, new: Floats) -> None:
-    """Move inner nodes of some lines (3, n, levels) from places of `old` steps (k, m) to those of `new`."""
+    """Move inner nodes of some lines (3, n, levels), in place, from `old` to `new` steps (k, m)."""
     before, after = (np.cumsum(steps, axis=1) for steps in (old, new))
     for row, n in enumerate(which):
         for axis in range(3):

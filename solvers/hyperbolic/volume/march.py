@@ -1,13 +1,7 @@
 """Volumes marched from multi-patch surfaces, with exact first-cell height.
 
-::
-
-    surface --graph--> march --> levels --move along lines--> first cells exact --test--> grid
-                         ^                                                         |
-                         +--------------- other smoothing, smaller steps ----------+
-
-The equations are in ``kernels/surfaces/step.c``, the settings tried while cells are folded in
-`meshonet.solvers.hyperbolic.volume.settings`.
+Folded cells are marched again with other smoothing (`settings`). The equations are in
+``kernels/surfaces/step.c``.
 """
 
 import math
@@ -52,7 +46,7 @@ WORST = 10  # folded cells named in the error message
 
 
 class _Volume(NamedTuple):
-    """Blocks of a march, `made` layers of cells off the wall, with `folded` folded cells."""
+    """Blocks of a march with `made` layers of cells, `folded` of them folded."""
 
     blocks: tuple[Block, ...]
     made: int
@@ -65,17 +59,20 @@ def march_surface(
 ) -> Solution:
     """Return the volume between a surface and a far field, with one block per patch.
 
-    Blocks have the indices i and j of their patches; k goes from the wall (``bottom``) to the far field
-    (``top``). Sides in planes of symmetry are patches ``symmetry``; sides that grow from free edges are
-    patches ``free``; all other sides are connected. First cells have the given height along every line. For a
-    `wing`, other smoothing is tried not only if cells are folded, but also if they are poor. The error for
-    folded cells names the `remedy`, if it is given.
+    Blocks have i and j of their patches; k goes from the wall (``bottom``) to the far field (``top``). Sides
+    in planes of
+    symmetry are patches ``symmetry``, sides from free edges ``free``; the others are connected.
 
     Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` lists the differences.
 
-    Raises InputError: no march can satisfy the settings; the grids of two parts would overlap. Raises
-    NoValidGridError, with the worst cells: in every attempt a corner Jacobian or a Bezier coefficient of a
-    Jacobian is not positive.
+    Parameters
+    ----------
+    wing : whether other smoothing is tried also if cells are poor.
+    remedy : remedy for folded cells, in place of the usual one.
+
+    Raises InputError: impossible settings; grids of two parts would overlap. Raises NoValidGridError, with
+    the worst
+    cells: in every attempt a corner Jacobian or a Bezier coefficient of a Jacobian is not positive.
     """
     steps, far = settings.steps(surface.size), settings.distance(surface.size)
     check_parts(surface, far)
@@ -103,10 +100,11 @@ def _best(
     surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, hollows: Hollows,
     steps: Floats, growth: float, *, wing: bool,
 ) -> tuple[_Volume, int]:  # fmt: skip
-    """Return the first volume that is good enough, or else the best one, and the number of attempts.
+    """Return the first volume that is good enough, or the best one, and the number of attempts.
 
-    A volume is good enough if it has no folded cells and, for a `wing`, no scaled Jacobian below 0.35. A
-    volume whose cells grow by more than `growth` is marched again by smaller steps.
+    Good volumes have no folded cells and, for a `wing`, no scaled Jacobian below 0.35. If cells grow by more
+    than `growth`,
+    the march is repeated with smaller steps.
     """
     best: _Volume | None = None
     most = (0, -math.inf, 0.0)
@@ -142,10 +140,9 @@ def _volume(surface: Surface, lines: Floats) -> _Volume:
 def _with_growth(
     surface: Surface, lines: Floats, marched: Callable[[Floats], Floats], steps: Floats, growth: float
 ) -> _Volume | None:
-    """Return a valid volume whose cells grow by at most `growth` along its lines, None if there is none.
+    """Return the best valid volume whose cells grow by at most `growth` along lines, or None.
 
-    Several marches with decreasing steps are made, and the nodes of each are moved along the lines to keep
-    the limit. The result is the one with the best cells.
+    Several marches with decreasing steps are made, with nodes moved along the lines.
     """
     tried = [(lines, steps)]
     for _ in range(_SLOWER):
@@ -175,7 +172,7 @@ def _least_jacobian(blocks: tuple[Block, ...]) -> float:
 def march_levels(
     surface: Surface, graph: MarchGraph, nodes: Floats, steps: Floats, smoothing: Smoothing
 ) -> Floats:
-    """Return the levels (made + 1, 3, n) of a march by `steps` (m,) until it fails; nodes as in `graph`."""
+    """Return the levels (made + 1, 3, n) of a march by `steps` (m,) until it fails."""
     levels = np.empty((len(steps) + 1, 3, len(nodes)))
     levels[0] = nodes[graph.order].T
     numbers = smoothing.numbers(0.5 * surface.size)
@@ -186,7 +183,7 @@ def march_levels(
 
 
 def _respaced(levels: Floats, graph: MarchGraph, steps: Floats) -> Floats:
-    """Return the lines (3, n, levels) of a march, with nodes moved along them to exact first-cell heights."""
+    """Return the lines (3, n, levels) of a march, with exact first-cell heights."""
     made = len(levels) - 1
     lines = np.empty((3, levels.shape[2], made + 1))
     if made < 2:
@@ -198,7 +195,7 @@ def _respaced(levels: Floats, graph: MarchGraph, steps: Floats) -> Floats:
 
 
 def _keep_planes(lines: Floats, surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> None:
-    """Move nodes back, in place, that rounding moved out of planes of symmetry."""
+    """Move nodes back, in place, into planes of symmetry."""
     edges = surface.open_edges
     for plane, flags in zip(planes, inside, strict=True):
         lines[plane.axis, edges[flags]] = plane.value
@@ -227,7 +224,7 @@ def _refusal(
 
 
 def _worst(blocks: tuple[Block, ...]) -> list[BadCell]:
-    """Return folded cells, those with the least corners first, of each block in turn."""
+    """Return folded cells with the smallest corners, of each block in turn."""
     cells: list[BadCell] = []
     for number, block in enumerate(blocks):
         worst = worst_solids(block.nodes, WORST, BEZIER)

@@ -1,4 +1,4 @@
-"""Parts of a surface that do not touch: grids of parts near each other would overlap."""
+"""Parts of a surface that do not touch, whose grids might overlap."""
 
 from itertools import combinations
 
@@ -23,7 +23,6 @@ def check_parts(surface: Surface, far: float) -> None:
 
 
 def _parts(surface: Surface) -> list[Indices]:
-    """Return the nodes of each connected part."""
     parts: list[Indices] = []
     for lattice in surface.lattices:
         nodes = np.unique(lattice)
@@ -34,6 +33,6 @@ def _parts(surface: Surface) -> list[Indices]:
 
 
 def _distance(a: Floats, b: Floats) -> float:
-    """Return about the least distance between points (n, 3) and (m, 3)."""
+    """Return about the smallest distance between points (n, 3) and (m, 3)."""
     a, b = (points[:: 1 + len(points) // _SAMPLES] for points in (a, b))
     return float(np.sqrt(min(((b - point) ** 2).sum(axis=1).min() for point in a)))

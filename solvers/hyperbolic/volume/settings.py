@@ -20,19 +20,17 @@ FEWEST = 3  # layers of nodes: two cells
 
 @dataclass(frozen=True)
 class VolumeMarch:
-    """A march from a surface.
+    """A march from a surface; lengths are in the surface's unit.
 
     Parameters
     ----------
-    first_cell : height of the cells at the wall, in the surface's unit of length.
-    layers : number of nodes along each line, including the wall node; None: as many as `growth` needs.
-    far_field : distance of the far field, in the surface's unit; None: 15 times the longest extent of the
-        surface.
-    symmetry : axis to which planes of symmetry are normal. ``none``: all open edges are free. None: a plane
-        normal to an axis is a plane of symmetry if it contains open edges and the surface is on one side of
-        it.
-    growth : largest growth ratio of cells along a line. None: 1.2 if `layers` is None, otherwise the ratio
-        that `layers` require.
+    first_cell : height of the cells at the wall.
+    layers : number of nodes along each line, with the wall node; None: as `growth` requires.
+    far_field : distance of the far field; None: 15 times the longest extent of the surface.
+    symmetry : axis normal to planes of symmetry; ``none``: all open edges are free. None: planes with open
+        edges that
+        have the surface on one side.
+    growth : largest growth ratio along a line; None: 1.2, or as `layers` require.
     """
 
     first_cell: float
@@ -55,7 +53,7 @@ class VolumeMarch:
 
     @property
     def limit(self) -> float:
-        """Largest ratio of neighbouring cells; infinite if it follows from `layers`."""
+        """Largest growth ratio; infinite if it follows from `layers`."""
         return math.inf if self.layers is not None and self.growth is None else self.growth or GROWTH
 
     def distance(self, size: float) -> float:
@@ -65,7 +63,7 @@ class VolumeMarch:
     def steps(self, size: float) -> Floats:
         """Return the steps (layers - 1,) of a march from a surface of extent `size`.
 
-        Raises InputError: too few layers for the growth ratio, or for any growth ratio.
+        Raises InputError: too few layers for this growth ratio, or for any.
         """
         far = self.distance(size)
         if far < 2.0 * self.first_cell:
@@ -86,12 +84,11 @@ class VolumeMarch:
 
 
 class Smoothing(NamedTuple):
-    """The parameters of ``kernels/surfaces/march.h``, in its order, and two parameters of the graph.
+    """The parameters of ``kernels/surfaces/march.h`` except `size`, and two of the graph.
 
-    The parameter `size` of that file is left out.
-
-    `outer` is the factor from the explicit smoothing within levels near the wall to that far away. Up to 6
-    the levels around a sphere remain spheres; 16 makes better cells behind swept wings.
+    `outer` is the ratio of explicit smoothing far away to that near the wall: up to 6 levels around a sphere
+    stay spheres,
+    16 makes better cells behind swept wings.
     """
 
     explicit: float = 0.3
@@ -116,10 +113,7 @@ class Smoothing(NamedTuple):
     """Additional smoothing at irregular nodes, as a fraction of the smoothing elsewhere."""
 
     def numbers(self, size: float) -> tuple[float, ...]:
-        """Return the parameters in the form of the kernels, which have no `splay` and `boost`.
-
-        `size` is half the extent of the surface.
-        """
+        """Return the parameters for the kernels; `size` is half the extent of the surface."""
         return (*self[:5], size, *self[5:16])
 
 
@@ -148,5 +142,5 @@ CONCAVE_ATTEMPTS = (
 
 
 def attempts_for(*, concave: bool, wing: bool) -> tuple[Smoothing, ...]:
-    """Return the parameters that are tried in turn, on a surface with `concave` edges or not, or a `wing`."""
+    """Return the parameters tried in turn, on surfaces with `concave` edges or of a `wing`."""
     return CONCAVE_ATTEMPTS if concave else WING_ATTEMPTS if wing else ATTEMPTS

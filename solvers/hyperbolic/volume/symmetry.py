@@ -1,11 +1,8 @@
-"""Planes of symmetry of a surface: detection, and nodes of its open edges moved exactly into them.
+"""Planes of symmetry of a surface, and its open edges moved exactly into them.
 
-A plane that walls face is none where the march would reach it before the far field::
-
-    |               y = 1: not a plane of symmetry of walls a and b, and neither is x = 1: lines from
-    a               the walls would run into them. In a plane of symmetry the wall turns away from it
-    |               or ends at a right angle, so that its mirror image continues it.
-    +---- b ----
+A plane that walls face is none if the march would reach it before the far field. In a plane of symmetry walls
+turn away
+from it, or end at right angles.
 """
 
 from typing import NamedTuple
@@ -23,7 +20,7 @@ _FACING = 0.1  # largest net area that faces a plane of symmetry, as a fraction 
 
 
 class Symmetry(NamedTuple):
-    """Planes of symmetry, the mask `inside` (p, k) of the open edges in each plane, and notes on both."""
+    """Planes of symmetry, mask `inside` (p, k) of the open edges in each, and notes."""
 
     planes: tuple[Plane, ...]
     inside: Indices
@@ -33,11 +30,10 @@ class Symmetry(NamedTuple):
 def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
     """Return the planes of symmetry of a surface that is marched to a distance `far`.
 
-    `axis` is the normal of the planes, ``none`` for no plane, None to detect planes. A detected plane is left
-    out, with a note, if walls face it (see `closes_in`).
+    `axis` is their normal, ``none`` for no plane, None to detect them. A detected plane that walls face is
+    left out.
 
-    Raises InputError: no open edge lies in a plane normal to `axis`; a wall faces such a plane and is nearer
-    to it than the far field.
+    Raises InputError: no open edge is in a plane normal to `axis`; walls that face the plane are too close.
     """
     planes, inside = symmetry_planes(surface, axis)
     kept, notes = [], []
@@ -58,10 +54,7 @@ def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
 
 
 def closes_in(surface: Surface, plane: Plane) -> float:
-    """Return the mean distance of the walls that face a plane.
-
-    The result is infinite unless more area faces the plane than faces away from it.
-    """
+    """Return the mean distance of walls that face a plane, infinite unless most walls do."""
     a, b, c, d = (surface.nodes[surface.quads[:, k]] for k in range(4))
     area = 0.5 * np.cross(c - a, d - b)
     away = (0.25 * (a + b + c + d))[:, plane.axis] - plane.value
@@ -73,11 +66,9 @@ def closes_in(surface: Surface, plane: Plane) -> float:
 
 
 def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ...], Indices]:
-    """Return the planes normal to an axis that contain open edges, and the mask (p, k) of edges in each.
+    """Return the planes normal to an axis that contain open edges, and the mask (p, k) of these.
 
-    `axis` is the normal direction of the planes, ``none`` for no plane, None to detect them.
-
-    Raises InputError: no open edge lies in a plane normal to the axis.
+    `axis`: see `symmetry_of`. Raises InputError: no open edge is in a plane normal to the axis.
     """
     sides, nodes = surface.open_sides, surface.nodes
     if axis in (None, "none"):
@@ -99,7 +90,7 @@ def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ..
 
 
 def _named(nodes: Floats, sides: Indices, axis: int, slack: float) -> tuple[Plane, ...]:
-    """Return the planes at the ends of the surface along `axis` in which open edges lie, within `slack`."""
+    """Return the planes at the ends of the surface along `axis` with open edges within `slack`."""
     planes = []
     for end in (float(nodes[:, axis].min()), float(nodes[:, axis].max())):
         inside = edges_in(nodes, sides, Plane(axis, end), 2.0 * slack)
@@ -109,10 +100,7 @@ def _named(nodes: Floats, sides: Indices, axis: int, slack: float) -> tuple[Plan
 
 
 def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> Floats:
-    """Return the nodes (n, 3) of a surface, with open edges moved exactly into planes of symmetry.
-
-    `inside` (p, k) is a mask of the edges in each of the `planes`.
-    """
+    """Return the nodes (n, 3) of a surface, with edges `inside` (p, k) moved exactly into `planes`."""
     nodes, edges = surface.nodes.copy(), surface.open_edges
     for plane, flags in zip(planes, inside, strict=True):
         nodes[edges[flags], plane.axis] = plane.value
@@ -120,7 +108,7 @@ def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> F
 
 
 def free_edges_note(surface: Surface, inside: Indices) -> str:
-    """Return a note on open edges that lie in no plane of symmetry, an empty text if there are none."""
+    """Return a note on open edges in no plane of symmetry; empty if there are none."""
     edges = surface.open_edges
     free = ~inside.any(axis=0) if len(inside) else np.ones(len(edges), dtype=bool)
     if not free.any():
@@ -133,7 +121,7 @@ def free_edges_note(surface: Surface, inside: Indices) -> str:
 
 
 def planes_note(planes: tuple[Plane, ...], named: str | None) -> str:
-    """Return a note on the planes of symmetry that were detected, an empty text if they were named."""
+    """Return a note on detected planes of symmetry; empty if they were named."""
     if not planes or named is not None:
         return ""
     return "open edges are in a plane of symmetry at " + " and ".join(str(plane) for plane in planes)
