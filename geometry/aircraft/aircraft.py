@@ -1,4 +1,4 @@
-"""A body with wings: what the grid of an aircraft is made from."""
+"""A body with wings, from which the grid of an aircraft is made."""
 
 from dataclasses import dataclass
 
@@ -14,33 +14,32 @@ _TAPER = 0.02  # smallest ratio of the shortest to the longest chord: all sectio
 
 @dataclass(frozen=True, eq=False)
 class Aircraft:
-    """A body and wings that begin inside the body: the half z >= 0, or both halves.
+    """A body and wings that begin inside it: the half z >= 0, or both halves.
 
     Parameters
     ----------
     body : Body
-        The fuselage: a body of revolution (`Body`) or a body given by sections (`LoftedBody`).
+        The fuselage: a body of revolution, or a `LoftedBody`.
     wing : Stack or SurfaceWing
-        Sections of the wing from the inside of the body to the tip, or the surface of the wing. Lengths of
-        the grid, such as the first-cell height, are in units of the longest chord of this wing.
+        Sections of the wing from inside the body to the tip, or its surface. Its longest chord is the unit of
+        first-cell
+        height and far field.
     name : str, optional
         Name of the aircraft.
     half : bool, optional
-        True: the grid is the half z >= 0 and ends in the plane of symmetry. False: the grid is this half
-        joined to its mirror image; the patches of both halves have the same names.
+        Whether the grid ends in the plane of symmetry; otherwise its mirror image is added, with the same
+        patch names.
     others : tuple of Stack or SurfaceWing, optional
-        Further wings upstream or downstream of the wing, such as a tail plane or canards, and a `Fin`. Each
-        needs a name of its own.
+        Further wings, such as a tail plane, canards or a `Fin`, each with its own name.
     axes : AircraftAxes, optional
-        Axes of the surface file; the grid gets the same axes.
+        Axes of the surface file, and of the grid.
     notes : tuple of str, optional
         Notes on changes of the body.
 
     Raises
     ------
     InputError
-        A stack that is not a wing, has outlines instead of airfoils, or has a tip that is nearly a point; two
-        patches with the same name.
+        A stack that is not a wing of airfoils with a tip that is wide enough; two patches with the same name.
 
     Examples
     --------
@@ -85,7 +84,7 @@ class Aircraft:
 
 
 def _refuse_no_wing(wing: Stack, at: str) -> None:
-    """Raise InputError for a stack that is no wing with a tip, of airfoils."""
+    """Raise InputError for a stack that is not a wing of airfoils with a tip."""
     if wing.kind != "wing":
         raise InputError(f"a {wing.kind} is no wing", "leave it out", place=f"{at}.kind")
     if wing.tip == "open":
@@ -106,7 +105,7 @@ def _refuse_no_wing(wing: Stack, at: str) -> None:
 
 
 def _refuse_name(name: str, taken: list[str], place: str) -> None:
-    """Raise InputError for a name that another patch has, or that is none."""
+    """Raise InputError for an empty name, or that of another patch."""
     if not name or not name.isprintable():
         raise InputError(f"{name!r} is no name", "give letters and digits", place=place)
     if name in taken:

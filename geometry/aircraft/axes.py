@@ -11,21 +11,19 @@ from meshonet.geometry.blocks.halves import with_i_reversed
 
 _NAMES = "xyz"
 FLAT = 1e-6
-"""Largest distance of a node that counts as in the plane of symmetry, or at an end of the body, divided by
-the size of the surface.
-"""
+"""Tolerance for nodes in the plane of symmetry or at an end of the body, in sizes of the surface."""
 
 
 @dataclass(frozen=True)
 class AircraftAxes:
-    """Which coordinate axes of a file point upwards and along the span; x is along the body.
+    """Which axes of a file point upwards and along the span; x is along the body.
 
     Parameters
     ----------
     up, span : int, optional
         1 for y, 2 for z.
     sign : int, optional
-        -1 if the file has the half of the aircraft with negative coordinates along the span, else 1.
+        -1 if the file has the half with negative coordinates along the span, else 1.
     """
 
     up: int = 1
@@ -34,20 +32,16 @@ class AircraftAxes:
 
     @property
     def description(self) -> str:
-        """A phrase that describes the axes, for notes."""
+        """Description of the axes for notes."""
         half = ">=" if self.sign > 0 else "<="
         return f"{_NAMES[self.up]} points up, and the half is that of {_NAMES[self.span]} {half} 0"
 
     def to_aircraft(self, points: Floats) -> Floats:
-        """Return the `points` (..., 3) of a file, converted to the axes of the aircraft."""
+        """Return the `points` (..., 3) of a file in the axes of the aircraft."""
         return np.stack([points[..., 0], points[..., self.up], self.sign * points[..., self.span]], axis=-1)
 
     def to_file(self, grid: Grid) -> Grid:
-        """Return the `grid` of an aircraft, converted to the axes of the file.
-
-        If this mirrors the grid, the direction of i is reversed in all blocks, so that they stay
-        right-handed.
-        """
+        """Return the `grid` of an aircraft in the axes of the file, with i reversed if that mirrors it."""
         if self == AircraftAxes():
             return grid
         if (self.sign > 0) != (self.up == 1):  # the other handedness
@@ -66,10 +60,7 @@ FILE_AXES = AircraftAxes()
 
 
 def axes_of(points: Floats) -> AircraftAxes | None:
-    """Return the axes of a file whose `points` (n, 3) lie on one half of an aircraft.
-
-    None if the points lie on both halves.
-    """
+    """Return the axes of a file with `points` (n, 3) on one half of an aircraft; None: on both."""
     flat = FLAT * float(np.ptp(points, axis=0).max())
     for span in (2, 1):
         for sign in (1, -1):

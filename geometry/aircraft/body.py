@@ -21,20 +21,14 @@ _FLAT = 1e-6  # smallest dx/ds at which Newton's method is used; dx/ds is 0 at a
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A body of revolution; the axis is parallel to x and lies in the plane of symmetry z = 0.
+    """A body of revolution about an axis parallel to x, in the plane of symmetry z = 0.
 
-    ::
-
-        y                    s: arc length of the meridian, 0 at the nose
-        |   .-------.__      theta: 0 at the keel (-y), pi at the crown (+y); half the body has z >= 0
-        |  (           '>
-        |   '-------'``
-        +----------------- x
+    s is the arc length of the meridian, 0 at the nose; theta is 0 at the keel (-y) and pi at the crown (+y).
 
     Parameters
     ----------
     meridian : array
-        Points (n, 2), x and radius, from nose to tail; x increases, and the radius is 0 at both ends.
+        Points (n, 2) of x and radius from nose to tail; x increases, and the radius is 0 at both ends.
     y : float, optional
         Height of the axis.
     name : str, optional
@@ -43,8 +37,9 @@ class Body:
     Raises
     ------
     InputError
-        Fewer than 4 points; x that does not increase; radii that are negative, or not 0 at nose and tail;
-        points so far apart that a spline through them turns back or bulges; control characters in a name.
+        Fewer than 4 points; x that does not increase; radii that are negative, or not 0 at both ends; points
+        so far apart
+        that a spline through them turns back or bulges; control characters in a name.
 
     Examples
     --------
@@ -67,7 +62,7 @@ class Body:
         self._refuse_wild_spline()
 
     def _refuse_wild_spline(self) -> None:
-        """Raise InputError where the spline turns back or bulges between points that are far apart."""
+        """Raise InputError if the spline turns back or bulges between distant points."""
         parts = np.arange(len(self.arc) - 1)[:, None] + np.arange(1, _BETWEEN) / _BETWEEN
         s = np.interp(parts.ravel(), np.arange(len(self.arc)), self.arc)
         x, r = self._spline(s).reshape(len(self.arc) - 1, _BETWEEN - 1, 2).transpose(2, 0, 1)
@@ -81,14 +76,14 @@ class Body:
             raise self._wild(int(wild[0]))
 
     def _wild(self, at: int) -> InputError:
-        """Return the error for a spline that turns back, bulges or closes behind point `at`."""
+        """Return the error for a wild spline behind point `at`."""
         problem = "the spline through the meridian turns back, bulges or reaches the axis"
         place = f"meridian: points {at + 1} and {at + 2}"
         return InputError(problem, "give more points between them", place=place)
 
     @cached_property
     def arc(self) -> Floats:
-        """(n,) arc length at the points, as the sum of chords."""
+        """(n,) arc length at the points, along chords."""
         step = np.diff(self.meridian, axis=0)
         return np.concatenate([[0.0], np.cumsum(np.hypot(step[:, 0], step[:, 1]))])
 
@@ -134,7 +129,7 @@ class Body:
         return np.stack([x, self.y - r * cos(theta), r * sin(theta)], axis=-1)
 
     def arc_at(self, x: Floats) -> Floats:
-        """Return the arc length (n,) of the meridian at x (n,), clipped to the range of the body."""
+        """Return the arc length (n,) at x (n,), within the body."""
         x = np.clip(x, self.meridian[0, 0], self.meridian[-1, 0])
         s = monotone_cubic(self.meridian[:, 0], self.arc, x, linear=True)
         for _ in range(_STEPS):  # Newton's method
@@ -146,11 +141,7 @@ class Body:
         return np.asarray(s)
 
     def arcs_near(self, points: Floats) -> Floats:
-        """Return the arc lengths (n,) at which the meridian is nearest to `points` (n, 2) of x and radius.
-
-        The points are ordered from nose to tail. At a blunt nose x does not change along the meridian; an arc
-        length still identifies a point there.
-        """
+        """Return the arc lengths (n,) nearest to `points` (n, 2) of x and radius, from nose to tail."""
         s = arc_lengths(points)
         s *= self.length / s[-1]
         for _ in range(_STEPS):  # Newton's method for the foot of each point
@@ -160,21 +151,18 @@ class Body:
         return s
 
     def outside(self, points: Floats) -> Floats:
-        """Return the distances (n,) of points (n, 3) from the surface, measured along the radius.
-
-        Negative inside the body.
-        """
+        """Return the distances (n,) of points (n, 3) from the surface along the radius; negative inside."""
         r = self._spline(self.arc_at(points[:, 0]))[:, 1]
         return np.asarray(np.hypot(points[:, 1] - self.y, points[:, 2]) - r)
 
     def beside(self, point: Floats) -> str:
-        """Return a text: the distance of a `point` (3,) from the axis, and the body's radius at that x."""
+        """Return where a `point` (3,) is beside the body, as text."""
         away, radius = np.hypot(point[1] - self.y, point[2]), float(np.interp(point[0], *self.meridian.T))
         return f"{away:.4g} from its axis, where its radius is {radius:.4g}"
 
 
 def _refuse_open(points: Floats) -> None:
-    """Raise InputError for points that are no meridian from nose to tail."""
+    """Raise InputError for points that are not a meridian."""
     if points.ndim != 2 or points.shape[1] != 2 or len(points) < 4:
         raise InputError(f"a meridian of shape {points.shape}", "give 4 or more points x, r")
     if not np.isfinite(points).all():

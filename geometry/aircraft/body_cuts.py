@@ -26,14 +26,14 @@ _ROUND = 1e-6  # largest difference of the radii of a cut through a body of revo
 
 @dataclass(frozen=True, eq=False)
 class BodyCuts:
-    """Cross-sections of one half (z >= 0) of a body, in planes of constant x between its nose and its tail.
+    """Cross-sections of the half z >= 0 of a body in planes of constant x.
 
     Parameters
     ----------
-    x : (n,) positions of the planes, ascending, without nose and tail.
-    points : for each plane, (k, 2) y and z of the points of the cut, ordered from keel to crown.
-    nose, tail : x and y of the two ends of the body.
-    notes : sentences about caps that were added to the ends of the body that are not points.
+    x : (n,) ascending positions of the planes, without nose and tail.
+    points : (k, 2) y and z of each cut, from keel to crown.
+    nose, tail : x and y of the two ends.
+    notes : sentences about caps at ends that are not points.
     """
 
     x: Floats
@@ -44,10 +44,7 @@ class BodyCuts:
 
     @property
     def meridian(self) -> Floats | None:
-        """(n + 2, 2) x and radius of the body, ordered from nose to tail.
-
-        None if this is no body of revolution about a line parallel to x.
-        """
+        """(n + 2, 2) x and radius from nose to tail, None if this is no body of revolution about x."""
         y, size = self.nose[1], _ROUND * (self.tail[0] - self.nose[0])
         radii = [np.hypot(cut[:, 0] - y, cut[:, 1]) for cut in self.points]
         if abs(self.tail[1] - y) > size or max(float(np.ptp(each)) for each in radii) > size:
@@ -59,9 +56,9 @@ class BodyCuts:
 def body_cuts(patches: Sequence[Floats], name: str) -> BodyCuts:
     """Return cuts through the half z >= 0 of a body with the surface patches `patches` (ni, nj, 3).
 
-    Cuts are made at the x of each surface node in the plane of symmetry z = 0, and also next to corners of
-    keel and crown. An end of the body that is not a point gets a cap: half an ellipsoid, whose length is half
-    the height of this end.
+    Cuts are at the x of nodes in the plane of symmetry, and beside corners of keel and crown. An end that is
+    not a point
+    gets a cap: half an ellipsoid, half as long as the end is high.
 
     Raises InputError: a surface with holes, or with fewer than 4 nodes in the plane of symmetry.
     """
@@ -107,17 +104,14 @@ def body_cuts(patches: Sequence[Floats], name: str) -> BodyCuts:
 
 
 def _corners(x: Floats, heights: Floats) -> Floats:
-    """Return the positions of corners in half the height (n,) at x (n,)."""
+    """Return the positions of corners in heights (n,) at x (n,)."""
     turns = np.abs(np.diff(arctan2(0.5 * np.diff(heights), np.diff(x))))
     beside = np.pad(turns, 1, constant_values=np.inf)
     return x[1:-1][(turns > _CORNER) & (turns > _ALONE * np.maximum(beside[:-2], beside[2:]))]
 
 
 def _with_others(x: Floats, at: Floats, step: float) -> Floats:
-    """Return positions with others on both sides of some, `at` the distance `step`, twice that, and so on.
-
-    A spline through stations that are far apart would bulge beside a corner.
-    """
+    """Return positions with others beside some, `at` the distances `step`, twice that, and so on."""
     own = x.tolist()
     for k in np.searchsorted(x, at).tolist():
         for other in (k - 1, k + 1):
@@ -129,14 +123,14 @@ def _with_others(x: Floats, at: Floats, step: float) -> Floats:
 
 
 def _cap(cut: Floats, at: float, length: float) -> tuple[list[float], list[Floats]]:
-    """Return x and points of cuts through a cap on a cut (k, 2), from there on, without its point."""
+    """Return x and points of cuts through a cap on a cut (k, 2), without its point."""
     turns = np.linspace(0.0, 0.5 * np.pi, _CAP + 1)[:-1]
     middle = np.array([0.5 * (cut[0, 0] + cut[-1, 0]), 0.0])
     return (at + length * sin(turns)).tolist(), [middle + float(c) * (cut - middle) for c in cos(turns)]
 
 
 def _edges(lattice: Indices) -> Indices:
-    """Return the edges (m, 2) of a lattice of nodes, without those between equal nodes."""
+    """Return the edges (m, 2) of a lattice of nodes that have a length."""
     along = [np.stack([lattice[:-1].ravel(), lattice[1:].ravel()], axis=1)]
     along.append(np.stack([lattice[:, :-1].ravel(), lattice[:, 1:].ravel()], axis=1))
     edges = np.concatenate(along)
@@ -144,7 +138,7 @@ def _edges(lattice: Indices) -> Indices:
 
 
 def _cut(nodes: Floats, edges: Indices, x: float, name: str) -> Floats:
-    """Return y and z (k, 2), from keel to crown, where edges cross a plane."""
+    """Return y and z (k, 2), from keel to crown, of edges in a plane."""
     begin, end = nodes[edges[:, 0]], nodes[edges[:, 1]]
     cross = ((begin[:, 0] <= x) != (end[:, 0] <= x)) | ((begin[:, 0] >= x) != (end[:, 0] >= x))
     begin, end = begin[cross], end[cross]
@@ -163,7 +157,7 @@ def _cut(nodes: Floats, edges: Indices, x: float, name: str) -> Floats:
 
 
 def _refuse_holes(nodes: Floats, lattices: Sequence[Indices], within: tuple[float, float], name: str) -> None:
-    """Raise InputError for open edges between nose and tail that are not in the plane of symmetry."""
+    """Raise InputError for open edges between nose and tail outside the plane of symmetry."""
     quads = lattice_quads(lattices)
     edges = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
     edges = edges[edges[:, 0] != edges[:, 1]]

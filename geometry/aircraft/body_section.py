@@ -1,4 +1,4 @@
-"""Cross-sections of a body that is no body of revolution."""
+"""Cross-sections of a body that is not a body of revolution."""
 
 import math
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.polygon.corners import turning
 
 ANGLES = 513
-"""Number of equally spaced angles from keel to crown at which the shape of a section is stored."""
+"""Number of angles from keel to crown at which the shape of a section is stored."""
 _DENSE = 8  # number of points on the spline between two given points, from which the shape is interpolated
 _FEWEST_POINTS = 5
 _EXPONENTS = 1.2, 20.0  # smallest and largest exponent: from about a rhombus to about a rectangle
@@ -23,30 +23,29 @@ _IN_PLANE = 1e-6  # rounding of coordinates: largest distance of an end from z =
 
 @dataclass(frozen=True, eq=False)
 class BodySection:
-    """A cross-section of a body in a plane of constant x; it is symmetric about z = 0.
+    """A cross-section of a body in a plane of constant x, symmetric about z = 0.
 
-    A section without width, height and points is a single point, the nose or the tail of the body.
+    Without width, height and points it is a single point, the nose or the tail.
 
     Parameters
     ----------
     x : float
         Position of the plane.
     y : float, optional
-        Height y of the centre of a superellipse; if `points` are given, they are displaced upwards by this
-        value.
+        Height of the centre of a superellipse, or displacement of `points`.
     width, height : float, optional
-        Size of a superellipse from side to side, and from keel (lowest point) to crown (highest point).
+        Size of a superellipse.
     exponent : float, optional
-        Exponent of the superellipse: 2 gives an ellipse, a larger value a rectangle with rounded corners.
+        Exponent of the superellipse: 2 gives an ellipse, more a rectangle with rounded corners.
     points : array, optional
-        Points (n, 2) of y and z on the half z >= 0, ordered from keel to crown or from crown to keel. They
-        replace width, height and exponent.
+        Points (n, 2) of y and z on the half z >= 0, between keel and crown, in place of a superellipse.
 
     Raises
     ------
     InputError
         A width without a height; sizes or an exponent out of range; points that do not begin and end at z =
-        0; an outline with a sharp corner; an outline that a ray from the middle meets twice.
+        0, have a sharp
+        corner, or are met twice by a ray from the middle.
 
     Examples
     --------
@@ -83,12 +82,12 @@ class BodySection:
 
     @property
     def is_point(self) -> bool:
-        """Whether the section is a single point, the nose or the tail."""
+        """Whether the section is a single point."""
         return self.points is None and self.width == 0.0
 
     @property
     def middle(self) -> float:
-        """Height of the middle, half way from keel to crown."""
+        """Height of the middle between keel and crown."""
         return self.y if self.points is None else self.y + 0.5 * float(self.points[0, 0] + self.points[-1, 0])
 
     @property
@@ -100,14 +99,14 @@ class BodySection:
 
     @cached_property
     def _seen(self) -> tuple[Floats, Floats]:
-        """Angles and distances of its points, as in `shape`."""
+        """Angles and distances of its points (`shape`)."""
         return _seen(np.asarray(self.points), self.middle - self.y, *self.halves)
 
     @property
     def shape(self) -> Floats:
-        """Distances (ANGLES,) from the middle, at equal steps of the angle from keel to crown; 1 if elliptic.
+        """Distances (ANGLES,) from the middle at equal angles from keel to crown; 1 if elliptic.
 
-        Angles and distances are measured after half the width and half the height have been scaled to 1.
+        Half the width and half the height are scaled to 1.
         """
         even = np.linspace(0.0, math.pi, ANGLES)
         if self.points is not None:
@@ -122,7 +121,7 @@ class BodySection:
 
 
 def _half_section(points: Floats) -> Floats:
-    """Return points (n, 2) from keel to crown. Raises InputError: they are no half of a section."""
+    """Return points (n, 2) from keel to crown. Raises InputError: they are not half a section."""
     if points.ndim != 2 or points.shape[1] != 2 or len(points) < _FEWEST_POINTS:
         raise InputError(f"points of shape {points.shape}", f"give {_FEWEST_POINTS} or more points y, z")
     if not np.isfinite(points).all():
@@ -148,13 +147,13 @@ def _half_section(points: Floats) -> Floats:
 
 
 def _mirrored(points: Floats) -> Floats:
-    """Return points (3 n - 2, 2) of a half section, with those of the other half before and behind them."""
+    """Return points (3 n - 2, 2) of a half section between those of the other half."""
     other = points[::-1] * [1.0, -1.0]
     return np.concatenate([other[:-1], points, other[1:]])
 
 
 def _seen(points: Floats, middle: float, across: float, up: float) -> tuple[Floats, Floats]:
-    """Return angles and distances, seen from the middle of a section, on a spline through its points.
+    """Return angles and distances on a spline through the points of a section, from its middle.
 
     Raises InputError: a ray from there meets the section twice.
     """

@@ -1,4 +1,4 @@
-"""Dimensions of an aircraft and of its grid, so that a user notices a wrong unit or a wrong file."""
+"""Dimensions of an aircraft and of its grid, which reveal a wrong unit or file."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -14,12 +14,12 @@ class AircraftDimensions:
     Parameters
     ----------
     length, width, height : of the body.
-    diameter : the larger of width and height, which are equal for a body of revolution.
-    spans : for each wing, by the name of its patch, the distance from tip to tip of both halves.
-    fins : height y of the tip of each fin, by the name of its patch.
-    chord : longest chord of the first wing, the unit of the options for first-cell height and far field.
-    first_cell : height of the cells at the walls, in the unit of the file.
-    far_field : radius of the outer boundary, in the unit of the file.
+    diameter : the larger of width and height.
+    spans : distance from tip to tip of each wing, by patch.
+    fins : y of the tip of each fin, by patch.
+    chord : longest chord of the first wing, the unit of first-cell height and far field.
+    first_cell : height of the cells at the walls.
+    far_field : radius of the outer boundary.
     """
 
     length: float
@@ -36,7 +36,7 @@ class AircraftDimensions:
 
     @property
     def lines(self) -> dict[str, str]:
-        """The report: lines of text, by their headings."""
+        """Lines of text of the report, by heading."""
         spans = "".join(f"; {name} {span:.4g} from tip to tip" for name, span in self.spans.items())
         fins = "".join(f"; {name} up to y={y:.4g}" for name, y in self.fins.items())
         across = f"{self.width:.4g} wide and {self.height:.4g} high"
@@ -50,10 +50,7 @@ class AircraftDimensions:
 
 
 def aircraft_dimensions(aircraft: Aircraft, first_cell: float, far_field: float) -> AircraftDimensions:
-    """Return the dimensions of an aircraft and of its grid.
-
-    `first_cell` and `far_field` are in units of the first wing's longest chord.
-    """
+    """Return the dimensions of an aircraft; first cell and far field are in chords of its first wing."""
     chord, body = aircraft.wing.chord, aircraft.body
     wings = [(name, wing) for (name, _), wing in zip(aircraft.patches, aircraft.wings, strict=True)]
     return AircraftDimensions(

@@ -15,15 +15,14 @@ _POINTS = 65  # points of a side that are compared
 
 @dataclass(frozen=True, eq=False)
 class Fin(Stack):
-    """A fin: symmetric sections above each other in the plane of symmetry, the first inside the body.
+    """A wing of symmetric sections in the plane of symmetry, the first one inside the body.
 
-    The parameters are those of `Stack`. The z of a section is its height, which is y in the axes of the
-    aircraft.
+    The parameters are those of `Stack`. The z of a section is its height y in the axes of the aircraft.
 
     Raises
     ------
     InputError
-        As for `Stack`; also a section that has camber or twist, or lies outside the plane of symmetry.
+        As for `Stack`; also a section with camber or twist, or outside the plane of symmetry.
 
     Examples
     --------
@@ -41,13 +40,13 @@ class Fin(Stack):
 
     @property
     def end(self) -> tuple[float, float, float]:
-        """Position of the leading edge of the last section in the axes of the aircraft."""
+        """Leading edge of the last section in the axes of the aircraft."""
         last = self.sections[-1]
         return last.x, last.z, 0.0
 
 
 def _refuse_half(section: Section, at: str) -> None:
-    """Raise InputError for a section whose halves on both sides of the plane z = 0 differ."""
+    """Raise InputError for a section that is not symmetric about the plane z = 0."""
     for key, value in (("y", section.y), ("twist", section.twist), ("cant", section.cant)):
         if value != 0.0:
             text = value if isinstance(value, str) else f"{value:g}"

@@ -22,15 +22,13 @@ _LONGEST = 0.1  # largest distance of sections, in body lengths, without points 
 
 @dataclass(frozen=True, eq=False)
 class LoftedBody(Body):
-    """A body given by cross-sections; its surface is a spline through them.
+    """A body given by cross-sections, with a spline surface through them.
 
-    The attributes ``meridian`` and ``y`` describe a similar body of revolution: the radius of a section is
-    the mean of half the width and half the height, and the axis passes through the middle of the largest
-    section. Between sections that are far apart, the meridian has further points. The surface point at the
-    arc length s of the meridian and the angle theta is (x, middle - up * shape * cos(theta), across * shape *
-    sin(theta)). Here ``across`` is half the width of the section, ``up`` half the height, ``middle`` the y of
-    the middle (see `sizes`), and ``shape`` is 1 for an ellipse. Next to the nose and the tail, cross-sections
-    are ellipses.
+    The points of the surface are (x, middle - up * shape * cos(theta), across * shape * sin(theta)), at the
+    arc length s of
+    the meridian and the angle theta; for across, up and middle see `sizes`. ``meridian`` and ``y`` are those
+    of a similar
+    body of revolution, whose radius is the mean of half the width and half the height.
 
     Parameters
     ----------
@@ -42,9 +40,9 @@ class LoftedBody(Body):
     Raises
     ------
     InputError
-        There are fewer than 4 sections; x does not increase; the first or last section is not a point, or
-        another section is one; a section is very flat; sections are so different and so far apart that the
-        surface bulges between them.
+        Fewer than 4 sections; x that does not increase; ends that are not points, or other points; a very
+        flat section;
+        sections so different and far apart that the surface bulges between them.
 
     Examples
     --------
@@ -73,7 +71,7 @@ class LoftedBody(Body):
         super().__post_init__()
 
     def _refuse_misplaced(self, number: int, section: BodySection) -> None:
-        """Raise InputError for a section that is not behind the one before it, or should (not) be a point."""
+        """Raise InputError for a section in the wrong place or of the wrong form."""
         at, before = f"sections[{number}]", self.sections[number - 1]
         if number and section.x <= before.x:
             problem = f"{section.x:g} is not behind {before.x:g}"
@@ -90,14 +88,14 @@ class LoftedBody(Body):
             raise InputError(problem, f"use at most {_FLATTEST:g} times as much of one", place=at)
 
     def _wild(self, at: int) -> InputError:
-        """Return the error for a surface that turns back, bulges or closes behind `at` in the meridian."""
+        """Return the error for a wild surface behind `at` in the meridian."""
         problem = "the surface between it and the next one turns back, bulges or closes"
         number = int(np.searchsorted(self._at, at, side="right")) - 1
         return InputError(problem, "give more sections between them", place=f"sections[{number}]")
 
     @cached_property
     def _at(self) -> Indices:
-        """(n,) numbers of the points of the meridian that are at sections."""
+        """(n,) indices of the points of the meridian at sections."""
         return np.searchsorted(self.meridian[:, 0], self._at_sections[:, 0])
 
     @property
@@ -127,7 +125,7 @@ class LoftedBody(Body):
 
     @cached_property
     def _flatness(self) -> LimitedSpline:
-        """Half the width over the radius, their mean; at a nose and tail that of the section beside it."""
+        """Half the width over the radius; at nose and tail that of the next section."""
         inner = self._sizes[1, 1:-1] / self.meridian[1:-1, 1]
         return LimitedSpline(np.concatenate([inner[:1], inner, inner[-1:]]), self.arc)
 
@@ -141,7 +139,7 @@ class LoftedBody(Body):
 
     @cached_property
     def _shapes(self) -> Floats:
-        """Shapes (n, ANGLES, 2) of the sections, and their derivatives along the meridian."""
+        """Shapes (n, ANGLES, 2) of the sections, and their derivatives by s."""
         spline = self._shapes_at
         return np.ascontiguousarray(np.stack([spline.values, spline.slopes], axis=-1))
 
@@ -150,16 +148,13 @@ class LoftedBody(Body):
         return self.meridional(s)[:, 0]
 
     def sizes(self, s: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return half the width, half the height, and the y of the middle, (n,) each, at arc lengths (n,)."""
+        """Return half the width, half the height and the y of the middle, (n,) each, at arc lengths (n,)."""
         x, radius = self.meridional(s).T
         flatness = self._flatness(s)
         return radius * flatness, radius * (2.0 - flatness), self._middle(x)
 
     def shape(self, s: Floats, theta: Floats) -> Floats:
-        """Return the distances (n,) from the middle at arc lengths `s` (n,) and angles `theta` (n,).
-
-        They are measured as in `BodySection.shape`.
-        """
+        """Return distances (n,) from the middle as in `BodySection.shape`, at `s` and `theta` (n,)."""
         arcs = self.arcs
         before = np.clip(np.searchsorted(arcs, s, side="right") - 1, 0, len(arcs) - 2)
         h = arcs[before + 1] - arcs[before]
@@ -181,7 +176,7 @@ class LoftedBody(Body):
         return np.stack([self.arc_position(arcs), y, z], axis=-1).reshape(*s.shape, 3)
 
     def outside(self, points: Floats) -> Floats:
-        """Return distances (n,) of points (n, 3) from the surface, along rays from the middle; inside < 0."""
+        """Return distances (n,) of points (n, 3) from the surface along rays from the middle; inside < 0."""
         s = self.arc_at(points[:, 0])
         across, up, middle = self.sizes(s)
         y, z = points[:, 1] - middle, np.abs(points[:, 2])
@@ -190,7 +185,7 @@ class LoftedBody(Body):
         return np.asarray(np.hypot(y, z) - shape * np.hypot(up * cos(angles), across * sin(angles)))
 
     def beside(self, point: Floats) -> str:
-        """Return a text that says where a `point` (3,) is, and how large the body's section at its x is."""
+        """Return the size of the body's section at the x of a `point` (3,), as text."""
         across, up, middle = (float(each[0]) for each in self.sizes(self.arc_at(point[:1])))
         low, high = middle - up, middle + up
         return f"where its section is from y={low:.4g} to {high:.4g} and {2.0 * across:.4g} wide"
@@ -199,8 +194,7 @@ class LoftedBody(Body):
 def _denser(sections: Floats) -> Floats:
     """Return x, half the width and half the height (m, 3): `sections` (n, 3) and more in long intervals.
 
-    They are on limited splines for squares of sizes, in which round noses and tails are straight lines; steps
-    shrink to nose and tail, as x there is a parabola in the sizes.
+    They are on splines of squares, for round noses and tails; steps shrink towards these.
     """
     x, halves = sections[:, 0], sections[:, 1:]
     squares = LimitedSpline(halves * halves, x)

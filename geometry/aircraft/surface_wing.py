@@ -23,17 +23,11 @@ _LEVELS = 33  # number of heights between root and tip at which chords are measu
 
 @dataclass(frozen=True, eq=False)
 class SurfaceWing:
-    """A wing whose surface is given by strips of nodes; straight lines join them along the span.
+    """A wing given by strips of nodes from root to tip, with straight lines along the span.
 
-    ::
-
-        root        tip          stations (rows of nodes) go from the root to the tip, z rises along each
-          +----+-----+   edge    line; nodes of a row from the trailing edge over the upper side to the nose
-          +----+-----+           and back on the lower side, from strip to strip. The numbers of stations may
-          +----+-----+   nose    differ.
-
-    Nodes between those of a row lie on cubic splines. The wing ends in a plane of constant z: where it gets
-    thinner, as a rounded tip does, or at the first node of its last station (`ending`).
+    Strips follow each other from the trailing edge over the upper side to the nose and back. Rows of a strip
+    are cubic
+    splines, with rising z along lines. The wing ends in a plane of constant z (`ending`).
 
     Parameters
     ----------
@@ -44,13 +38,13 @@ class SurfaceWing:
     name : str, optional
         Name of the wing and of its patch.
     notes : tuple of str, optional
-        Sentences on what was changed.
+        Sentences on changes.
 
     Raises
     ------
     InputError
-        A strip whose array does not have the shape (stations, n, 3); a line along which z does not rise; a
-        wing without thickness.
+        A strip that is no array (stations, n, 3); a line along which z does not rise; a wing without
+        thickness.
     """
 
     strips: tuple[Floats, ...]
@@ -75,10 +69,7 @@ class SurfaceWing:
 
     @classmethod
     def ending(cls, strips: tuple[Floats, ...], name: str = "wing") -> SurfaceWing:
-        """Return the wing with these `strips`, up to its last station or to where its tip begins to close.
-
-        In the second case the wing has a note.
-        """
+        """Return the wing of `strips` up to its last station, or, with a note, to where its tip closes."""
         strips = tuple(map(_rising, strips))
         end = min(float(strip[-1, :, 2].min()) for strip in strips)
         wing = cls(strips, end, name)
@@ -99,7 +90,7 @@ class SurfaceWing:
 
     @property
     def z(self) -> Floats:
-        """(n,) heights z, from the lowest height that all lines along the span reach to that of the tip."""
+        """(n,) heights z from the lowest that all lines reach to the tip."""
         begin = max(float(strip[0, :, 2].max()) for strip in self.strips)
         return np.linspace(begin, self.height, _LEVELS)
 
@@ -110,25 +101,25 @@ class SurfaceWing:
 
     @property
     def chord(self) -> float:
-        """Largest chord of the wing."""
+        """Largest chord."""
         return float(self.chords.max())
 
     @property
     def end(self) -> tuple[float, float, float]:
-        """Position of the nose of the last section."""
+        """Nose of the last section."""
         x, y, z = on_line(self.line(self.nose), np.array([self.height]))[0].tolist()
         return x, y, z
 
     @cached_property
     def arcs(self) -> Floats:
-        """(strips,) width of each strip, measured around the section halfway along the span, in chords."""
+        """(strips,) width of each strip around the section at half span, in chords."""
         z = self.z[[_LEVELS // 2]]
         lengths = [float(norms(np.diff(at_heights(strip, z)[0], axis=0)).sum()) for strip in self.strips]
         return np.array(lengths) / self.sizes(z)[0]
 
     @cached_property
     def nose(self) -> float:
-        """Place of the nose around the section (see `line`)."""
+        """Place of the nose (see `line`)."""
         z = self.z[[_LEVELS // 2]]
         rows = [at_heights(strip, z)[0] for strip in self.strips]
         edge = 0.5 * (rows[0][0] + rows[-1][-1])
@@ -142,15 +133,14 @@ class SurfaceWing:
         return number + float(way[int(apart[number].argmax())] / way[-1])
 
     def line(self, place: float) -> Floats:
-        """Return the line (stations, 3) along the span at a position `place` around the section.
+        """Return the line (stations, 3) along the span at a `place` around the section.
 
-        The integer part of `place` is the index of a strip, the fractional part the position across this
-        strip.
+        Its integer part is the index of a strip, its fraction the position across it.
         """
         return self.lines(np.array([place]))[0]
 
     def lines(self, places: Floats) -> list[Floats]:
-        """Return the lines (stations, 3) at rising places (n,); see `line`."""
+        """Return the lines (stations, 3) at ascending places (n,); see `line`."""
         numbers = np.minimum(places.astype(int), len(self.strips) - 1)
         out: list[Floats] = []
         for number in range(len(self.strips)):
@@ -159,11 +149,7 @@ class SurfaceWing:
         return out
 
     def arc(self, place: float) -> float:
-        """Return the length around the section from the upper corner of the base to a position `place`.
-
-        The length is measured on the section halfway along the span, in its chords. The base is the blunt
-        trailing edge.
-        """
+        """Return the length in chords from the upper corner of the base to a `place`, at half span."""
         return float(np.interp(place, np.arange(len(self.strips) + 1), self._bounds))
 
     def places(self, arcs: Floats) -> Floats:
@@ -175,10 +161,7 @@ class SurfaceWing:
         return np.append(0.0, np.cumsum(self.arcs))
 
     def base(self, z: Floats) -> Floats:
-        """Return the thickness (n,) of the base at heights z (n,), divided by the chord at each z.
-
-        The base is the blunt trailing edge.
-        """
+        """Return the thickness (n,) of the blunt trailing edge in chords, at heights z (n,)."""
         upper, lower = self.edges(z)
         across = upper - lower
         along = 0.5 * (upper + lower) - on_line(self.line(self.nose), z)
@@ -190,11 +173,9 @@ class SurfaceWing:
         return on_line(self.line(0.0), z), on_line(self.line(float(len(self.strips))), z)
 
     def opened(self, least: float) -> SurfaceWing:
-        """Return the wing with a base (blunt trailing edge) at least `least` chords thick.
+        """Return the wing with a base at least `least` chords thick, with a note if that changes it.
 
-        A wing whose base is thinner gets a note.
-
-        The thickness that is added is proportional to the distance from the nose.
+        The added thickness is proportional to the distance from the nose.
         """
         thin = float(self.base(self.z).min())
         if thin >= least * (1.0 - 1e-9):
@@ -220,7 +201,7 @@ class SurfaceWing:
         return moved
 
     def _splines(self, number: int, parts: Floats) -> Floats:
-        """Return lines (stations, n, 3) at parts (n,) of the way across a strip."""
+        """Return lines (stations, n, 3) at fractions (n,) of the way across a strip."""
         rows = []
         for row in self.strips[number]:
             arcs = arc_lengths(row)
@@ -241,7 +222,7 @@ class SurfaceWing:
 
 
 def _rising(strip: Floats) -> Floats:
-    """Return a strip without its last stations, if z does not rise to them: a tip is flat where it closes."""
+    """Return a strip without last stations to which z does not rise, as at a closed tip."""
     flat = np.flatnonzero((np.diff(strip[..., 2], axis=0) <= 0.0).any(axis=1))
     if not flat.size:
         return strip

@@ -1,4 +1,4 @@
-"""Strips of a wing from patches of a surface: those from root to tip, in order around its sections."""
+"""Strips of a wing from patches of a surface, in order around its sections."""
 
 from __future__ import annotations
 
@@ -23,21 +23,19 @@ _LEVELS = 5  # number of heights at which strips are compared
 
 @dataclass(frozen=True, eq=False)
 class _Strip:
-    """Nodes (stations, n, 3), and the nodes (_LEVELS, n, 3) at some heights."""
+    """Nodes (stations, n, 3) of a strip, and nodes (_LEVELS, n, 3) at some heights."""
 
     nodes: Floats
     rows: Floats
 
     def turned(self) -> _Strip:
-        """Return the strip with nodes in the other order across it."""
         return _Strip(self.nodes[:, ::-1], self.rows[:, ::-1])
 
 
 def wing_strips(patches: Sequence[Floats], name: str) -> tuple[tuple[Floats, ...], tuple[int, ...]]:
     """Return the strips (stations, n, 3) of a `SurfaceWing`, and the indices of patches that close the tip.
 
-    `patches` (ni, nj, 3) form the surface of a wing in the half z >= 0. Patches on the base are left out,
-    because the base lies between the last strip and the first strip.
+    `patches` (ni, nj, 3) form the surface of a wing in the half z >= 0. Those on the base are left out.
 
     Raises InputError: patches are not next to each other around the wing or along the span.
     """
@@ -64,23 +62,17 @@ def wing_strips(patches: Sequence[Floats], name: str) -> tuple[tuple[Floats, ...
 
 
 def at_heights(strip: Floats, z: Floats) -> Floats:
-    """Return the nodes (k, n, 3) of a strip (stations, n, 3) at heights z (k,).
-
-    Heights below the first or above the last station are extrapolated linearly.
-    """
+    """Return the nodes (k, n, 3) of a strip (stations, n, 3) at heights z (k,), also extrapolated."""
     return np.stack([on_line(strip[:, k], z) for k in range(strip.shape[1])], axis=1)
 
 
 def on_line(line: Floats, z: Floats) -> Floats:
-    """Return points (k, 3) on a line (stations, 3) at heights z (k,).
-
-    Heights below the first or above the last station are extrapolated linearly.
-    """
+    """Return points (k, 3) on a line (stations, 3) at heights z (k,), also extrapolated."""
     return monotone_cubic(line[:, 2], line, z, linear=True)
 
 
 def _from_root(patch: Floats) -> Floats:
-    """Return the nodes of a patch with those of smallest z in the first row, as far as it has one."""
+    """Return the nodes of a patch, with the first row nearest to the root."""
     if np.abs(patch[-1, :, 2] - patch[0, :, 2]).mean() < np.abs(patch[:, -1, 2] - patch[:, 0, 2]).mean():
         patch = patch.swapaxes(0, 1)
     return patch if patch[-1, :, 2].mean() > patch[0, :, 2].mean() else patch[::-1]
@@ -96,7 +88,7 @@ def _between_corners(nodes: Floats) -> list[Floats]:
 
 
 def _chained(strips: Sequence[_Strip], chord: Floats, name: str) -> list[_Strip]:
-    """Return the strips in order around the wing, each beginning where the one before it ends.
+    """Return the strips in order around the wing, each from where the last one ends.
 
     Raises InputError: two gaps, or an end far from all others.
     """
@@ -120,14 +112,14 @@ def _chained(strips: Sequence[_Strip], chord: Floats, name: str) -> list[_Strip]
 
 
 def _is_base(strip: _Strip, back: Floats, chord: Floats) -> bool:
-    """Return whether a strip is a base, or a part of it, with trailing edges at x = `back` (_LEVELS,)."""
+    """Return whether a strip is part of the base, at trailing edges x = `back` (_LEVELS,)."""
     length = norms(np.diff(strip.rows, axis=1)).sum(axis=1)
     near = strip.rows[..., 0].min(axis=1) >= back - _EDGE * chord
     return bool((near & (length <= _BASE * chord)).all())
 
 
 def _from_edge(chain: list[_Strip], base: list[bool], back: Floats, chord: Floats, name: str) -> list[_Strip]:
-    """Return the chain without its base, from one side of the trailing edge to the other.
+    """Return the chain from one side of the trailing edge to the other, without its base.
 
     Raises InputError: a trailing edge within a patch.
     """

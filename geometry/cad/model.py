@@ -1,12 +1,8 @@
-"""Faces of a CAD file and the curves that bound them, independent of the library that reads the file.
+"""Faces of a CAD file and the edges around them, independent of the library that reads it.
 
-::
-
-      vertex 3 <--- edge 2 ---- vertex 2      A face has one loop of edges, counter-clockwise as seen from
-         |                         ^          outside. An edge belongs to two faces, to one at an open end,
-      edge 3        face        edge 1        or twice to one that closes on itself (a cylinder). An edge
-         v                         |          without length is a pole, as at the end of a sphere.
-      vertex 0 ---- edge 0 ---> vertex 1
+A loop is counter-clockwise as seen from outside. An edge belongs to two faces, to one at an open end, twice
+to one that
+closes on itself; without length it is a pole.
 """
 
 from collections.abc import Callable
@@ -30,8 +26,8 @@ class CadEdge:
 
     Parameters
     ----------
-    ends : indices of the first and the last vertex; they are equal for a closed curve or a pole.
-    points : function from parameters (n,), 0 to 1, to points (n, 3) of the curve; None for a pole.
+    ends : indices of the first and the last vertex, equal for a closed curve or a pole.
+    points : function from parameters (n,), 0 to 1, to points (n, 3); None for a pole.
     """
 
     ends: tuple[int, int]
@@ -45,7 +41,7 @@ class EdgeUse:
     Parameters
     ----------
     edge : index of the edge.
-    forward : whether the loop goes along the edge from the edge's first vertex to its last.
+    forward : whether the loop follows the edge's direction.
     trace : function from parameters (n,) of the edge to coordinates (n, 2) on the face.
     """
 
@@ -60,11 +56,10 @@ class CadFace:
 
     Parameters
     ----------
-    uses : edges of the outer loop, in order, counter-clockwise in the coordinates on the face.
-    points : function from coordinates (n, 2) on the face to points (n, 3) of the surface.
-    inside_out : whether the normal (cross product of the derivatives with respect to the two coordinates)
-        points into the body.
-    holes : number of loops besides the outer one.
+    uses : edges of the outer loop, counter-clockwise in the coordinates on the face.
+    points : function from these coordinates (n, 2) to points (n, 3).
+    inside_out : whether the cross product of its derivatives points into the body.
+    holes : number of other loops.
     """
 
     uses: tuple[EdgeUse, ...]
@@ -75,14 +70,14 @@ class CadFace:
 
 @dataclass(frozen=True, eq=False)
 class CadModel:
-    """All faces of a CAD file; a `meshonet.geometry.shapes.shape.Shape` that has no four edges.
+    """All faces of a CAD file; a `meshonet.geometry.shapes.shape.Shape` without four edges.
 
     Parameters
     ----------
-    vertices : (n, 3) positions of the vertices, in the unit of the file.
-    edges, faces : edges and faces in the order of the file.
+    vertices : (n, 3) positions in the unit of the file.
+    edges, faces : in the order of the file.
     name : name of the file.
-    notes : sentences on what was changed when the file was read.
+    notes : sentences on changes.
     """
 
     vertices: Floats
@@ -99,6 +94,6 @@ class CadModel:
         return extent_of(np.concatenate([self.vertices, *curves]))
 
     def boundary(self, sampling: Sampling) -> Boundary:  # noqa: ARG002 - as all shapes have it
-        """Raise InputError: the faces of a CAD file do not have the four edges of a plane domain."""
+        """Raise InputError: the faces of a CAD file have no four edges in the plane."""
         problem = "is a CAD file, and its faces are not a boundary in the plane"
         raise InputError(problem, "make patches first: meshonet sample-boundary FILE -o surface.xyz")

@@ -1,22 +1,15 @@
-"""The conformal lift: a conformal map from the plane around a body to a periodic strip, and back.
+"""The conformal lift: a map from the plane around a body to a periodic strip, and back.
 
-Winslow's equations are invariant under conformal maps, so an O grid may be generated in whatever plane makes
-it easiest. Three successive maps take the wall of an airfoil to a curve close to a straight line::
+Winslow's equations are invariant under it. Three maps take the wall of a body nearly to a line::
 
     z  --Joukowski-->  zeta  --corner removal-->  zeta'  --log-->  w = psi + i phi
 
-    z = centre + quarter (zeta + 1/zeta)           maps a slit between the two ends of the body to a circle
+    z = centre + quarter (zeta + 1/zeta)           maps a slit between the ends of the body to a circle
     ((v-p)/(v-q))^(1/k) = (v'-P)/(v'-Q)            straightens a corner with exterior angle k pi
     zeta' = pole + exp(w)                          unrolls the plane around the body
 
-In the strip the wall is near psi = 0, the far field near psi = T, and phi grows by 2 pi once around. Here the
-wall runs counter-clockwise: callers mirror the clockwise wall of an O grid (`mirrored`).
-
-A first node at which the wall turns by more than 80 degrees is a sharp trailing edge, and an end of the slit.
-On other walls the corners of a blunt base are sought: the nodes within 0.35 chords of the first that turn
-most, by more than 15 degrees; the slit ends behind the base. Without corners it ends a(1 - sqrt(1 - r/a))
-inside each tip, with r the tip radius and a the half chord: at the foci of an ellipse. The code is
-kernels/conformal/lift.c.
+The wall is near psi = 0 and runs counter-clockwise (`mirrored`); phi grows by 2 pi once around.
+The code, with the choice of slit and corners, is kernels/conformal/lift.c.
 
 Theodorsen & Garrick, NACA Report 452 (1933); Karman & Trefftz, Z. Flugtech. Motorluftschiff. 9 (1918) 111.
 """
@@ -37,10 +30,9 @@ SECOND_PRONG = 0.25  # as in kernels/conformal/lift.c
 
 @dataclass(frozen=True)
 class Corner:
-    """The map of Karman and Trefftz that straightens one corner, whose exterior angle is k pi.
+    """The map of Karman and Trefftz that straightens a corner with exterior angle k pi.
 
-    It maps v to v' by ((v-p)/(v-q))^(1/k) = (v'-P)/(v'-Q), and therefore the points p and q to P and Q. All
-    attributes are numbers or torch tensors.
+    It maps v to v' by ((v-p)/(v-q))^(1/k) = (v'-P)/(v'-Q). Attributes are numbers or torch tensors.
     """
 
     p: Any
@@ -50,19 +42,18 @@ class Corner:
     k: Any
 
     def restore(self, v: Any) -> Any:
-        """Return v for v', a NumPy array or a torch tensor."""
+        """Return v for v', an array or a torch tensor."""
         r = ((v - self.P) / (v - self.Q)) ** self.k
         return (self.q * r - self.p) / (r - 1.0)
 
 
 @dataclass(frozen=True)
 class Lift:
-    """The conformal map between the plane z around one body and a strip w = psi + i phi.
+    """The conformal map between the plane z around a body and a strip w = psi + i phi (`lift_body`).
 
-    It is made by `lift_body`. The wall is near psi = 0, and phi grows by 2 pi once around the body.
-
-    `centre` and `quarter` hold the position, rotation and size of the body; `phase` puts the first wall node
-    at phi = 0. All are numbers or torch tensors.
+    `centre` and `quarter` have position, rotation and size of the body; `phase` puts the first wall node at
+    phi = 0.
+    Attributes are numbers or torch tensors.
     """
 
     centre: Any
@@ -72,22 +63,19 @@ class Lift:
     phase: Any
 
     def to_plane(self, w: Any, xp: Any = np) -> Any:
-        """Return the points z of strip points w of any shape; `xp` is their module, numpy or torch."""
+        """Return the points z of strip points w of any shape; `xp` is numpy or torch."""
         zeta = self.pole + functions_of(xp).exp(w + 1j * self.phase)
         for corner in reversed(self.corners):
             zeta = corner.restore(zeta)
         return self.centre + self.quarter * (zeta + 1.0 / zeta)
 
     def to_strip(self, z: Complexes) -> Complexes:
-        """Return the strip points w (n,) of points z (n,) that lie outside the body, in order around it.
-
-        The imaginary part phi of w is continuous from each point to the next.
-        """
+        """Return strip points w (n,), with continuous phi, of points z (n,) in order around the body."""
         return _native.lift_to_strip(self, np.ascontiguousarray(z, complex))
 
 
 def mirrored(nodes: Floats) -> Complexes:
-    """Return x - iy of nodes (..., 2): the mirror image, which turns a clockwise curve counter-clockwise."""
+    """Return x - iy of nodes (..., 2): the mirror image, counter-clockwise for a clockwise curve."""
     points: Complexes = nodes[..., 0] - 1j * nodes[..., 1]
     return points
 
@@ -95,10 +83,10 @@ def mirrored(nodes: Floats) -> Complexes:
 def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, tuple[int, ...]]:
     """Return the lift of a body, its wall (n,) in the strip, and the indices of its trailing corners.
 
-    `wall` (n,) runs counter-clockwise from the trailing edge and does not repeat its first node; the
-    imaginary part phi of the strip coordinate rises from 0 along it. With `swap`, the second corner of a
-    blunt edge is removed before the first. The two removals do not commute: only with swapped corners is the
-    strip of a mirrored body the mirrored strip.
+    `wall` (n,) runs counter-clockwise from the trailing edge, without its repeated first node. With `swap`
+    the second
+    corner of a blunt edge is removed first: the two removals do not commute, and a mirrored body needs the
+    other order.
 
     Raises InputError: fewer than 8 nodes, or a wall that does not wind once around the pole.
     """
@@ -113,11 +101,7 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
 
 
 def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
-    """Return zeta (n,) of the nodes of a `wall` (n,), where z = centre + quarter (zeta + 1/zeta).
-
-    zeta is continuous along the wall: where a cambered wall crosses the slit that this map opens to a circle,
-    the other root of the equation is taken.
-    """
+    """Return zeta (n,), continuous along a `wall` (n,), with z = centre + quarter (zeta + 1/zeta)."""
     return _native.lift_follow(np.ascontiguousarray(wall, complex), centre, quarter)
 
 

@@ -1,15 +1,12 @@
-"""Wall node distribution by the conformal map of the outside of a body to the outside of a circle.
+"""Wall nodes by the conformal map of the outside of a body to the outside of a circle.
 
-Equal steps of the circle's angle give an elliptic O grid the nodes that it needs: dense where the body turns.
-Near a corner with exterior angle k pi arc length grows like angle^k on both sides, so that grid lines leave
-the wall at right angles, and a corner along its bisector.
-
-Theodorsen's iteration finds the circle's angle t from the wall psi(phi) in the strip (see `lift`)::
+Equal steps of the circle's angle t are dense where the body turns, and let lines leave it at right angles.
+Theodorsen's iteration finds t from the wall psi(phi) in the strip (`lift`)::
 
     phi(t) = t - H[psi(phi(t))],   H the conjugation of Fourier series: cos kt -> sin kt
 
-Theodorsen & Garrick, NACA Report 452 (1933); Henrici, Applied and Computational Complex Analysis 3 (1986),
-16.8.
+Theodorsen & Garrick, NACA Report 452 (1933); Henrici, Applied and Computational Complex Analysis 3, 16.8
+(1986).
 """
 
 import math
@@ -29,22 +26,22 @@ from meshonet.geometry.spacing.sampling import first_within
 ANGLES = 1024  # points on the circle at which the angle is computed
 ITERATIONS = 28.0  # at most, over the factor of under-relaxation
 RELAXATIONS = 0.7, 0.3, 0.1, 0.03, 0.01
-"""Factors of under-relaxation that are tried in turn. If |dpsi/dphi| is at most e, factors below 2 / (1 +
-e^2) converge.
-"""
+"""Factors of under-relaxation tried in turn; those below 2 / (1 + e^2) converge if |dpsi/dphi| <= e."""
 DENSE = 640  # points that represent the whole wall
 
 
 def conformal_knots(
     curve: Curve, marks: Floats, count: int, at: NDArray[np.intp] | None = None, steps: tuple[int, ...] = (1,)
 ) -> Floats:
-    """Return arc lengths (count,) on a closed curve at equal steps of an angle.
+    """Return arc lengths (count,) on a closed curve at equal steps of the conformal angle.
 
-    It is the angle on the circle to which the curve is mapped conformally. The curve is clockwise; arc length
-    0 is at the first node, which is repeated as the last. `marks` (m,) are ascending arc lengths in (0,
-    length) at which there must be nodes; the angles between them are divided smoothly. `at` (m,) are the
-    indices of these nodes. Without `at`, the indices are multiples of a step, which is the first of `steps`
-    that does not exceed the index of the first mark.
+    The curve is clockwise from its first node, which is repeated.
+
+    Parameters
+    ----------
+    marks : (m,) ascending arc lengths in (0, length) at which there must be nodes.
+    at : (m,) indices of these nodes; None: multiples of a step.
+    steps : possible steps; the first that does not exceed the index of the first mark is used.
 
     Raises InputError: the wall in the strip is not a function of phi, or the iteration does not converge.
     """
@@ -66,7 +63,7 @@ def _one_way(
     *,
     mirror: bool,
 ) -> Floats:
-    """Return arc lengths (count,), walking clockwise, or counter-clockwise along the mirrored curve."""
+    """Return arc lengths (count,) clockwise, or counter-clockwise on the mirrored curve."""
     s, u = _dense(curve, marks)
     nodes = curve.at(curve.length - s[:-1]) * np.array([1.0, -1.0]) if mirror else curve.at(s[:-1])
     _, w, _ = lift_body(mirrored(nodes))
@@ -79,7 +76,7 @@ def _one_way(
 
 
 def _dense(curve: Curve, marks: Floats) -> tuple[Floats, Floats]:
-    """Return rising arc lengths (m,), clustered at both ends of every piece, and their parameter u.
+    """Return ascending arc lengths (m,), clustered at both ends of every piece, and their parameter u.
 
     On piece k, u = k + v with s = s_k + length (1 - cos pi v)/2.
     """
@@ -94,7 +91,7 @@ def _dense(curve: Curve, marks: Floats) -> tuple[Floats, Floats]:
 
 
 def _circle_angle(phi: Floats, psi: Floats) -> Floats:
-    """Return the circle's angle t at every wall point, from 0 at the first to 2 pi at the last."""
+    """Return the circle's angle t at every wall point, from 0 to 2 pi."""
     t = 2.0 * np.pi * np.arange(ANGLES) / ANGLES
     k = np.fft.rfftfreq(ANGLES, 1.0 / ANGLES)
     conjugate = -1j * exp(-power(k / (ANGLES / 3.0), 8))
@@ -118,7 +115,7 @@ def _circle_angle(phi: Floats, psi: Floats) -> Floats:
 
 
 def _shared_out(marks: Floats, count: int, at: NDArray[np.intp] | None, steps: tuple[int, ...]) -> Floats:
-    """Return rising angles (count,) from 0 to 2 pi, in nearly equal steps, with every mark on a node."""
+    """Return ascending angles (count,) from 0 to 2 pi in nearly equal steps, with every mark on a node."""
     cells = count - 1
     rank = np.arange(len(marks))
     nodes: Floats | NDArray[np.intp]
@@ -139,7 +136,7 @@ def _shared_out(marks: Floats, count: int, at: NDArray[np.intp] | None, steps: t
 
 
 def _smooth_inverse(t: Floats, u: Floats, s: Floats, at: Floats) -> Floats:
-    """Return arc lengths where the circle's angle is `at`, through u: s(u) is analytic at corners."""
+    """Return arc lengths at circle angles `at`, through u: s(u) is analytic at corners."""
     where = _monotone(t, u, at, periodic=False)
     k = np.minimum(where.astype(np.intp), round(u[-1]) - 1)
     ends = s[np.searchsorted(u, np.arange(round(u[-1]) + 1.0))]
@@ -151,7 +148,7 @@ def _smooth_inverse(t: Floats, u: Floats, s: Floats, at: Floats) -> Floats:
 
 
 def _monotone(x: Floats, y: Floats, at: Floats, *, periodic: bool) -> Floats:
-    """Return the monotone cubic through rising (x, y) at `at`; if `periodic`, both end slopes are equal."""
+    """Return the monotone cubic through ascending (x, y) at `at`."""
     h = np.diff(x)
     rise = np.diff(y) / h
     if periodic:

@@ -1,4 +1,4 @@
-"""The surface of a blade: curves through its profiles at equal parts of their lengths, along the span."""
+"""The surface of a blade: splines along the span through its profiles."""
 
 from collections.abc import Sequence
 
@@ -17,7 +17,7 @@ from meshonet.geometry.rows.whole_pitches import whole_pitches
 from meshonet.kernels._native import spline_crossings
 
 MOST_EXTENDED = 0.2
-"""Largest part of the span by which a blade is continued straight to hub or casing."""
+"""Largest part of the span by which a blade is continued to hub or casing."""
 _NOTED = 0.01  # part of the span from which on a note mentions the continuation
 _CHECKED = 400  # places around the blade at which profiles are compared
 _FARTHEST = 90.0  # degrees around the axis from one profile to the next: no blade leans as much
@@ -29,21 +29,21 @@ _HALF_TURN = np.pi
 class BladeSurface:
     """Surface of a blade: maps (u, h), the place around the blade and the height, to (s, theta).
 
-    u goes around a profile, from 0 at the leading edge to 0.5 at the trailing edge and back to 1
-    (`BladeProfile`). s is 0 at the inlet and 1 at the outlet; h is 0 at the hub and 1 at the casing
-    (`Channel`). Through the profiles, lines of equal u are cubic splines; beyond the first and the last
-    profile they are straight.
+    u is 0 at the leading edge, 0.5 at the trailing edge, 1 at the leading edge again (`BladeProfile`); for s
+    and h see
+    `Channel`. Lines of equal u are splines through the profiles, and straight beyond them.
 
     Parameters
     ----------
-    profiles : two or more arrays (n, 3) of x, y, z, in order from hub to casing or from casing to hub.
+    profiles : two or more arrays (n, 3) of x, y, z, from hub to casing or back.
     channel : the channel in which the blade stands.
-    blades : number of blades. Profiles that are whole pitches away from the others are rotated to them.
+    blades : number of blades; profiles whole pitches away from the others are rotated.
 
-    Attribute `notes` says what was changed.
+    Attribute `notes` has the changes.
 
-    Raises InputError, with the number of the profile (from 1): profiles are in another order, cross, or do
-    not reach far enough towards hub and casing; also the errors of `BladeProfile`.
+    Raises InputError, with the number of the profile from 1: profiles in another order, crossing, or too far
+    from hub and
+    casing; also as `BladeProfile`.
     """
 
     def __init__(self, profiles: Sequence[Floats], channel: Channel, blades: int) -> None:
@@ -70,7 +70,7 @@ class BladeSurface:
         self._check_neighbours()
 
     def _open(self, name: str, trailing: bool) -> None:
-        """Open and round the edges, leading or trailing, that are points, with a note."""
+        """Open and round leading or trailing edges that are points, with a note."""
         points = [pointed(profile, trailing) for profile in self.profiles]
         if any(points):
             pairs = list(zip(self.profiles, points, strict=True))
@@ -108,11 +108,9 @@ class BladeSurface:
                 self.notes = (*self.notes, Change(f"{what}, and is continued straight to it"))
 
     def _place(self, k: int) -> str:
-        """Return the place of a profile, by its number as given."""
         return f"profile {len(self.profiles) - k if self._reversed else k + 1}"
 
     def _check_neighbours(self) -> None:
-        """Raise InputError for a profile that crosses the one before."""
         u = clustered(_CHECKED)
         values = np.stack([profile.at(u) for profile in self.profiles])
         for k in range(1, len(values)):
@@ -132,9 +130,7 @@ class BladeSurface:
             raise InputError(problem, "use fewer blades", place=self._place(k))
 
     def _unwrapped(self) -> Floats:
-        """Return angles (p,) that are added to theta, so that profiles follow each other.
-
-        They are whole turns, and whole pitches, of which notes are added.
+        """Return angles (p,) added to theta of profiles: whole turns, and whole pitches, with notes.
 
         Raises InputError: a profile lies far from the one before.
         """
@@ -154,22 +150,19 @@ class BladeSurface:
         return np.asarray(turned - mean - away * self.pitch)
 
     def lines(self, u: Floats) -> CubicTable:
-        """Return the splines s, theta, h along the span, one for each of the places u (m,).
-
-        The parameter of the splines is the mean height of a profile.
-        """
+        """Return the splines s, theta, h along the span at places u (m,), by mean height of profiles."""
         values = np.stack([profile.at(u) for profile in self.profiles])
         values[..., 1] += self._turns[:, None]
         return CubicTable(values, self.knots)
 
     def at(self, u: Floats, h: Floats) -> Floats:
-        """Return s and theta (p, m, 2) of the surface at places u (m,) or (p, m) and at heights h (p, m)."""
+        """Return s and theta (p, m, 2) at places u (m,) or (p, m) and heights h (p, m)."""
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
-        """Return s and theta (..., 2) of the points at which `lines` along the span reach heights `h` (...).
+        """Return s and theta (..., 2) where `lines` along the span reach heights `h` (...).
 
-        For each line there are `levels` heights; first come the heights of all lines on the first level.
+        The heights of all lines on the first of `levels` come first.
         """
         out = np.empty((*h.shape, 2))
         spline_crossings(
@@ -182,27 +175,24 @@ class BladeSurface:
         return out
 
     def section(self, h: float, u: Floats) -> Floats:
-        """Return s and theta (m, 2), at the places `u` (m,), of the section at the height `h`."""
+        """Return s and theta (m, 2) at places `u` (m,) and the height `h`."""
         return self.crossings(self.lines(u), np.full(len(u), h))
 
     @property
     def edges(self) -> str:
-        """Return, for reports, words for the forms of the leading and the trailing edge, such as round."""
+        """Forms of leading and trailing edge, as text."""
         words = [dict.fromkeys(each.edge(trailing) for each in self.profiles) for trailing in (False, True)]
         leading, trailing = (" or ".join(each) for each in words)
         return f"leading edge {leading}; trailing edge {trailing}"
 
     @property
     def corners(self) -> Floats:
-        """Places u (c,) of the corners that all profiles have, such as those of a blunt edge, ascending."""
+        """Ascending places u (c,) of the corners that all profiles have."""
         return np.sort(np.mod(common_corners(self.profiles), 1.0))
 
 
 def clustered(count: int) -> Floats:
-    """Return `count` places u (count,) around a blade, clustered at the leading and the trailing edge.
-
-    `count` must be even.
-    """
+    """Return an even number of places u (count,) around a blade, clustered at both edges."""
     half = count // 2
     side = 0.25 * (1.0 - cos(_HALF_TURN * np.arange(half) / half))
     return np.concatenate([side, 0.5 + side])

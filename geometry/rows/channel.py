@@ -1,16 +1,8 @@
-"""The annular channel of a blade row: hub, casing and the surfaces of revolution between them.
+"""The annular channel of a blade row, and the surfaces of revolution between hub and casing.
 
-::
-
-    r ^   casing  h = 1  ---------------------------
-      |   tip            - - - - - - - - - - - - - -     s = 0 at the inlet, 1 at the outlet,
-      |                                                  by the arc length of hub and casing
-      |   hub     h = 0  ---------------------------
-      +--------------------------------------------> x   (the axis)
-
-Points of equal s on hub and casing are joined by straight lines. Along these the height h is 0 at the hub,
-`tip` at the tip of the blade and 1 at the casing, so that a gap of constant width lies between two surfaces
-of constant h; likewise `foot` above a gap at the hub.
+Straight lines join points of equal s on both. Along them h is 0 at the hub, `foot` and `tip` at gaps of
+constant width,
+1 at the casing.
 """
 
 from dataclasses import dataclass
@@ -41,35 +33,36 @@ _SAME = 1e-13  # of the distance to a wall, relative to the gap
 
 @dataclass(frozen=True, eq=False)
 class MeridionalMap:
-    """The coordinate m' on a surface of revolution; the map from (m', theta) to the surface is conformal.
+    """The conformal coordinate m' on a surface of revolution, dm' = dm / r.
 
-    It is defined by dm' = dm / r, with the arc length m along the meridian and the distance r from the axis.
+    m is the arc length of the meridian, r the distance from the axis. Wu, NACA TN 2604 (1952).
 
-    Wu, NACA TN 2604 (1952).
+    Parameters
+    ----------
+    forward : function from s (n,) to m' (n,).
+    back : function from m' (n,) to s (n,).
     """
 
     forward: CubicTable
-    """Function from s (n,) to m' (n,)."""
     back: CubicTable
-    """Function from m' (n,) to s (n,)."""
 
     @property
     def length(self) -> float:
-        """The coordinate m' of the outlet; at the inlet m' is 0."""
+        """Coordinate m' of the outlet; at the inlet it is 0."""
         return float(self.forward.values[-1])
 
 
 class Channel:
     """The channel between hub and casing: maps (s, h) to (x, r).
 
-    s is 0 at the inlet and 1 at the outlet; h is 0 at the hub and 1 at the casing.
+    s is 0 at the inlet and 1 at the outlet, h 0 at the hub and 1 at the casing.
 
     Parameters
     ----------
     hub, casing : points (n, 2) of x and r, from inlet to outlet.
-    hub_gap, tip_gap : distances of the blade from hub and casing, in the unit of the points.
+    hub_gap, tip_gap : distances of the blade from hub and casing, in their unit.
 
-    Raises InputError: points that are no curve, a curve that touches the axis or the other one, gaps that
+    Raises InputError: points that are no curve; a curve that touches the axis or the other one; gaps that
     leave no span.
     """
 
@@ -119,7 +112,7 @@ class Channel:
         return self._parts[k](s)
 
     def at(self, s: Floats, h: Floats) -> Floats:
-        """Return x and r (..., 2) at `s` and `h`, two arrays of the same shape (...)."""
+        """Return x and r (..., 2) at `s` and `h` (...)."""
         out = np.empty((s.size, 2))
         channel_points(
             self._tables, np.ascontiguousarray(s).reshape(-1), np.ascontiguousarray(h).reshape(-1), out
@@ -127,41 +120,36 @@ class Channel:
         return out.reshape(*s.shape, 2)
 
     def in_space(self, values: Floats) -> Floats:
-        """Return x, y, z (..., 3) of points given by s, theta, h (..., 3); theta is atan2(y, z)."""
+        """Return x, y, z (..., 3) of points s, theta, h (..., 3); theta is atan2(y, z)."""
         out = np.empty(values.shape)
         channel_space(self._tables, np.ascontiguousarray(values).reshape(-1, 3), out.reshape(-1, 3))
         return out
 
     def store(self, values: Floats, ids: Indices, space: Floats) -> None:
-        """Write the positions x, y, z of points into `space`.
+        """Write x, y, z of points `values` (levels, m, 3) of s, theta, h into `space` (levels, n, 3).
 
-        `values` (levels, m, 3) are s, theta, h of the points. In `space` (levels, n, 3), they become the
-        nodes with the indices `ids` (m,) of each level.
+        `ids` (m,) are their indices among the n nodes.
         """
         channel_nodes(self._tables, values, ids, space)
 
     def lengthen(self, begin: Floats, end: Floats, sizes: Floats) -> None:
-        """Move the points `end` (..., 3), in place, to the distances `sizes` (...) from the points `begin`.
+        """Move the points `end` (..., 3), in place, to the distances `sizes` (...) from `begin`.
 
-        All points are given by s, theta, h; the distances are those in space.
+        Points are s, theta, h; distances are in space.
         """
         lengthen_cells(self._tables, begin.reshape(-1, 3), sizes.reshape(-1), end.reshape(-1, 3))
 
     def put_on_blade(self, columns: Floats, wall: Floats, first: float) -> None:
-        """Move columns of nodes, in place, to begin on the blade and have first cells of height `first`.
+        """Move columns of nodes, in place, to begin on the blade with first cells of height `first`.
 
-        `columns` (..., rows, 3) are s, theta, h; `wall` (..., 2) are s and theta of the points on the blade.
-        The displacement decreases along each column to 0 at its last node.
+        `columns` (..., rows, 3) are s, theta, h; `wall` (..., 2) are s, theta on the blade. Moves fade to 0
+        at the last node.
         """
         flat = columns.reshape(-1, *columns.shape[-2:])
         columns_on_blade(self._tables, wall.reshape(-1, 2), first, flat)
 
     def places(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return s and h (...) of points x, r (..., 2).
-
-        h is below 0 or above 1 outside of hub and casing; s is below 0 before the inlet and above 1 behind
-        the outlet.
-        """
+        """Return s and h (...) of points x, r (..., 2), beyond 0 and 1 outside the channel."""
         p = points.reshape(-1, 2)
         s = self._nearest_line(p)
         part = np.zeros(len(p))
@@ -176,7 +164,7 @@ class Channel:
         return s.reshape(points.shape[:-1]), h.reshape(points.shape[:-1])
 
     def _nearest_line(self, p: Floats) -> Floats:
-        """Return s (n,) of the lines from hub to casing that points (n, 2) are nearest to."""
+        """Return s (n,) of the lines from hub to casing nearest to points (n, 2)."""
         knots = self.hub.knots[:: _PIECES // 128]
         low, way = self.hub(knots), self.across(knots)
         off = p[:, None] - low
@@ -184,7 +172,7 @@ class Channel:
         return np.asarray(knots[np.abs(side).argmin(axis=1)])
 
     def _heights(self, s: Floats, part: Floats) -> Floats:
-        """Return h (n,) at parts (n,) of the way from hub to casing; it goes on evenly outside."""
+        """Return h (n,) at fractions (n,) of the way from hub to casing, also outside."""
         inside = np.clip(s, 0.0, 1.0)
         steps = np.stack([self._part(k, inside) for k in range(len(self._levels))])
         zone = np.clip((part >= steps).sum(axis=0) - 1, 0, len(steps) - 2)
@@ -202,7 +190,7 @@ class Channel:
         return MeridionalMap(CubicTable(m, s), CubicTable(s, m))
 
     def _offset(self, s: Floats, gap: float, *, from_casing: bool) -> Floats:
-        """Return the parts (n,) of the way, from the wall, at which points are a gap away from it."""
+        """Return the fractions (n,) of the way from a wall at which points are a gap away from it."""
         low, way = self.hub.values, self.across.values
         wall = CubicTable(low + way, s) if from_casing else self.hub
         start, way = wall.values, (-way if from_casing else way)
@@ -216,12 +204,12 @@ class Channel:
 
     @cached_property
     def levels(self) -> tuple[float, ...]:
-        """Ascending heights h that divide the channel: the hub, the ends of the blade at gaps, the casing."""
+        """Ascending h of the hub, the ends of the blade at gaps, and the casing."""
         return tuple(self._levels)
 
 
 def _distance(points: Floats, wall: CubicTable, s: Floats) -> Floats:
-    """Return the distances (n,) of points (n, 2) from a wall, to which they are near at s (n,)."""
+    """Return the distances (n,) of points (n, 2) from a wall near s (n,)."""
     at = s
     for _ in range(_FOOT_STEPS):
         slope = wall.slope(at)
@@ -230,7 +218,7 @@ def _distance(points: Floats, wall: CubicTable, s: Floats) -> Floats:
 
 
 def _by_arc(points: Floats, s: Floats, name: str) -> Floats:
-    """Return points (n, 2) at parts s (n,) of the length of a curve."""
+    """Return points (n, 2) at fractions s (n,) of a curve's length."""
     with in_place(name):
         curve = Curve(apart(np.ascontiguousarray(points, dtype=np.float64), closed=False))
     return curve.at(s * curve.length)
@@ -243,7 +231,6 @@ def _beside(low: Floats, high: Floats) -> Floats:
 
 
 def _check_sides(hub: Floats, shroud: Floats) -> None:
-    """Raise InputError unless the shroud (n, 2) is to the left of the hub everywhere."""
     left = _beside(hub, shroud)
     if (left > 0.0).all():
         return

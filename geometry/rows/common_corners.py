@@ -1,4 +1,4 @@
-"""Corners of profiles, the same ones along the span."""
+"""Corners of profiles, made the same along the span."""
 
 from collections.abc import Sequence
 
@@ -9,16 +9,13 @@ from meshonet.geometry.polygon.corners import SHARP
 from meshonet.geometry.rows.profile import BladeProfile
 
 BASE_TURN = 0.7
-"""The two points with the largest turns at an edge are the corners of a base if their turns are at least this
-fraction of all turns at the edge.
-"""
+"""Smallest part of the turns at an edge that its two largest have at a base."""
 
 
 def alike(profiles: Sequence[BladeProfile]) -> list[BladeProfile]:
-    """Return the profiles changed so that all have equal numbers of corners, at equal places u.
+    """Return the profiles with equal numbers of corners at equal places u.
 
-    Whether a turn counts as a corner depends on the points around it, so that the profiles of one blade may
-    have different corners; lines of equal u would then jump along the span.
+    Points near a turn decide whether it is a corner; lines of equal u would otherwise jump along the span.
     """
     counts = np.array([profile.corner_counts for profile in profiles])
     if not (counts == counts[0]).all():
@@ -29,7 +26,7 @@ def alike(profiles: Sequence[BladeProfile]) -> list[BladeProfile]:
 
 
 def _count(profiles: Sequence[BladeProfile], counts: Floats, trailing: bool) -> int:
-    """Return how many corners an edge has; `counts` (p,) are those of each profile."""
+    """Return how many corners an edge has, from those of each profile (p,)."""
     if (counts == counts[0]).all():
         return int(counts[0])
     turn, part = np.array([profile.sharpness(trailing) for profile in profiles]).T
@@ -37,10 +34,7 @@ def _count(profiles: Sequence[BladeProfile], counts: Floats, trailing: bool) -> 
 
 
 def common_corners(profiles: Sequence[BladeProfile]) -> Floats:
-    """Return the median places u (c,), from -0.25 to 0.75, of the corners of profiles.
-
-    The result is empty if the profiles have no corners, or different numbers of corners.
-    """
+    """Return the median places u (c,), -0.25 to 0.75, of the corners; empty if their numbers differ."""
     places = [profile.corner_places() for profile in profiles]
     if len({len(each) for each in places}) != 1 or not len(places[0]):
         return np.empty(0)

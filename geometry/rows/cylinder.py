@@ -1,4 +1,4 @@
-"""Airfoils on cylinders: profiles of blades that are given in the plane."""
+"""Airfoils on cylinders: blade profiles that are given in the plane."""
 
 import math
 
@@ -14,15 +14,12 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 def on_cylinder(
     section: Section, about: tuple[float, float], stagger: float, x: float, theta: float
 ) -> tuple[Floats, tuple[str, ...]]:
-    """Return the points (n, 3) of a section that is wrapped onto a cylinder, and notes.
-
-    The radius of the cylinder is the z of the section. Trailing edges are rounded
-    (`meshonet.geometry.rows.thick_edge`).
+    """Return the points (n, 3) of a section wrapped onto a cylinder, with a rounded edge, and notes.
 
     Parameters
     ----------
     section : the airfoil with its chord; its z is the radius.
-    about : the point of the section, in chords from the leading edge, that is placed at `x` and `theta`.
+    about : point of the section, in chords from the leading edge, that is placed at `x` and `theta`.
     stagger : angle of the chord from the axis, towards growing theta, in radians.
     x, theta : position of this point; theta = atan2(y, z) in radians.
     """

@@ -1,4 +1,4 @@
-"""Dimensions of a row of blades for reports, and notes on dimensions that are probably wrong."""
+"""Dimensions of a row of blades, and notes on those that are probably wrong."""
 
 import math
 from dataclasses import dataclass
@@ -11,10 +11,9 @@ from meshonet.geometry.rows.frame import UNITS, axis_name
 from meshonet.geometry.rows.row import Row
 
 USUAL_GAPS = 0.0002, 0.1
-"""Usual range of gaps over the span. Compressors and turbines have 0.005 to 0.03, small impellers up to 0.1.
-"""
+"""Usual range of gaps in spans: 0.005 to 0.03 in compressors and turbines, up to 0.1 in small impellers."""
 USUAL_SOLIDITIES = 0.3, 4.0
-"""Usual range of the solidity: compressors have 0.4 to 2.2 (NASA SP-36), inducers up to 3.5."""
+"""Usual range of the solidity: 0.4 to 2.2 in compressors (NASA SP-36), up to 3.5 in inducers."""
 USUAL_RADII = 0.001, 10.0
 """Usual range of casing radii in metres, from micro gas turbines to the largest water turbines."""
 _AXIAL = 0.2  # largest relative change of the radius along a blade whose solidity is judged
@@ -27,16 +26,15 @@ class RowDimensions:
     Parameters
     ----------
     blades : number of blades.
-    pitch : angle in degrees from one blade to the next.
+    pitch : angle in degrees from blade to blade.
     unit : name of the unit; empty if none was given.
-    axis : name of the axis from inlet to outlet, such as ``x`` or ``-z``; ``axis`` for another direction.
-    chord : distance from leading to trailing edge halfway from hub to tip.
-    longest_chord : longest chord of all profiles, the unit of first-cell heights and Reynolds numbers.
-    solidity : chord divided by the distance of neighbouring blades, both halfway from hub to tip.
-    span : distance from hub to shroud at the blade, mean of the values at leading and trailing edge.
+    axis : name of the axis from inlet to outlet, such as ``-z``; ``axis`` for another direction.
+    chord : chord at mid-span.
+    longest_chord : longest chord, the unit of first-cell heights and Reynolds numbers.
+    solidity : chord over the distance of neighbouring blades, at mid-span.
+    span : mean distance from hub to shroud at leading and trailing edge.
     tip_gap, hub_gap : widths of the gaps.
-    leading_edge, trailing_edge : positions (x, r) of the edge at the two ends of the blade, under the keys
-        ``hub`` and ``shroud``.
+    leading_edge, trailing_edge : ends (x, r) of the edge, by ``hub`` and ``shroud``.
     """
 
     blades: int
@@ -103,7 +101,7 @@ def row_dimensions(row: Row) -> RowDimensions:
 
 
 def doubts(dimensions: RowDimensions) -> tuple[str, ...]:
-    """Return notes on dimensions that are probably wrong: of gaps, of the number of blades, of the unit."""
+    """Return notes on probably wrong gaps, numbers of blades and units."""
     notes, unit = [], dimensions.unit or "the unit of the profiles"
     for name in ("tip_gap", "hub_gap"):
         part = getattr(dimensions, name) / dimensions.span

@@ -1,7 +1,4 @@
-"""The axis of a row of blades in the coordinates of its files and of its grid, and the unit of its files.
-
-A `Row` has its axis along x.
-"""
+"""The axis of a row of blades in its files, which becomes the x axis, and their unit."""
 
 from collections.abc import Sequence
 
@@ -18,10 +15,7 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 
 
 def axis_along(direction: Sequence[float]) -> Motion:
-    """Return a rotation that takes `direction` (3,), which must not be 0, to the x axis.
-
-    If `direction` is along a coordinate axis, the rotation takes each coordinate axis to one.
-    """
+    """Return a rotation that takes `direction` (3,), not 0, to the x axis, and coordinate axes to such."""
     way = np.array(direction)
     way = way / np.abs(way).max()
     way = way / norms(way)
@@ -34,6 +28,6 @@ def axis_along(direction: Sequence[float]) -> Motion:
 
 
 def axis_name(frame: Motion | None) -> str:
-    """Return the name of the axis that a rotation takes to x, such as ``-z``; ``axis`` if it has none."""
+    """Return the name of the axis that a rotation takes to x, such as ``-z``, else ``axis``."""
     direction = AXES["x"] if frame is None else frame.turn[0]
     return next((name for name, each in AXES.items() if each == direction), "axis")

@@ -1,8 +1,4 @@
-"""A profile of a blade: a closed curve around the blade, divided at its leading and trailing edge.
-
-A place on it is u, in parts of the sides' lengths: 0 at the leading edge, over the side of larger theta to
-0.5 at the trailing edge, and back to 1.
-"""
+"""A profile of a blade: a closed curve, divided at its leading and trailing edge."""
 
 from collections.abc import Sequence
 from copy import copy
@@ -33,17 +29,16 @@ _OTHER_UNIT = 1.5  # factor between radii of blade and channel from which on the
 class BladeProfile:
     """A profile of a blade in a channel: a closed curve around the blade.
 
-    A place on the curve is a number u: 0 at the leading edge, increasing along the side of larger theta to
-    0.5 at the trailing edge, and along the other side to 1, again at the leading edge.
+    A place u on it is 0 at the leading edge, grows along the side of larger theta to 0.5 at the trailing
+    edge, and along
+    the other side to 1.
 
     Parameters
     ----------
-    points : (n, 3) x, y, z around the profile in either direction, with the axis along x; points may be
-        repeated.
+    points : (n, 3) x, y, z around the profile in either direction, about the x axis.
     channel : the channel in which the profile stands.
 
-    Raises InputError: too few points; points that do not enclose an area; points outside the range of the
-    channel.
+    Raises InputError: too few points; points that enclose no area, or are outside the channel.
     """
 
     def __init__(self, points: Floats, channel: Channel) -> None:
@@ -69,7 +64,7 @@ class BladeProfile:
         self._follow(Curve(np.ascontiguousarray(plane), closed=True))
 
     def _follow(self, curve: Curve, tips: tuple[int | None, int | None] = (None, None)) -> None:
-        """Take a curve for the profile; `tips` are the numbers of points that are known to be its edges."""
+        """Take a curve for the profile; `tips` are the points known to be its edges."""
         self.curve = curve
         leading, trailing = self._edges()
         self.leading = leading if tips[0] is None else float(curve.knots[tips[0]])
@@ -77,10 +72,9 @@ class BladeProfile:
         self._stops = _ENDS, np.array([0.0, self._sides[0], curve.length])
 
     def cornered(self, counts: Sequence[int]) -> Self:
-        """Return the profile with prescribed numbers of corners at its leading and its trailing edge.
+        """Return the profile with `counts` (0, 1 or 2) of corners at its leading and its trailing edge.
 
-        `counts` are these two numbers, each 0, 1 or 2. The corners are the points with the largest turns near
-        the edge; a single corner becomes the edge itself, where u is 0 or 0.5.
+        They are the points with the largest turns there; a single corner becomes the edge itself.
         """
         edges, curve = (self.leading, self.trailing), self.curve
         bend = np.abs(turning(curve.points, closed=True))
@@ -97,11 +91,7 @@ class BladeProfile:
         return made
 
     def aligned(self, places: Floats) -> Self:
-        """Return the profile with u redefined so that its corners are at `places` u (c,).
-
-        Each new place must be near the former place of the corner. Between corners, u is proportional to the
-        arc length.
-        """
+        """Return the profile with its corners at `places` u (c,), near their former places."""
         made, own = copy(self), self.corner_places()
         u = np.concatenate([_ENDS, places])
         way = np.concatenate([self._stops[1], np.interp(own, *self._stops)])
@@ -111,16 +101,16 @@ class BladeProfile:
 
     @property
     def _reach(self) -> float:
-        """Arc length on both sides of an edge in which corners belong to it."""
+        """Arc length beside an edge within which corners belong to it."""
         return _BASE * 0.5 * self.curve.length
 
     def _off(self, arcs: Floats, edge: float) -> Floats:
-        """Return signed distances (n,) along the curve of arc lengths (n,) from an edge."""
+        """Return signed distances (n,) along the curve from an edge, at arc lengths (n,)."""
         length = self.curve.length
         return shortest_ways(arcs - edge, length)
 
     def reshaped(self, plane: Floats, heights: Floats) -> Self:
-        """Return the profile with other points: m' and theta `plane` (n, 2), and `heights` (n,)."""
+        """Return the profile through other m' and theta `plane` (n, 2), and `heights` (n,)."""
         made = copy(self)
         made.__dict__ = {k: v for k, v in vars(self).items() if k not in ("thickness", "_heights")}
         made.heights = heights
@@ -137,7 +127,7 @@ class BladeProfile:
         return one, two
 
     def edge(self, trailing: bool) -> str:
-        """Return words for the form of the leading or trailing edge, with a hint if points may be missing."""
+        """Return the form of an edge as text, with a hint if points may be missing."""
         count = self.corner_counts[trailing]
         if count:
             return {1: "pointed", 2: "blunt"}.get(count, "polygonal")
@@ -149,14 +139,14 @@ class BladeProfile:
         )
 
     def sharpness(self, trailing: bool) -> tuple[float, float]:
-        """Return the largest turn at an edge (radians), and the fraction of all turns in the two largest."""
+        """Return the largest turn at an edge in radians, and the part of all turns in the two largest."""
         bend = np.abs(turning(self.curve.points, closed=True))
         edge = self.trailing if trailing else self.leading
         own = np.sort(bend[np.abs(self._off(self.curve.knots, edge)) < self._reach])
         return float(own[-1]), float(own[-2:].sum() / own.sum())
 
     def _edges(self) -> tuple[float, float]:
-        """Return the arc lengths of leading and trailing edge: the points farthest from each other."""
+        """Return the arc lengths of leading and trailing edge, the points farthest apart."""
         arcs = np.linspace(0.0, self.curve.length, _SAMPLES, endpoint=False)
         points = self.curve.at(arcs)
         ends = [points[int(norms(points - points.mean(axis=0)).argmax())]]
@@ -169,7 +159,7 @@ class BladeProfile:
         return (one, two) if x[0] < x[1] else (two, one)
 
     def _farthest(self, point: Floats, arcs: Floats, points: Floats) -> float:
-        """Return the arc length that is farthest from a point, between samples by a parabola."""
+        """Return the arc length farthest from a point."""
         away = norms(points - point)
         k = int(away.argmax())
         before, here, after = away[k - 1], away[k], away[(k + 1) % len(away)]
@@ -181,7 +171,7 @@ class BladeProfile:
         return float(arcs[k] + shift * arcs[1])
 
     def _blunt(self, arc: float) -> float:
-        """Return the middle of a base if the curve is cut off there by two corners, otherwise `arc`."""
+        """Return the middle of a base between two corners near `arc`, else `arc`."""
         off = self._off(self.curve.corners, arc)
         near = np.sort(off[np.abs(off) < self._reach])
         if len(near) != 2:
@@ -196,7 +186,7 @@ class BladeProfile:
 
     @cached_property
     def thickness(self) -> float:
-        """Approximate largest difference of theta, in radians, between the two sides at equal m'."""
+        """Approximate largest difference of theta in radians between both sides."""
         u = np.linspace(0.0, 0.5, _SAMPLES // 2)
         sides = [self.curve.at(self.arcs(places)).T for places in (u, 1.0 - u)]
         at = np.linspace(sides[0][0][0], sides[0][0][-1], _SAMPLES // 2)
@@ -204,14 +194,11 @@ class BladeProfile:
         return float(np.abs(first - second).max())
 
     def arcs(self, u: Floats) -> Floats:
-        """Return the arc lengths (n,), in the plane (m', theta), at the places u (n,), 0 to 1."""
+        """Return the arc lengths (n,) in the plane (m', theta) at places u (n,), 0 to 1."""
         return np.asarray(np.mod(self.leading + np.interp(u, *self._stops), self.curve.length))
 
     def corner_places(self) -> Floats:
-        """Return the ascending places u (c,) of all corners, in the range -0.25 to 0.75.
-
-        The corners of the leading edge, near 0, come before those of the trailing edge, near 0.5.
-        """
+        """Return the ascending places u (c,), -0.25 to 0.75, of all corners."""
         u, way = self._stops
         at = np.interp(np.mod(self.curve.corners - self.leading, self.curve.length), way, u)
         return np.sort(wrapped(at, -0.25))
@@ -224,14 +211,13 @@ class BladeProfile:
 
     @cached_property
     def _heights(self) -> CubicTable:
-        """Heights by arc length, over the seam."""
         around = np.arange(-_SEAM, len(self.heights) + _SEAM)
         turns, number = np.divmod(around, len(self.heights))
         return CubicTable(self.heights[number], self.curve.knots[number] + turns * self.curve.length)
 
 
 def _check_unit(r: Floats, channel: Channel) -> None:
-    """Raise InputError if a profile is so far inside the hub or outside the casing that units differ."""
+    """Raise InputError if a profile is so far outside the channel that units must differ."""
     low, high = float(r.min()), float(r.max())
     inner, outer = channel.radii
     if low > _OTHER_UNIT * outer or _OTHER_UNIT * high < inner:

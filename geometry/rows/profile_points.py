@@ -1,4 +1,4 @@
-"""Points of profiles and walls as they are given: repeated ones are left out, open profiles are refused."""
+"""Points of profiles and walls as given: repeated ones left out, open profiles refused."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,10 +16,7 @@ _STEPS = 3.0  # the same, divided by the longest distance of neighbouring points
 
 
 def as_points(values: ArrayLike, columns: int) -> Floats:
-    """Return `values` as an array of numbers (n, columns).
-
-    Raises InputError: another shape, or no numbers.
-    """
+    """Return `values` as an array (n, columns). Raises InputError: another shape, or no numbers."""
     try:
         points = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
@@ -32,10 +29,7 @@ def as_points(values: ArrayLike, columns: int) -> Floats:
 
 
 def apart(points: Floats, *, closed: bool) -> Floats:
-    """Return points (n, d) without those that equal the next point.
-
-    In a `closed` curve the next point of the last one is the first.
-    """
+    """Return points (n, d) without those equal to the next one, in a `closed` curve cyclically."""
     steps = norms(points - np.roll(points, -1, axis=0))
     kept = steps > _SAME * np.ptp(points, axis=0).max(initial=0.0)
     kept[-1:] |= not closed
@@ -43,10 +37,7 @@ def apart(points: Floats, *, closed: bool) -> Floats:
 
 
 def distinct_points(points: Floats) -> Floats:
-    """Return points (n, 3) around a profile without repeated ones.
-
-    Raises InputError: too few points are left.
-    """
+    """Return points (n, 3) around a profile without repeated ones. Raises InputError: too few are left."""
     p = np.asarray(points, dtype=np.float64)
     count = len(p)
     p = apart(p, closed=True) if count else p
@@ -57,10 +48,7 @@ def distinct_points(points: Floats) -> Floats:
 
 
 def check_profile(plane: Floats, points: Floats) -> None:
-    """Raise InputError unless `points` (n, 3) go around a blade.
-
-    `plane` (n, 2) is m' and theta of the points.
-    """
+    """Raise InputError unless `points` (n, 3), at m', theta `plane` (n, 2), go around a blade."""
     size = float(norms(np.ptp(plane, axis=0)))
     steps = norms(plane - np.roll(plane, 1, axis=0))
     if steps[0] > max(_OPEN * size, _STEPS * steps[1:].max()):

@@ -1,4 +1,4 @@
-"""A row of blades: what a grid of its passage is made from."""
+"""A row of blades, from which the grid of a passage is made."""
 
 import math
 from collections.abc import Sequence
@@ -27,28 +27,27 @@ class Row:
     Parameters
     ----------
     profiles : sequence of array
-        Two or more closed curves (n, 3) of x, y, z around one blade, ordered from hub to casing.
+        Two or more closed curves (n, 3) of x, y, z around one blade, from hub to casing.
     hub, shroud : array
-        Points (n, 2) of x and r on the inner and on the outer wall, ordered from inlet to outlet.
+        Points (n, 2) of x and r on the inner and the outer wall, from inlet to outlet.
     blades : int
         Number of blades.
     tip_gap, hub_gap : float, optional
-        Width of the gap between blade and casing, and between blade and hub.
+        Widths of the gaps between blade and casing, and between blade and hub.
     name : str, optional
         Name of the row.
     notes : tuple of str, optional
         Notes on changes of the profiles.
     frame : Motion, optional
-        The rotation from the coordinates of the grid to the coordinates of the row; None: they are the same.
+        Rotation from the coordinates of the grid to those of the row; None: they are the same.
     unit : {'m', 'cm', 'mm', 'in', 'ft'}, optional
-        Unit of lengths in reports; the lengths of the row and of the grid are then in metres. If empty,
-        reports give lengths without conversion.
+        Unit of lengths in reports; lengths of row and grid are then metres. Empty: no conversion.
 
     Raises
     ------
     InputError
-        Curves that do not form a channel; profiles in the wrong order or outside the channel; gaps wider than
-        the span.
+        Curves that form no channel; profiles in the wrong order or outside the channel; gaps wider than the
+        span.
 
     Examples
     --------
@@ -112,7 +111,7 @@ class Row:
 
     @property
     def changes(self) -> tuple[str, ...]:
-        """Notes on changes of the profiles: `notes`, then those of the surface of the blade."""
+        """Notes on changes of the profiles."""
         return (*self.notes, *self.surface.notes)
 
     @property
@@ -122,7 +121,7 @@ class Row:
 
     @cached_property
     def chord(self) -> float:
-        """Length of the longest profile, from the leading to the trailing edge."""
+        """Length of the longest profile between its edges."""
         lengths = []
         for points in self.profiles:
             p = np.asarray(points)

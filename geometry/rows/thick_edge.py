@@ -1,11 +1,6 @@
-"""Edges of profiles that end in a point: opened and rounded, so that layers go around them.
+"""Edges of profiles that end in a point: opened to 1 % of the chord and rounded, for layers around them.
 
-::
-
-    given   ----------___          made   ------------___
-                         ``--> .                          `)   a base 1 % of the chord thick, rounded;
-            ----------''                  ------------'''      points move in proportion to their
-                                                               distance from the other edge
+Points move in proportion to their distance from the other edge.
 """
 
 import numpy as np
@@ -24,12 +19,12 @@ _SIGNS = 1.0, -1.0  # of the sides' distances from the chord: profiles are clock
 
 
 def pointed(profile: BladeProfile, trailing: bool) -> bool:
-    """Return whether the leading or the trailing edge of a profile is a point."""
+    """Return whether an edge of a profile is a point."""
     return profile.corner_counts[trailing] == 1 and profile.sharpness(trailing)[0] > _POINTED
 
 
 def thick_edged(profile: BladeProfile, trailing: bool) -> BladeProfile:
-    """Return a profile with its pointed leading or trailing edge made round, 0.01 chords thick."""
+    """Return a profile with a pointed edge made round, 0.01 chords thick."""
     curve, length = profile.curve, profile.curve.length
     begin, edge = profile.leading, profile.trailing
     if not trailing:
@@ -61,10 +56,7 @@ def thick_edged(profile: BladeProfile, trailing: bool) -> BladeProfile:
 
 
 def _round_end(one: Floats, other: Floats, before: Floats, beside: Floats) -> Floats:
-    """Return points (n, 2) of a cubic between the ends of two sides (1, 2), in their directions there.
-
-    It reaches about half of the distance of the ends beyond them.
-    """
+    """Return points (n, 2) of a cubic cap between the ends of two sides (1, 2), in their directions."""
     reach = 2.0 / 3.0 * float(norms(other - one)[0])
     first = one + reach * (one - before) / norms(one - before)
     last = other + reach * (other - beside) / norms(other - beside)
@@ -74,7 +66,7 @@ def _round_end(one: Floats, other: Floats, before: Floats, beside: Floats) -> Fl
 
 
 LEAST_EDGE = 0.01
-"""Thickness in chords to which thinner trailing edges are opened, so that layers can go around them."""
+"""Thickness in chords to which thinner trailing edges are opened."""
 
 
 def round_edged(airfoil: Airfoil) -> tuple[Airfoil, tuple[str, ...]]:

@@ -1,4 +1,4 @@
-"""Parts of hub and casing between an inlet and an outlet plane, extended straight if they are short."""
+"""Parts of hub and casing between inlet and outlet planes, extended straight if short."""
 
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -11,7 +11,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
 
 Plane: TypeAlias = float | tuple[tuple[float, float], tuple[float, float]]
-"""A position along the axis, or two points (x, r), on hub and on casing, through which the plane goes."""
+"""A position along the axis, or two points (x, r) on hub and casing through which the plane goes."""
 _PLACES = "inlet", "outlet"
 _SAMPLES = 4001
 _HALVINGS = 60
@@ -25,12 +25,12 @@ _SAME = 1e-9  # of a curve's length
 
 @dataclass(frozen=True)
 class WallPlanes:
-    """The inlet and the outlet plane; the curves of hub and casing are cut at them.
+    """The inlet and the outlet plane at which hub and casing are cut.
 
     Parameters
     ----------
-    inlet, outlet : positions of the planes; None if the channel ends where the curves end.
-    axis, unit : names of the axis and of the unit of these positions, for messages.
+    inlet, outlet : positions of the planes; None: at the ends of the curves.
+    axis, unit : names of the axis and of the unit, for messages.
     """
 
     inlet: Plane | None = None
@@ -39,9 +39,7 @@ class WallPlanes:
     unit: str = "m"
 
     def trimmed(self, points: Floats, wall: int) -> tuple[Floats, tuple[str, ...]]:
-        """Return the part of a wall between the two planes, and notes.
-
-        `points` (n, 2) are x and r of hub (`wall` 0) or casing (`wall` 1).
+        """Return the `points` (n, 2) of x and r of hub (`wall` 0) or casing (1) between planes, and notes.
 
         Raises InputError: a plane that the curve does not reach; an outlet before the inlet.
         """
@@ -74,7 +72,7 @@ class WallPlanes:
         return np.asarray(curve.at(arcs)), tuple(notes)
 
     def _arc(self, curve: Curve, plane: float | tuple[float, float], place: str, name: str) -> float:
-        """Return the arc length at which a curve meets a place along the axis, or is nearest to a point."""
+        """Return the arc length at which a curve meets a plane."""
         arcs = np.linspace(0.0, curve.length, _SAMPLES)
         at = curve.at(arcs)
         if not isinstance(plane, float):
@@ -102,10 +100,7 @@ class WallPlanes:
 
 
 def _continuation(curve: Curve, plane: float | tuple[float, float], place: str) -> Floats | None:
-    """Return points (n, 2) on the straight line from the end of a curve to a plane, or None if it needs none.
-
-    None, too, if the plane is too far away, or the line does not lead there.
-    """
+    """Return points (n, 2) straight from the end of a curve to a plane, None if needless or too long."""
     last = place == "outlet"
     end = curve.points[-1 if last else 0]
     way = curve.tangent(np.array([curve.length if last else 0.0]))[0] * (1.0 if last else -1.0)

@@ -1,4 +1,4 @@
-"""Profiles of one blade that are a whole pitch or a whole turn apart around the axis."""
+"""Profiles of one blade that are whole pitches or turns apart."""
 
 import numpy as np
 
@@ -8,15 +8,14 @@ _WHOLE = 0.2  # largest deviation of a displacement from whole pitches; beyond i
 
 
 def whole_pitches(angles: Floats, heights: Floats, pitch: float) -> Floats:
-    """Return by how many pitches (p,) each profile is away from the blade to which most profiles belong.
+    """Return the number of pitches (p,) between each profile and the blade of most profiles.
 
-    A blade may itself lean by more than a pitch. A step in theta from one profile to the next therefore
-    counts as a displacement only if it exceeds the steps between other profiles by whole pitches.
+    A step of theta counts only if it exceeds the lean between other profiles by whole pitches.
 
     Parameters
     ----------
     angles : (p,) mean theta of each profile in radians.
-    heights : (p,) positions of the profiles along the span, ascending.
+    heights : (p,) ascending positions of the profiles along the span.
     pitch : angle from blade to blade.
     """
     steps, rises = np.diff(angles), np.diff(heights)

@@ -1,13 +1,4 @@
-"""A section placed in space: an outline in a plane of constant z, scaled, twisted, moved and canted.
-
-::
-
-     y ^                                    chord     length that the section is scaled to
-       |      .--------.____                twist     nose up, about a point in chords from the leading edge
-       |   LE (     +       ---- TE         x, y      position of the leading edge before the twist
-       |      '--------'''''
-       +---------------------> x            z         position of the section's plane, along the span
-"""
+"""A section placed in space: an outline in a plane, scaled, twisted, moved and canted."""
 
 import math
 from dataclasses import dataclass
@@ -37,7 +28,7 @@ class Section:
     shape : Airfoil or Outline
         An airfoil, or a closed curve, in any unit.
     chord : float
-        Chord length to which the shape is scaled, in the unit of the stack.
+        Chord to which the shape is scaled, in the unit of the stack.
     z : float
         Position of the section's plane.
     x, y : float, optional
@@ -45,14 +36,14 @@ class Section:
     twist : float, optional
         Twist angle in degrees, nose up.
     about : tuple of 2 float, optional
-        Centre of the twist, in chords from the leading edge along x and y.
+        Centre of the twist, in chords from the leading edge.
     cant : float or 'panel', optional
-        Angle in degrees by which the section's plane is rotated about the line through the leading edge that
-        is parallel to x; positive like dihedral. ``panel``: the dihedral of the adjacent panels
-        (`Stack.cants`).
+        Angle in degrees by which the plane is rotated about the leading edge's line along x, positive like
+        dihedral.
+        ``panel``: the dihedral of the adjacent panels (`Stack.cants`).
     nodes : int, optional
-        Number of nodes along the span from the previous section to this one, including both sections. None:
-        it follows from the number for the whole stack.
+        Number of nodes along the span from the previous section to this one, with both; None: from the whole
+        stack.
 
     Raises
     ------
@@ -86,12 +77,9 @@ class Section:
 
     @property
     def frame(self) -> tuple[Floats, float]:
-        """Leading edge (2,) and chord of the given shape.
+        """Leading edge (2,) and chord of the given shape, which become 0 and 1.
 
-        The section is moved and scaled so that they become 0 and 1.
-
-        A shape with its leading edge near 0 and a chord near 1, as in most airfoil files, is not scaled.
-        Shapes are not rotated.
+        A shape that nearly has these is not scaled, as in most airfoil files.
         """
         if isinstance(self.shape, Airfoil):
             nose, length = self.shape.leading_edge, self.shape.unit
@@ -103,25 +91,19 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """(6,) chord, twist in radians, x, y, and the two numbers of `about`.
-
-        These six numbers are interpolated in z.
-        """
+        """(6,) chord, twist in radians, x, y, and `about`, which are interpolated in z."""
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 
 class Fade(NamedTuple):
-    """Weights (n,) at nodes: 1 means full twist and scale; 0 means no twist, and scaling by `chord`."""
+    """Weights (n,) at nodes: 1 means full twist and scale, 0 no twist and scaling by `chord`."""
 
     weight: Floats
     chord: float
 
 
 def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
-    """Return nodes (..., n, 2) of unit sections, scaled, twisted and moved by placements (..., 6).
-
-    For placements see `Section.placement`; leading axes broadcast.
-    """
+    """Return nodes (..., n, 2) of unit sections at placements (..., 6) (`Section.placement`)."""
     chord, twist, x, y, about_x, about_y = (placement[..., k, None] for k in range(6))
     if fade is not None:
         chord, twist = fade.chord + (chord - fade.chord) * fade.weight, twist * fade.weight
@@ -137,9 +119,9 @@ def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
 
 
 def turned(points: Floats, place: Floats, cant: Floats) -> Floats:
-    """Return `points` (..., 3) rotated about lines parallel to x.
+    """Return `points` (..., 3) rotated about lines parallel to x by `cant` (...), in radians from z to y.
 
-    The lines pass through y and z of `place` (..., 2); `cant` (...) is in radians, positive from z to y.
+    The lines pass through y and z of `place` (..., 2).
     """
     c, s = cos(cant), sin(cant)
     away, along = points[..., 1] - place[..., 0], points[..., 2] - place[..., 1]

@@ -23,7 +23,7 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 TIPS: tuple[Tip, ...] = get_args(Tip)
 BETWEEN: tuple[Between, ...] = get_args(Between)
 STEEP = 20.0
-"""Angle in degrees between a panel and the normals of its sections above which a note gives the thickness."""
+"""Angle in degrees between a panel and its sections' normals above which a note gives the thickness."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,12 +35,11 @@ class Stack:
     sections : tuple of Section
         Sections in the order of z; the first one is the root of a wing.
     kind : {'wing', 'blade', 'duct'}, optional
-        A ``wing`` ends with a tip at the last section, a ``blade`` stands between two walls, and a ``duct``
-        has internal flow.
+        A wing ends with a tip, a blade stands between two walls, and a duct has internal flow.
     tip : {'round', 'flat', 'open'}, optional
-        Shape of the tip of a wing; ``open``: the tip is not closed.
+        Shape of the tip of a wing; ``open``: not closed.
     between : {'linear', 'smooth'}, optional
-        Interpolation between sections: ``linear``, or ``smooth`` by cubics in z that do not overshoot.
+        Interpolation between sections: linear, or by cubics in z without overshoot.
     tip_spacing : float, optional
         Length of the last cells along the span of a wing, in chords of the last section.
     le_spacing, te_spacing : float, optional
@@ -88,7 +87,7 @@ class Stack:
         self._check_cants()
 
     def _check_cants(self) -> None:
-        """Raise InputError for a cant of a section that lies in a wall or in a plane of symmetry."""
+        """Raise InputError for a canted section in a wall or in a plane of symmetry."""
         flat = {0, len(self.sections) - 1} if self.tip == "open" else {0}
         for k, section in enumerate(self.sections):
             place = f"sections[{k}].cant"
@@ -101,7 +100,7 @@ class Stack:
 
     @property
     def panel_cells(self) -> tuple[int | None, ...]:
-        """Number of cells along the span of each panel, None where it is not given."""
+        """Number of cells along the span of each panel, None if not given."""
         return tuple(None if each.nodes is None else each.nodes - 1 for each in self.sections[1:])
 
     @property
@@ -111,7 +110,7 @@ class Stack:
         return sum(cells) + 1 if len(cells) == len(self.panel_cells) else None
 
     def with_tip(self, tip: Tip | None) -> Stack:
-        """Return the same stack with another tip; None keeps its own.
+        """Return the stack with another tip; None keeps its own.
 
         Raises InputError: the stack is no wing, or the tip is unknown.
         """
@@ -138,13 +137,13 @@ class Stack:
 
     @property
     def end(self) -> tuple[float, float, float]:
-        """Position of the last section: x and y of its leading edge before the twist, and z."""
+        """Leading edge of the last section before the twist."""
         last = self.sections[-1]
         return last.x, last.y, last.z
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the points and files of the sections, and on panels that are thin because steep."""
+        """Notes on the sections' points and files, and on steep panels."""
         notes = [note for section in self.sections for note in section.shape.notes]
         return tuple(dict.fromkeys([*notes, *filter(None, [self.steep])]))
 
@@ -157,8 +156,7 @@ class Stack:
     def cants(self) -> Floats:
         """(n,) cant of the sections in radians.
 
-        For ``panel`` it is the mean dihedral of the panels on both sides of the section; at the tip it is the
-        dihedral of the last panel, in a plane of symmetry 0.
+        For ``panel`` it is the mean dihedral of the adjacent panels, and 0 in a plane of symmetry.
         """
         panels = self.dihedrals
         own = np.concatenate([[0.0], 0.5 * (panels[1:] + panels[:-1]), panels[-1:]])
@@ -169,10 +167,9 @@ class Stack:
 
     @property
     def steep(self) -> str:
-        """A note on the steepest panel; empty if no panel is steep.
+        """Note on the steepest panel; empty if none is steep.
 
-        If the sections' planes are inclined to the plane that is normal to a panel, the panel is thinner than
-        its sections: by the factor cos(angle between the planes).
+        Panels are thinner than their sections by the cosine of the angle between section and panel normal.
         """
         if self.kind != "wing":
             return ""
@@ -188,12 +185,11 @@ class Stack:
         )
 
     def lofted(self, unit: Floats, z: Floats, weight: Floats | None = None) -> Floats:
-        """Return nodes (m, n, 3) of the sections at the heights `z` (m,).
+        """Return nodes (m, n, 3) of the sections at the heights `z` (m,) of the leading edge.
 
-        `unit` (sections, n, 2) are the nodes of the given sections, scaled to unit chord. Shape, chord, twist
-        and position are interpolated separately, so that a section between two sections of different twist
-        keeps its length. Nodes with `weight` (n,) 0 are not twisted, and are scaled by the longest chord. `z`
-        is the height of the leading edge, about which a section with a cant is rotated.
+        `unit` (sections, n, 2) are nodes of the given sections at unit chord. Shape, chord, twist and
+        position are interpolated
+        separately. Nodes with `weight` (n,) 0 are not twisted, and scaled by the longest chord.
         """
         fade = None if weight is None else Fade(weight, self.chord)
         placements = np.stack([section.placement for section in self.sections])
@@ -203,7 +199,7 @@ class Stack:
         return self.canted(nodes, z) if self.cants.any() else nodes
 
     def canted(self, nodes: Floats, z: Floats) -> Floats:
-        """Return `nodes` (m, ..., 3) rotated about the leading edges by the cants at the heights `z` (m,)."""
+        """Return `nodes` (m, ..., 3) rotated about the leading edges by the cants at `z` (m,)."""
         values = np.stack([np.array([section.y for section in self.sections]), self.cants], axis=1)
         y, cant = self.between_sections(values, z).reshape(len(z), *[1] * (nodes.ndim - 2), 2).T
         place = np.stack([y.T, z.reshape(y.T.shape)], axis=-1)

@@ -1,15 +1,6 @@
 """Volume blocks over one table of nodes: a node of an interface, singular edge or pole exists once.
 
-::
-
-    block 0        block 1              beyond block 0: -1 -1 -1 -1 -1
-    +--+--+        +--+--+                              -1  0  2  4  6
-    |  |  |    +   |  |  |                              -1  1  3  5  7
-    +--+--+        +--+--+                              -1 -1 -1 -1 -1
-         east = west                   (its node numbers, and those one step across connected sides)
-
-A block is an array of node numbers, as in the plane in `meshonet.geometry.layout.layout.Layout`. The nodes of
-a line of a side that all coincide, as at the pole of a sphere, are one node.
+Blocks are arrays of node numbers, as in `meshonet.geometry.layout.layout.Layout`.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -58,7 +49,7 @@ class HexMesh:
 
     @cached_property
     def outer(self) -> Bools:
-        """(n,) whether a node is on a part of a side without a connection."""
+        """(n,) whether a node is on an unconnected part of a side."""
         outer = np.zeros(len(self.nodes), dtype=bool)
         for number, block in enumerate(self.blocks):
             for side in PLACES:
@@ -69,7 +60,7 @@ class HexMesh:
         return outer
 
     def free_cells(self, number: int, side: Side) -> Bools:
-        """Return, for each cell (n-1, m-1) of a side of block `number`, whether it has no connection."""
+        """Return whether each cell (n-1, m-1) of a side of block `number` is unconnected."""
         face = face_of(self.blocks[number], side)
         free = np.ones((face.shape[0] - 1, face.shape[1] - 1), dtype=bool)
         for each in self.connections:
@@ -80,10 +71,7 @@ class HexMesh:
 
     @cached_property
     def beyond(self) -> tuple[Indices, ...]:
-        """The blocks with one layer of node indices added around each: (ni+2, nj+2, nk+2).
-
-        The layer contains the nodes one step across connected sides, and -1 elsewhere.
-        """
+        """Blocks (ni+2, nj+2, nk+2) with the nodes one step across connected sides around them, else -1."""
         wider = tuple(np.pad(block, 1, constant_values=-1) for block in self.blocks)
 
         def outside(number: int, side: Side) -> Indices:
@@ -103,13 +91,13 @@ class HexMesh:
 
 
 def corners_of(values: AnyArray) -> Iterator[AnyArray]:
-    """Yield, for each of the 8 corners of cells, a view (ni-1, nj-1, nk-1) of `values` (ni, nj, nk)."""
+    """Yield views (ni-1, nj-1, nk-1) of `values` (ni, nj, nk) at the 8 corners of cells."""
     for corner in np.ndindex(2, 2, 2):
         yield values[tuple(slice(c, c + n - 1) for c, n in zip(corner, values.shape, strict=True))]  # type: ignore[misc]
 
 
 def any_corner(nodes: Bools) -> Bools:
-    """Return, for each cell of a block, whether any of its corners is in the mask `nodes` (ni, nj, nk)."""
+    """Return whether any corner of each cell is in the mask `nodes` (ni, nj, nk)."""
     cells = nodes
     for axis in range(3):
         ends = np.moveaxis(cells, axis, 0)
@@ -118,7 +106,7 @@ def any_corner(nodes: Bools) -> Bools:
 
 
 def second_layer(values: AnyArray, side: Side) -> AnyArray:
-    """Return a view of `values` (ni, nj, nk) in the layer of nodes next to a side."""
+    """Return a view of `values` (ni, nj, nk) in the layer next to a side."""
     axis, end = PLACES[side]
     return np.moveaxis(values, axis, 0)[1 if end == 0 else -2]
 
@@ -126,11 +114,9 @@ def second_layer(values: AnyArray, side: Side) -> AnyArray:
 def exchange(
     connections: Sequence[Connection], outside: FaceValues, inside: FaceValues
 ) -> None:  # fmt: skip
-    """Copy values across connections.
+    """Copy values just inside each of two connected sides to those just outside the other.
 
-    A connection joins two sides. The values of the layer just inside one of them are copied to the layer just
-    outside the other, in both directions. The functions `inside` and `outside` return views of these layers,
-    given a block and a side.
+    `inside` and `outside` return views of these layers of a block and a side.
     """
     for each in connections:
         own_out, donor_out = each.nodes(lambda block, side: outside(block, side)[..., None])
@@ -139,10 +125,7 @@ def exchange(
 
 
 def hex_mesh_of(grid: Grid) -> HexMesh:
-    """Return the mesh of the volume blocks of a grid.
-
-    Raises InputError: blocks that are no volumes, or left-handed.
-    """
+    """Return the mesh of the volume blocks of a grid. Raises InputError: no volumes, or left-handed."""
     for number, block in enumerate(grid.blocks):
         if len(block.counts) != 3:
             sizes = " x ".join(map(str, block.counts))
@@ -157,7 +140,7 @@ def hex_mesh_of(grid: Grid) -> HexMesh:
 
 
 def _left_handed(nodes: Floats) -> bool:
-    """Return whether a block has a negative volume, and most of its cells have too."""
+    """Return whether a block and most of its cells have negative volumes."""
     corner = nodes[:-1, :-1, :-1]
     with np.errstate(over="ignore", invalid="ignore"):
         if not signed_volume([nodes[..., axis] for axis in range(3)]) < 0:
@@ -167,7 +150,7 @@ def _left_handed(nodes: Floats) -> bool:
 
 
 def _with_poles(nodes: Floats, numbers: tuple[Indices, ...]) -> tuple[Floats, tuple[Indices, ...]]:
-    """Return nodes and blocks of node numbers, with the coinciding nodes of lines of sides made one."""
+    """Return nodes and blocks, with coinciding nodes of lines of sides made one."""
     near = POLE * extent_of(nodes)
     pairs = [
         pair for number in numbers for side in PLACES for pair in _poles(face_of(number, side), nodes, near)
@@ -193,5 +176,5 @@ def _poles(face: Indices, nodes: Floats, near: float) -> list[tuple[Indices, Ind
 
 
 def with_nodes(grid: Grid, mesh: HexMesh) -> Grid:
-    """Return `grid` with the nodes of `mesh`, which was made from `grid`; connected sides are equal."""
+    """Return `grid` with the nodes of `mesh`, made from it; connected sides are equal."""
     return replace(grid, blocks=tuple(Block(mesh.nodes[block]) for block in mesh.blocks))

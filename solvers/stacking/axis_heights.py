@@ -1,9 +1,6 @@
 """Heights of nodes along the axis of a duct or blade whose sections are unevenly spaced.
 
-::
-
-    sections  |         |  | |  |         |        cells of a panel next to shorter panels grow from these;
-    nodes     |  |  | | |  | |  | | |  |  |        each section is at a node
+Each section is at a node; cells next to short panels grow from the cells of these.
 """
 
 from collections.abc import Sequence
@@ -15,13 +12,13 @@ from meshonet.solvers.stacking.span_heights import by_panel, growth_at, largest_
 from meshonet.solvers.stacking.wing_surface import DEFAULT_SPAN
 
 GROWTH = 1.2
-"""Ratio of neighbouring cells along the axis that is sought, and above which a note gives the place."""
+"""Largest ratio of neighbouring cells along the axis without a note."""
 SLOPE = 0.15
 """Growth of cell lengths per length, away from short panels."""
 MOST, STEPS = 2, 8
-"""Largest number of cells that is tried, as a multiple of the default; and how many numbers are tried."""
+"""Largest number of cells tried, in default numbers; and how many numbers are tried."""
 WORTH = 1.05
-"""Ratio by which more cells must reduce the growth to be worth it."""
+"""Ratio by which more cells must reduce the growth."""
 _SAMPLES = 16  # of each panel
 _BISECTIONS = 50
 _TIE = 1e-9  # so that a half is rounded alike on every processor
@@ -30,10 +27,10 @@ _TIE = 1e-9  # so that a half is rounded alike on every processor
 def axis_heights(
     sections: Floats, nodes: int | None, panels: Sequence[int | None]
 ) -> tuple[Floats, tuple[str, ...]]:
-    """Return z (n,) from the first of the `sections` to the last, with a node at each of them, and notes.
+    """Return z (n,) from the first of the `sections` to the last, with a node at each, and notes.
 
-    If `nodes` is None, there are 49 or as many more as uneven sections need. `panels` are the numbers of
-    cells between sections that are given.
+    None for `nodes` is 49, or as many more as uneven sections need. `panels` are given numbers of cells
+    between sections.
 
     Raises InputError: see `span_heights`.
     """
@@ -55,7 +52,7 @@ def _counted(heights: Floats, nodes: int | None) -> list[str]:
 
 
 def _uneven(heights: Floats) -> list[str]:
-    """Return a note on the largest ratio of neighbouring cells along the axis, if it is high."""
+    """Return a note on the largest growth along the axis, if it is large."""
     growth = growth_at(heights)
     most = int(growth.argmax())
     if growth[most] <= GROWTH:
@@ -67,7 +64,7 @@ def _uneven(heights: Floats) -> list[str]:
 
 
 def _gradual(sections: Floats, cells: int) -> Floats:
-    """Return heights of nodes with `cells` cells, which are shorter near short panels."""
+    """Return heights of nodes with `cells` cells, shorter near short panels."""
     lengths = np.diff(sections)
     places = sections[:-1, None] + lengths[:, None] * (np.arange(_SAMPLES) + 0.5) / _SAMPLES
     away = np.maximum(sections[:-1] - places[..., None], places[..., None] - sections[1:])

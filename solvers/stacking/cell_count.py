@@ -1,4 +1,4 @@
-"""Node counts around the sections of a wing or blade, and along its span, for a number of cells."""
+"""Node counts around the sections of a wing or blade, and along its span, from a number of cells."""
 
 from dataclasses import replace
 
@@ -16,10 +16,9 @@ _ENOUGH = 1.1  # ratio of the number of cells to the requested one above which a
 def with_counts(
     stack: Stack, request: StackRequest, cells: int, rows: int
 ) -> tuple[StackRequest, tuple[str, ...]]:
-    """Return the request with node counts (around, along the span) for about `cells` cells, and notes.
+    """Return the request with node counts for about `cells` cells, and notes.
 
-    Lines away from the wall have `rows` cells, a number that follows from first-cell height and growth. Node
-    counts that the request already has are kept.
+    Lines away from the wall have `rows` cells. Node counts that the request has are kept.
 
     Raises InputError: cells, nodes around and nodes along the span are all given.
     """

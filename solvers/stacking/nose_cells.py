@@ -1,4 +1,4 @@
-"""Cells at the nose of a section: so short that the outline turns little from each of them to the next."""
+"""Cells at the nose of a section, so short that the outline turns little between them."""
 
 import math
 
@@ -10,7 +10,7 @@ from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 TURN = math.radians(15.0)
-"""Angle between neighbouring cells at a nose, as far as the following two bounds allow it."""
+"""Angle between neighbouring cells at a nose, within the next two bounds."""
 MOST = 0.35
 """Length of the longest cells at a nose, in mean cells of a side."""
 _LEAST = 90.0  # shortest length, in mean cells, times the square of their number: few cells grow little
@@ -22,18 +22,14 @@ _BESIDE = 4  # cells on each side of the nose whose angles count
 
 
 def nose_cell(shape: Airfoil, cells: int) -> float | None:
-    """Return the length of cells at the nose of a section with `cells` cells on a side, in chords.
-
-    None: cells are too few for a length that follows the curvature.
-    """
+    """Return the length in chords of nose cells, with `cells` cells on a side; None if these are too few."""
     return float(np.interp(TURN, *_turns(shape, cells, 1.0))) if cells >= _FEWEST else None
 
 
 def nose_note(shape: Airfoil, cells: int, nose: float | None) -> str:
-    """Return a note if cells turn much at the nose of a section and shorter ones turn less, else nothing.
+    """Return a note if nose cells turn much and shorter ones would turn less, else an empty text.
 
-    `cells` is the number of cells on a side, `nose` the length of cells at the nose in chords, if it is
-    prescribed.
+    `cells` is the number of cells on a side, `nose` a prescribed length of nose cells in chords.
     """
     turns, lengths = _turns(shape, cells, _SHORTEST)
     turn = float(np.interp(nose or nose_cell(shape, cells) or lengths[-1], lengths, turns))
@@ -48,9 +44,9 @@ def nose_note(shape: Airfoil, cells: int, nose: float | None) -> str:
 
 
 def _turns(shape: Airfoil, cells: int, part: float) -> tuple[Floats, Floats]:
-    """Return the largest angles (k,) between neighbouring cells at the nose and their lengths (k,) in chords.
+    """Return the largest angles (k,) between nose cells of different lengths (k,), in chords, both ascending.
 
-    The shortest is `part` of the shortest default one. Angles increase with the length.
+    The shortest is `part` of the shortest default length.
     """
     mean = 0.5 * (shape.upper_end - shape.half_base) / (cells * shape.unit)
     lengths = geomspace(part * min(_LEAST / cells**2, MOST) * mean, MOST * mean, _TRIED)

@@ -1,14 +1,6 @@
 """Nodes around the sections of a stack, with the same distribution on all sections.
 
-::
-
-            n - h ...  upper side  ... nose        0 is the middle of the base; h cells lead from it to each
-      0 |                                )         of its corners, the other cells are divided equally between
-        h  ...  lower side  ...  nose  '           the two sides, by laws of arc length
-                                                   (drawn clockwise; nodes run along the upper side first)
-
-A section whose base is lower than `gap` is opened to this height. Its thickness increases in proportion to
-the distance from the nose.
+Node 0 is in the middle of the base; nodes run along the upper side first. Bases lower than `gap` are opened.
 """
 
 from collections.abc import Callable, Sequence
@@ -43,12 +35,11 @@ class Around:
 
     Parameters
     ----------
-    cells : number of cells on each side (upper, lower) of a section.
-    base : number of cells on the base (blunt trailing edge), an even number.
+    cells : number of cells on each side.
+    base : even number of cells on the base, the blunt trailing edge.
     gap : smallest height of the base in chords.
-    edge, nose : lengths of the cells next to the base and at the nose, in chords. If None: for `edge` 1.2
-        times the length of the cells on the base, for `nose` a length that follows the curvature there
-        (see `nose_cell`).
+    edge : length of the cells next to the base in chords; None: 1.2 cells of the base.
+    nose : length of the cells at the nose in chords; None: by curvature (`nose_cell`).
     """
 
     follows_nose: ClassVar[bool] = True
@@ -71,9 +62,9 @@ class Around:
         return TanhLaw.fitted(self.cells, *self.ends(height, length, nose))
 
     def ends(self, height: float, length: float, nose: float | None = None) -> tuple[float, float]:
-        """Return the lengths of the cells next to the base and at the nose, relative to the side's length.
+        """Return the lengths of the cells next to the base and at the nose, in lengths of the side.
 
-        `nose` is the latter in chords, if it is not prescribed. None: 0.35 mean cells.
+        `nose` is the latter in chords if it is not prescribed; None: 0.35 mean cells.
         """
         edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
         first = edge if self.edge is None else self.edge / length
@@ -85,7 +76,7 @@ def around(
     nodes: int, *, gap: float = GAP, base: int = BASE_CELLS,
     edge: float | None = None, nose: float | None = None,
 ) -> Around:  # fmt: skip
-    """Return the distribution of `nodes` nodes around sections; the repeated first node is counted.
+    """Return the distribution of `nodes` nodes around sections, with the repeated first node.
 
     Raises InputError: too few nodes, or an even number.
     """
@@ -99,7 +90,7 @@ def around(
 
 
 def unit_nodes(section: Section, plan: Around) -> tuple[Floats, str]:
-    """Return nodes (n, 2) around a section, scaled to unit chord, upper side first; and a note on changes.
+    """Return nodes (n, 2) around a section of unit chord, upper side first, and a note on changes.
 
     Raises InputError: the outline through the nodes intersects itself.
     """
@@ -130,14 +121,14 @@ def unit_nodes(section: Section, plan: Around) -> tuple[Floats, str]:
 
 
 def nose_notes(sections: Sequence[Section], plan: Around) -> tuple[str, ...]:
-    """Return notes on sections around whose noses cells are too long."""
+    """Return notes on sections whose nose cells are too long."""
     shapes = (section.shape for section in sections)
     notes = (nose_note(shape, plan.cells, plan.nose) for shape in shapes if isinstance(shape, Airfoil))
     return tuple(dict.fromkeys(filter(None, notes)))
 
 
 def _airfoil_sides(shape: Airfoil, plan: Around) -> tuple[Floats, Floats]:
-    """Return nodes (cells + 1, 2) of the upper and of the lower side, from the base to the nose."""
+    """Return nodes (cells + 1, 2) of the upper and the lower side, from base to nose."""
     q = np.linspace(0.0, 1.0, plan.cells + 1)
     height = shape.gap / shape.unit if shape.blunt else 0.0
     below, above = shape.nose_arc - shape.half_base, shape.upper_end - shape.nose_arc
@@ -151,9 +142,9 @@ def _airfoil_sides(shape: Airfoil, plan: Around) -> tuple[Floats, Floats]:
 
 
 def _outline_sides(shape: Outline, plan: Around) -> tuple[Floats, Floats, Floats, Floats]:
-    """Return nodes of the upper half of an equivalent base and of the upper side, then of the lower ones.
+    """Return nodes of half a base and of a side, for the upper and then the lower half of a closed curve.
 
-    Steps are equal on each half of the curve, from its rightmost point to the point farthest from it.
+    Steps are equal from the rightmost point to the farthest one.
     """
     if plan.edge is not None or plan.nose is not None:
         problem = f"{shape.name or 'a closed curve'} has neither leading nor trailing edge"
@@ -168,7 +159,7 @@ def _outline_sides(shape: Outline, plan: Around) -> tuple[Floats, Floats, Floats
 
 
 def _opened(upper: Floats, lower: Floats, gap: float) -> tuple[Floats, Floats]:
-    """Return sides (n, 2) from base to nose, moved apart so that the base has the height `gap`."""
+    """Return sides (n, 2) from base to nose, moved apart to a base of height `gap`."""
     across = upper[0] - lower[0]
     chord = 0.5 * (upper[0] + lower[0]) - upper[-1]
     normal = np.array([-chord[1], chord[0]]) / np.hypot(*chord)

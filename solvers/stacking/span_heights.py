@@ -1,4 +1,4 @@
-"""Heights of nodes along the span of a wing, blade or duct, with a node at each of its sections."""
+"""Heights of nodes along the span of a wing, blade or duct, with a node at each section."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -18,13 +18,13 @@ _EVEN = 1e-6  # smallest relative decrease of the largest growth for which a cel
 def span_heights(
     sections: Floats, nodes: int, last: float | None, panels: Sequence[int | None] = ()
 ) -> Floats:
-    """Return z (nodes,) from the first of the `sections` to the last, with a node at each of them.
+    """Return z (nodes,) from the first of the `sections` to the last, with a node at each.
 
-    Cell lengths decrease towards the tip to `last`; if `last` is None, they are nearly equal. `panels` has
-    the numbers of cells between sections where these are prescribed, else None; the remaining cells are
-    shared among the other panels so that neighbouring cells differ little.
+    Cells decrease towards the tip to `last`, or are nearly equal. `panels` are given numbers of cells between
+    sections,
+    else None; the other panels share the remaining cells.
 
-    Raises InputError: there are more sections than nodes; the prescribed numbers of cells do not fit.
+    Raises InputError: more sections than nodes; numbers of cells that do not fit.
     """
     cells, span = nodes - 1, float(sections[-1] - sections[0])
     q = np.linspace(0.0, 1.0, nodes)
@@ -50,14 +50,13 @@ def span_heights(
 
 
 def _moved(cells: list[int], source: int, target: int) -> list[int]:
-    """Return numbers of cells, one fewer in a panel and one more in another."""
     out = list(cells)
     out[source], out[target] = out[source] - 1, out[target] + 1
     return out
 
 
 def growth_at(heights: Floats) -> Floats:
-    """Return the ratio (n - 2,), at least 1, of the two cells at each inner node of `heights` (n,)."""
+    """Return the ratio (n - 2,), at least 1, of the cells at each inner node of `heights` (n,)."""
     steps = np.diff(heights)
     ratio = steps[1:] / steps[:-1]
     return np.maximum(ratio, 1.0 / ratio)
@@ -69,7 +68,7 @@ def largest_growth(heights: Floats) -> float:
 
 
 def _cells(own: Indices, panels: Sequence[int | None], free: Sequence[int]) -> list[int]:
-    """Return the numbers of cells of panels; those not given share the rest in proportion to their `own`."""
+    """Return the cells of each panel; panels without a number share the rest in proportion to `own`."""
     rest = int(own.sum()) - sum(each for each in panels if each is not None)
     if rest < len(free) or (rest and not free):
         prescribed = int(own.sum()) - rest
@@ -85,7 +84,7 @@ def _cells(own: Indices, panels: Sequence[int | None], free: Sequence[int]) -> l
 
 
 def by_panel(sections: Floats, cells: Sequence[int], last: float | None) -> Floats:
-    """Return heights with numbers of `cells` between sections; lengths of cells change smoothly at these."""
+    """Return heights with these `cells` between sections, whose lengths change smoothly there."""
     lengths = np.diff(sections)
     means = lengths / np.array(cells)
     ends = np.concatenate([means[:1], np.sqrt(means[1:] * means[:-1]), means[-1:]])

@@ -1,16 +1,8 @@
-r"""The cap of a wing tip: a ring along the edge of the last section, and a core inside it.
+"""The cap of a wing tip: a ring along the edge of the last section, and a core inside it.
 
-::
-
-      upper side               m cells on each side of the trailing and of the leading edge end at the two
-     .-------------------.     short sides of the core, all others at its long sides, which keeps angles
-    /|   ring            |\    small. A core that fills the whole section would have angles of 160 degrees
-    ||  .-------------.  ||    at both edges. A surface without core would end in a line of nodes, where
-   LE|  |    core     |  |TE   cells of the volume have angles of 180 degrees.
-    ||  '-------------'  ||
-    \|                   |/    The core covers the middle half of the thickness. The height of a round cap at
-     '-------------------'     each point is half the local thickness of the section: half an ellipse.
-      lower side
+m cells on each side of trailing edge and nose face the short sides of the core, all others its long sides.
+Without a
+core, cells would have angles near 180 degrees. A round cap is as high as half the local thickness.
 """
 
 import math
@@ -43,14 +35,13 @@ _NOSE, _EDGE = 0.35, 0.3  # and at least so many thicknesses of the section ther
 
 @dataclass(frozen=True)
 class Cap:
-    """Settings of the cap that closes a tip.
+    """Settings of the cap of a tip.
 
     Parameters
     ----------
-    short : number of cells on each side of the trailing edge, and on each side of the nose, whose lines end
-        at a short side of the core.
-    rows : number of cells across the ring, from the section to the core; they grow by a constant ratio.
-    bulge : height of the cap divided by half the local thickness of the section; 0 is flat.
+    short : number of cells on each side of trailing edge and nose that face a short side of the core.
+    rows : number of rows of the ring; they grow by one ratio.
+    bulge : height of the cap in local half thicknesses; 0 is flat.
     """
 
     short: int = 4
@@ -58,18 +49,15 @@ class Cap:
     bulge: float = 1.0
 
     def cells(self, nodes: int) -> int:
-        """Return the total number of cells of ring and core, for `nodes` nodes around a section.
-
-        The repeated first node is counted among the `nodes`.
-        """
+        """Return the number of cells, for `nodes` nodes around a section with the repeated first node."""
         return (nodes - 1) * self.rows + (nodes // 2 - 2 * self.short) * 2 * self.short
 
     def patches(self, loop: Floats) -> tuple[Floats, Floats]:
         """Return nodes of the ring (n, rows + 1, 3) and of the core (n // 2 - 2 short + 1, 2 short + 1, 3).
 
-        The closed `loop` (n, 3) repeats its first node at its end and lies in a plane of constant z. It
-        starts at the trailing edge and runs first along the upper side. The cap is above the plane; the
-        normals of both patches point to +z.
+        The closed `loop` (n, 3) is in a plane of constant z and runs from the trailing edge along the upper
+        side first. Both
+        normals point to +z, where the cap is.
         """
         made = {(1.0, 1.0): self._placed(loop, 1.0, 1.0)}
         best = 1.0, 1.0
@@ -80,7 +68,7 @@ class Cap:
         return made[best]
 
     def _placed(self, loop: Floats, nose: float, edge: float) -> tuple[Floats, Floats]:
-        """Return ring and core (see `patches`); `nose` and `edge` are factors of the core's distances."""
+        """Return ring and core for these factors on the core's distances from nose and trailing edge."""
         upper, lower, half = self._inner(loop[:, :2], nose, edge)
         b = np.linspace(0.0, 1.0, 2 * self.short + 1)[None, :]
         across = (1.0 - b[..., None]) * upper[:, None] + b[..., None] * lower[:, None]
@@ -89,19 +77,18 @@ class Cap:
         return self._ring(loop, core), core
 
     def _worth(self, ring: Floats, core: Floats) -> float:
-        """Return the least sine in the corners of cells, less where ring and core differ too much."""
+        """Return the smallest sine of corners of cells, less where ring and core differ too much."""
         ratio = norms(_edge(core, 1) - _edge(core)) / norms(ring[:, -1] - ring[:, -2])
         ratio[self._corners(len(ring))] = 1.0
         uneven = float(np.maximum(ratio, 1.0 / ratio).max())
         return min(least_sine(ring), least_sine(core)) / math.pow(max(1.0, uneven / (_EVEN + 0.01)), 4)
 
     def _corners(self, n: int) -> Indices:
-        """Return the lines of a ring, of `n`, that end at corners of the core: none runs on from these."""
+        """Return which of n lines of a ring end at corners of the core."""
         m, half = self.short, (n - 1) // 2
         return np.array([m, half - m, half + m, n - 1 - m])
 
     def _ring(self, loop: Floats, core: Floats) -> Floats:
-        """Return the nodes (n, rows + 1, 3) between the edges of section and core."""
         inner = _edge(core)
         sizes = norms(_edge(core, 1) - inner)
         corners = self._corners(len(loop))
@@ -120,10 +107,7 @@ class Cap:
         return ring
 
     def _ends(self, length: Floats, sizes: Floats, corners: Indices) -> Floats:
-        """Return the last cells (n,) of lines of the ring, of this `length`, before cells of these `sizes`.
-
-        They are as even as these allow, and change little from one line to the next.
-        """
+        """Return the last cells (n,) of lines of this `length` before cells of these `sizes`."""
         least, most = (
             1.0 / sum(math.pow(ratio, k) for k in range(self.rows)) for ratio in (_RATIO, 1.0 / _RATIO)
         )
@@ -140,7 +124,7 @@ class Cap:
         return share * length
 
     def _lines(self, loop: Floats, inner: Floats, part: Floats) -> Floats:
-        """Return the points (n, k, 3) at the fraction `part` (n, k) of the angle from edge to core."""
+        """Return points (n, k, 3) at fractions `part` (n, k) of the angle from edge to core."""
         inwards, rise = part, np.zeros(part.shape)
         if self.bulge:
             phi = part * math.acos(CORE)
@@ -177,9 +161,9 @@ class Cap:
         return middle + CORE * across, middle - CORE * across, np.hypot(*across.T)
 
     def connections(self, n: int, ring: int, core: int) -> tuple[Connection, ...]:
-        """Return the connections of the ring to itself and to the core.
+        """Return the connections of the ring, with `n` nodes around, to itself and to the core.
 
-        `ring` and `core` are the indices of these two blocks; the ring has `n` nodes around it.
+        `ring` and `core` are the indices of the blocks.
         """
         m, half = self.short, (n - 1) // 2
         whole = ((0, self.rows),)
@@ -199,10 +183,9 @@ class Cap:
 
 
 def _shifted(places: Floats, first: float, cell: float) -> Floats:
-    """Return increasing `places` (k,) that begin at `first`, with a first step of about `cell`.
+    """Return increasing `places` (k,) from `first`, with a first step of about `cell`.
 
-    Steps are shorter than those of `places`, by a factor that decays over as many steps as make up for the
-    later beginning: from there on, places are kept.
+    Steps are shortened by a factor that decays over as many steps as make up for the later start.
     """
     steps = np.diff(places)
     off, ratio = first - places[0], min(max(cell / steps[0], _SHORTER), 1.0)
@@ -222,7 +205,7 @@ def _shifted(places: Floats, first: float, cell: float) -> Floats:
 
 
 def least_sine(nodes: Floats) -> float:
-    """Return the least sine of an angle between neighbouring edges of the cells of a patch (n, m, 3)."""
+    """Return the smallest sine between neighbouring edges of cells of a patch (n, m, 3)."""
     least = 1.0
     along, across = np.diff(nodes, axis=0), np.diff(nodes, axis=1)
     for a in (along[:, :-1], along[:, 1:]):
@@ -234,10 +217,7 @@ def least_sine(nodes: Floats) -> float:
 
 
 def _edge(core: Floats, k: int = 0) -> Floats:
-    """Return the nodes around a core (., ., 3) in the order of its ring, from the middle of its west side.
-
-    With `k`, they are the nodes k layers further inside.
-    """
+    """Return the nodes around a core (., ., 3), or k layers inside, in the order of its ring."""
     m, last = core.shape[1] // 2, -1 - k
     west, east = core[k], core[last]
     return np.concatenate([west[m::-1], core[1:, k], east[1:], core[-2::-1, last], west[-2 : m - 1 : -1]])

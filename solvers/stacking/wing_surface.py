@@ -1,4 +1,4 @@
-"""The surface of a wing: one patch around its sections from root to tip, and two patches of its cap."""
+"""The surface of a wing: a patch around its sections, and two patches of its cap."""
 
 import math
 from dataclasses import dataclass, replace
@@ -20,12 +20,12 @@ from meshonet.solvers.stacking.tip import Cap
 DEFAULT_AROUND, DEFAULT_SPAN = 129, 49  # nodes
 LEAST_SPAN, MOST_SPAN = 5, 10_001  # nodes
 EDGE, MOST_EDGE = 2.2, 2.5
-"""Intended and largest ratio of neighbouring cells on both sides of the edge of a tip."""
+"""Intended and largest ratio of neighbouring cells at the edge of a tip."""
 _SWEEPS = 20  # of smoothing around the section
 FADE = 8
 """Number of cells from the tip whose lengths vary around the section."""
 REACH = 0.05
-"""Largest distance from the tip, in chords of the tip, over which such cells extend."""
+"""Largest distance of these cells from the tip, in chords of the tip."""
 _NEAR = 1e-3  # part of the last panel over which the slope of grid lines at the tip is measured
 
 
@@ -35,9 +35,9 @@ class WingSurface:
 
     Parameters
     ----------
-    around : odd number of nodes around a section; the repeated first node is counted.
+    around : odd number of nodes around a section, with the repeated first node.
     span : number of nodes from the root to the last section.
-    base : smallest height of trailing edges, in chords.
+    base : smallest height of trailing edges in chords.
     """
 
     around: int = DEFAULT_AROUND
@@ -51,11 +51,11 @@ class WingSurface:
 
 
 def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Grid, tuple[str, ...]]:
-    """Return the surface patches of a wing, with normals that point outwards, and notes about changes.
+    """Return the surface patches of a wing, with outward normals, and notes on changes.
 
-    The first block goes around the sections (from the trailing edge, first along the upper side) and along
-    the span. A round or flat tip adds the ring and the core of its cap. The edge at the root is the patch
-    ``symmetry``.
+    The first block goes around the sections, upper side first, and along the span. A round or flat tip adds
+    ring and core
+    of its cap. The edge at the root is the patch ``symmetry``.
 
     Raises InputError: node counts that are too small; sections whose outlines intersect themselves.
     """
@@ -85,7 +85,7 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
 
 
 def refuse_crossing(stack: Stack, unit: Floats) -> None:
-    """Raise InputError if neighbouring sections are rotated until they cross; `unit` is as in `lofted`."""
+    """Raise InputError if neighbouring sections are canted until they cross; `unit` is as in `lofted`."""
     cants = stack.cants
     if not cants.any():
         return
@@ -101,15 +101,12 @@ def refuse_crossing(stack: Stack, unit: Floats) -> None:
 
 
 def cap_of(stack: Stack) -> Cap | None:
-    """Return the cap of the tip of a wing, or None if the tip is open."""
+    """Return the cap of the tip of a wing, None for an open tip."""
     return None if stack.tip == "open" else Cap(BASE_CELLS // 2, bulge=1.0 if stack.tip == "round" else 0.0)
 
 
 def _tip(stack: Stack, unit: Floats, cap: Cap) -> tuple[Floats, Floats]:
-    """Return ring and core of the cap of a tip.
-
-    The cap leans towards the last panel if this is steep, and it is turned as the last section is.
-    """
+    """Return ring and core of a cap; it leans towards a steep last panel and has the section's cant."""
     end, flat = stack.z[-1:], replace(stack.sections[-1], cant=0.0)
     loop = replace(stack, sections=(*stack.sections[:-1], flat)).lofted(unit, end)[0]
     patches = cap.patches(loop)
@@ -126,11 +123,7 @@ def _tip(stack: Stack, unit: Floats, cap: Cap) -> tuple[Floats, Floats]:
 
 
 def _tip_cells(ring: Floats) -> Floats:
-    """Return the lengths of the last cells along the span (n,) for the ring (n, ., 3) of a cap.
-
-    They differ from the cells of the ring by at most the factor `EDGE`, so that they are as thin as at the
-    trailing edge only where necessary.
-    """
+    """Return the last cells along the span (n,), about as long as those of the cap's ring (n, ., 3)."""
     first = norms(ring[:-1, 1] - ring[:-1, 0])
     cells = np.maximum(EDGE * first.min(), first / EDGE)
     for _ in range(_SWEEPS):  # where cells of the ring change from one line to the next
@@ -140,7 +133,7 @@ def _tip_cells(ring: Floats) -> Floats:
 
 
 def _lofted(stack: Stack, unit: Floats, ring: Floats | None, nodes: int) -> Floats:
-    """Return the nodes (n, nodes, 3) around the sections of a wing, whose tip has a ring (n, ., 3)."""
+    """Return the nodes (n, nodes, 3) around the sections of a wing whose tip has a ring (n, ., 3)."""
     if ring is None or stack.tip_spacing is not None:
         tip = None if stack.tip_spacing is None else stack.tip_spacing * stack.sections[-1].chord
         main = stack.lofted(unit, span_heights(stack.z, nodes, tip, stack.panel_cells)).transpose(1, 0, 2)
@@ -158,18 +151,14 @@ def _lofted(stack: Stack, unit: Floats, ring: Floats | None, nodes: int) -> Floa
 
 
 def _slant(stack: Stack, unit: Floats) -> Floats:
-    """Return the lengths (n,) of lines along the span that go with a unit of height at the tip."""
+    """Return the lengths (n,) of lines along the span per unit of height at the tip."""
     height = _NEAR * (stack.z[-1] - stack.z[-2])
     below, tip = stack.lofted(unit, np.array([stack.z[-1] - height, stack.z[-1]]))
     return norms(tip - below) / height
 
 
 def _with_last(z: Floats, last: Floats, reach: float) -> Floats:
-    """Return heights (n, m) between the ends of `z` (m,) whose last cells are `last` (n,).
-
-    The cells differ from those of `z` by a factor that decays away from the tip; the cells beyond compensate
-    for it.
-    """
+    """Return heights (n, m) between the ends of `z` (m,) whose last cells are `last` (n,)."""
     steps = np.diff(z)
     cells = len(steps)
     faded = np.maximum(np.arange(cells)[::-1] / min(FADE, 0.5 * cells), (z[-1] - z[1:]) / reach)

@@ -1,14 +1,7 @@
-r"""Divides the inside of a closed curve into five blocks: a core, and a ring of four around it.
+"""Divides the inside of a closed curve into five blocks: a core, and a ring of four around it.
 
-::
-
-         .-----------.          Corners of the core are on the diagonals. Its sides are bent from lines
-       .' \         / '.        towards arcs, so that angles are near 90 degrees, except 120 degrees at the
-      /    +-------+    \       corners of the core, where three blocks meet.
-      |    |  core |    |
-      \    +-------+    /       Ring blocks count i along the wall, counter-clockwise, and j away from it.
-       '. /         \ .'        The core is as large as the growth limit of the rows around it permits.
-         '-----------'
+Corners of the core are on the diagonals, its sides bent towards arcs. Ring blocks count i along the wall,
+counter-clockwise, and j away from it. The core is as large as the growth limit permits.
 """
 
 from collections.abc import Iterator, Sequence
@@ -38,7 +31,7 @@ Sides: TypeAlias = Sequence[Floats]
 
 
 class FiveBlocks(NamedTuple):
-    """How the inside of closed curves is divided: size of the core, rows of the ring, use of radii."""
+    """Division of closed curves: size of the core, rows of the ring, alignment with radii."""
 
     core: float
     rows: int
@@ -51,15 +44,15 @@ class CrossSection:
 
     Parameters
     ----------
-    arcs : nodes of the curve, on four sides that meet at corners of blocks.
-    first : first-cell height at the wall; None: about that of the cells of the core.
+    arcs : nodes on four sides that meet at corners of blocks.
+    first : first-cell height at the wall; None: about that of the core's cells.
     """
 
     arcs: Sides
     first: float | None = None
 
     def inner(self, core: float, radial: float) -> list[Floats]:
-        """Return the nodes (n, 2) on the four sides of a core of size `core` and alignment `radial`."""
+        """Return the nodes (n, 2) on the four sides of a core with this size and alignment."""
         middle = np.concatenate([arc[:-1] for arc in self.arcs]).mean(axis=0)
         u = np.linspace(-1.0, 1.0, len(self.arcs[0]))
         t = (0.5 + 0.5 * ((1.0 - radial) * u + radial * tan(0.25 * np.pi * u)))[:, None]
@@ -70,9 +63,9 @@ class CrossSection:
         return [middle + core * ((1.0 - bend) * line + bend * arc - middle) for line, arc in both]
 
     def across(self, core: float, radial: float, *, eighth: bool = False) -> tuple[Floats, Floats]:
-        """Return the lengths (k,) of lines through the ring, and those (k,) of the core cells at their ends.
+        """Return the lengths (k,) of lines through the ring, and of the core cells (k,) at their ends.
 
-        With `eighth`, only an eighth of the lines is used, which suffices for a circle.
+        `eighth`: only an eighth of the lines, which suffices for a circle.
         """
         inner = self.inner(core, radial)
         lengths = [norms(side - arc) for side, arc in zip(inner, self.arcs, strict=True)]
@@ -95,11 +88,9 @@ class CrossSection:
 def planned(
     sections: Sequence[CrossSection], growth: float = GROWTH, rows: int | None = None, *, radial: bool = False
 ) -> FiveBlocks:
-    """Return one division for all sections, such that neighbouring cells differ by at most `growth`.
+    """Return one division for all sections with growth up to `growth`, or as little as possible.
 
-    If no division satisfies this limit, the one with the smallest ratio is returned. If `rows` is None, the
-    number of rows is chosen too. With `radial`, which suits circles, lines of the ring are aligned with
-    radii.
+    None for `rows`: they are chosen too. `radial`, for circles, aligns the ring's lines with radii.
     """
     best, least = FiveBlocks(_SIZES[0], rows or 1), np.inf
     for core in _SIZES:
@@ -116,7 +107,7 @@ def planned(
 
 
 def _most_radial(sections: Sequence[CrossSection], core: float, growth: float) -> tuple[float, float]:
-    """Return the best alignment with radii, and the ratio of neighbouring cells along the core's sides."""
+    """Return the best alignment with radii, and the growth along the core's sides."""
     for way in _RADIAL:
         inside = max(_side_ratio(section.inner(core, way)) for section in sections)
         if inside <= growth:
@@ -130,14 +121,14 @@ def _counts(lines: Sequence[tuple[Floats, Floats, float | None]], growth: float)
 
 
 def _side_ratio(sides: Sides) -> float:
-    """Return the largest ratio of neighbouring steps along the sides of a core."""
+    """Return the largest growth along the sides of a core."""
     steps = np.stack([norms(np.diff(side, axis=0)) for side in sides])
     ratio = steps[:, 1:] / steps[:, :-1]
     return float(np.maximum(ratio, 1.0 / ratio).max())
 
 
 def filled(section: CrossSection, plan: FiveBlocks) -> Grid:
-    """Return the grid of five blocks inside a closed curve, whose boundary is the patch ``wall``."""
+    """Return the five blocks inside a closed curve, whose boundary is the patch ``wall``."""
     side = len(section.arcs[0]) - 1
     inner = section.inner(plan.core, plan.radial)
     lengths, sizes = section.across(plan.core, plan.radial)
@@ -157,7 +148,7 @@ def filled(section: CrossSection, plan: FiveBlocks) -> Grid:
 
 
 def _core(inner: Sides) -> Floats:
-    """Return the nodes (n, n, 2) of the core by transfinite interpolation; its sides are along x and y."""
+    """Return the nodes (n, n, 2) of the core; its sides are along x and y."""
     nodes = _between(inner)
     east, north, west, south = inner
     nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1] = south, north[::-1], west[::-1], east
@@ -165,7 +156,7 @@ def _core(inner: Sides) -> Floats:
 
 
 def _between(inner: Sides, rows: slice = slice(None), columns: slice = slice(None)) -> Floats:
-    """Return nodes (n, n, 2) between the sides of the core, or only `rows` i or `columns` j."""
+    """Return transfinite nodes (n, n, 2) between the sides of the core, or only `rows` i or `columns` j."""
     east, north, west, south = inner[0], inner[1][::-1], inner[2][::-1], inner[3]
     a = np.linspace(0.0, 1.0, len(south))
     i, j = a[rows, None, None], a[None, columns, None]
@@ -175,7 +166,7 @@ def _between(inner: Sides, rows: slice = slice(None), columns: slice = slice(Non
 
 
 def _connections(side: int, rows: int) -> tuple[Connection, ...]:
-    """Return the connections of the core, block 0, and the ring, 1 east to 4 south, counter-clockwise."""
+    """Return the connections of the core, block 0, and the ring, blocks 1 (east) to 4 (south)."""
     core, away = ((0, side),), ((0, rows),)
     inner = (("east", 1), ("north", -1), ("west", -1), ("south", 1))
     joined = [

@@ -1,4 +1,4 @@
-"""Division of a circle into cells: numbers of cells around and of rows, and notes for the user."""
+"""Division of a circle into cells, and notes."""
 
 import math
 from dataclasses import dataclass, replace
@@ -13,9 +13,7 @@ from meshonet.geometry.spacing.growth import check_growth
 from meshonet.solvers.sweeping.butterfly import GROWTH, CrossSection, FiveBlocks, filled, planned
 
 AROUND = 88
-"""Cells around a circle with which its area is accurate to 0.1 %: 1 - sin(x)/x with x = 2 pi / 88 is 0.08
-%.
-"""
+"""Default number of cells around; the area is then 0.08 % too small: 1 - sin(x)/x with x = 2 pi / 88."""
 _LEAST = 84  # fewest cells around with which it is accurate to 0.1 %; its quarters cannot be halved
 # quarter turns: east, north, west, south
 _TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1, 0)))
@@ -28,14 +26,14 @@ class Disc:
     Parameters
     ----------
     radius : radius in any unit.
-    cells : approximate number of cells; None: as few cells as `around` permits.
-    first_cell : first-cell height at the wall; None: about that of the cells in the middle.
-    growth : largest ratio of neighbouring cells; None is 1.2.
-    around : number of cells along the circle, a multiple of four. None: as many as `cells` requires, but at
-        least 84; or `AROUND`, if `cells` is None too.
+    cells : approximate number of cells; None: as few as `around` permits.
+    first_cell : first-cell height at the wall; None: about that of cells in the middle.
+    growth : largest ratio of neighbouring cells; None: 1.2.
+    around : number of cells along the circle, a multiple of four. None: as `cells` requires, at least 84; or
+        `AROUND`.
 
-    Raises InputError: a value is not positive; the first cell is wider than the ring; `around` is no multiple
-    of four; both `cells` and `around` are given.
+    Raises InputError: a value out of range; `around` is no multiple of four; both `cells` and `around` are
+    given.
     """
 
     radius: float
@@ -89,7 +87,7 @@ class Disc:
 
     @property
     def note(self) -> str:
-        """Note that there are more cells than requested, with the reason."""
+        """Note on more cells than requested, or an empty text."""
         wanted = self.cells
         if wanted is None or self.side > _LEAST // 4 or self.count(self.side) <= 1.1 * wanted:
             return ""

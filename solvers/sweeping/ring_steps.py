@@ -1,10 +1,4 @@
-"""Steps along the lines of a ring, from a wall to cells of a given size.
-
-::
-
-    wall |-|--|---|----|-----|------|------|------|  core      the first step is given; steps grow by a
-         first                              size               constant ratio up to the size of the core cells
-"""
+"""Steps along the lines of a ring: they grow from the first one by one ratio up to the cells of the core."""
 
 import math
 
@@ -15,8 +9,7 @@ from meshonet.geometry.elementary import exp
 from meshonet.geometry.spacing.growth import LARGEST
 
 TRIED = 8
-"""Number of row counts that are tried, starting with the smallest; if any count is suitable, one of these is.
-"""
+"""Number of row counts that are tried, from the smallest on."""
 _HALVINGS = 60  # of the range that the ratio lies in: to the last digit
 _CLOSE = 1e-9  # of the length, to which steps fill it
 
@@ -24,8 +17,9 @@ _CLOSE = 1e-9  # of the length, to which steps fill it
 def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -> Floats:
     """Return steps (k, rows) that fill `lengths` (k,) and end in cells of length `sizes` (k,).
 
-    The steps at the wall are `first`; if it is None, all ratios along a line are the same. If no ratio up to
-    `LARGEST` fills a length, the steps do not fill it (see `largest_ratio`).
+    They begin with `first`; None: all ratios along a line are equal. Beyond the ratio `LARGEST` they do not
+    fill the
+    length (see `largest_ratio`).
     """
     most = math.log(LARGEST)
     low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)
@@ -38,7 +32,7 @@ def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -
 
 
 def _steps(sizes: Floats, rows: int, first: float | None, rate: Floats) -> Floats:
-    """Return steps (k, rows) that grow by a ratio with the logarithm `rate` (k,), up to the sizes."""
+    """Return steps (k, rows) with the log ratio `rate` (k,), up to the sizes."""
     grown = exp(rate[:, None] * np.arange(rows))
     if first is None:
         return np.asarray(sizes[:, None] * grown[:, ::-1])
@@ -47,7 +41,7 @@ def _steps(sizes: Floats, rows: int, first: float | None, rate: Floats) -> Float
 
 
 def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: float) -> int:
-    """Return the smallest number of rows for which the results of `ring_steps` grow by at most `growth`."""
+    """Return the smallest number of rows for which `ring_steps` grow by at most `growth`."""
     if first is None:
         return max(1, round(float((lengths / sizes).mean())) - TRIED // 2)
     even = math.ceil(float((lengths / np.maximum(sizes, first)).max()) - _CLOSE)
@@ -58,9 +52,9 @@ def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: flo
 
 
 def largest_ratio(lengths: Floats, sizes: Floats, steps: Floats) -> float:
-    """Return the largest ratio of neighbouring cells along lines, including the cells at their ends.
+    """Return the largest ratio of neighbouring cells along lines, with the cells at their ends.
 
-    It is infinite if the steps (k, rows) do not fill the `lengths` (k,).
+    Infinite if the steps (k, rows) do not fill the `lengths` (k,).
     """
     if np.abs(steps.sum(axis=1) - lengths).max() > _CLOSE * lengths.max():
         return math.inf

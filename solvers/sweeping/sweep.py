@@ -1,12 +1,7 @@
 """Sweeps a planar grid along a curve in space.
 
-::
-
-      inlet                                   Planes of nodes are normal to the path; the x and y axes of the
-      .--.          _.--._                    section are those of frames that do not rotate about the path.
-      |  |--------''      ''-------.  outlet  k runs along the path, from `bottom`, the inlet, to `top`, the
-      |  |--------..____..---------'          outlet.
-      '--'
+Planes of nodes are normal to the path, with axes in frames that do not rotate about it. k runs along the
+path.
 """
 
 import math
@@ -39,15 +34,15 @@ class Sweep:
     Parameters
     ----------
     planes : int, optional
-        Number of planes of nodes. None: so many that the path turns by at most 4 degrees per cell, and cells
-        are at most three times as long as the mean cell width of the section.
+        Number of planes of nodes. None: cells turn by at most 4 degrees, and are at most three mean cell
+        widths long.
     up : tuple of 3 float, optional
-        Direction (3,) in which the y axis of the section points at the start of the path, as closely as
-        possible. None: z, or y for a path along z.
+        Direction of the section's y axis at the start, as closely as possible. None: z, or y for a path along
+        z.
     twist : float, optional
         Additional rotation of the section from start to end, in degrees.
     scale : float, optional
-        Size of the section at the end of the path relative to its size at the start.
+        Size of the section at the end relative to its size at the start.
 
     Raises
     ------
@@ -72,12 +67,13 @@ class Sweep:
 def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
     """Return the volume grid of a planar section swept along a path.
 
-    The first plane is the patch ``inlet``, the last plane is ``outlet``; on a closed path there is neither,
-    and the grid is connected to itself. Outer patches without a name are called ``wall``; patches whose names
-    imply no kind are walls too.
+    The first plane is the patch ``inlet``, the last ``outlet``; a closed path has neither. Outer patches
+    without a name are
+    called ``wall``, and those without a kind are walls.
 
-    Raises InputError: the section is not planar, or is periodic; a bend is too tight for the section (with
-    the place); the path needs too many planes; also as `frames_along`.
+    Raises InputError: the section is not planar, or is periodic; a bend is too tight for the section; the
+    path needs too
+    many planes; also as `frames_along`.
     """
     settings = settings or Sweep()
     check_planes(section, settings.planes)
@@ -100,7 +96,7 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
 
 
 def check_planes(section: Grid, planes: int | None) -> None:
-    """Raise InputError if the grid of a section with so many `planes` would have too many cells."""
+    """Raise InputError if a section in so many `planes` has too many cells."""
     if planes is not None:
         check_reach(
             section.cells * (planes - 1.0),
@@ -112,7 +108,7 @@ def check_planes(section: Grid, planes: int | None) -> None:
 
 
 def _carried(plane: Floats, points: Floats, x: Floats, y: Floats) -> Floats:
-    """Return planar nodes (ni, nj, nk, 3) of a plane (ni, nj, 2) at points (nk, 3) with given axes."""
+    """Return nodes (ni, nj, nk, 3) of a plane (ni, nj, 2) at points (nk, 3) with these axes."""
     ni, nj = plane.shape[:2]
     nodes = np.empty((3, ni, nj, len(points)))
     for d in range(3):
@@ -123,7 +119,7 @@ def _carried(plane: Floats, points: Floats, x: Floats, y: Floats) -> Floats:
 
 
 def _axes(path: Path, s: Floats, settings: Sweep, steps: int = STEPS) -> tuple[Floats, Floats]:
-    """Return x and y axes (n, 3) of the section at arc lengths, including its twist."""
+    """Return x and y axes (n, 3) of the twisted section at arc lengths."""
     up = None if settings.up is None else np.array(settings.up, dtype=np.float64)
     x, y = frames_along(path, s, up, steps=steps)
     if settings.twist:
@@ -138,7 +134,6 @@ def _sizes(path: Path, s: Floats, settings: Sweep) -> Floats:
 
 
 def _planes(section: Grid, path: Path) -> int:
-    """Return the number of planes of nodes that a path needs (see `Sweep`)."""
     places = path.at(np.linspace(0.0, path.length, _LOOKED_AT))
     bend = float(norms(places.curvature).max())
     area = cells = 0.0
@@ -159,7 +154,7 @@ def _planes(section: Grid, path: Path) -> int:
 def _check_bends(
     outline: Floats, path: Path, s: Floats, axes: tuple[Floats, Floats], settings: Sweep
 ) -> None:
-    """Raise InputError if the section extends beyond the centre of curvature of the path."""
+    """Raise InputError if the section reaches beyond the centre of curvature of the path."""
     points, _, curvature = path.at(s)
     size = _sizes(path, s, settings)
     inwards = np.stack([(curvature * axis).sum(axis=1) for axis in axes], axis=1) * size[:, None]
@@ -190,10 +185,10 @@ def walled(section: Grid) -> Grid:
 
 
 def self_crossing(path: Path, reach: float) -> tuple[float, float, float] | None:
-    """Return a point where a swept section of the extent `reach` intersects itself, if there is one.
+    """Return a point where a section of extent `reach` meets itself along a path, or None.
 
-    There, two points of the path are closer than twice `reach`, although the path between them is longer than
-    half a circle with the radius `reach`.
+    There, points of the path are closer than twice `reach`, but farther along it than half a circle of this
+    radius.
     """
     count = int(min(1500, max(64, 4 * path.length / max(reach, 1e-300))))
     s = np.linspace(0.0, path.length, count)

@@ -1,4 +1,4 @@
-"""Checks corners of cells in two faces, which no interior node can make valid."""
+"""Checks corners of cells in two faces, which no inner node can make valid."""
 
 import numpy as np
 
@@ -10,10 +10,9 @@ from meshonet.solvers.volumes.near_faces import closed_place
 
 
 def check_corners(faces: SixFaces) -> None:
-    """Raise InputError, with the node, if a cell is folded because of `faces`, for any interior nodes.
+    """Raise InputError, with the node, if `faces` fold a cell for any inner nodes.
 
-    At a node on an edge of the volume, all three cell edges that meet at a corner of a cell lie in the two
-    adjacent faces. If their Jacobian is not positive, the cell is folded.
+    At an edge of the volume the three edges of a cell's corner lie in two faces.
     """
     check_hand(faces)
     worst = []
@@ -56,7 +55,6 @@ def check_hand(faces: SixFaces) -> None:
 
 
 def _near(faces: SixFaces, place: tuple[int, int, int]) -> str:
-    """Return a description of the node of a face next to an interior node."""
     for side, (axis, end) in PLACES.items():
         if place[axis] == (1 if end == 0 else faces.counts[axis] - 2):
             first, second = (place[each] for each in range(3) if each != axis)
@@ -65,7 +63,7 @@ def _near(faces: SixFaces, place: tuple[int, int, int]) -> str:
 
 
 def _jacobians(faces: SixFaces, side: Side, second: Side) -> Floats:
-    """Return the scaled corner Jacobians (n - 1, 2) at both ends of the segments of an edge."""
+    """Return the scaled Jacobians (n - 1, 2) at both ends of the segments of an edge."""
     axis, other = PLACES[side][0], PLACES[second][0]
     edge = faces.edge(side, second)
     # off the edge, in each of the two faces, along the direction that the other face is an end of
@@ -82,7 +80,6 @@ def _jacobians(faces: SixFaces, side: Side, second: Side) -> Floats:
 
 
 def _index(faces: SixFaces, side: Side, second: Side, at: int) -> list[int]:
-    """Return i, j, k of a node of an edge."""
     index = [at, at, at]
     for name in (side, second):
         axis, end = PLACES[name]

@@ -1,4 +1,4 @@
-"""Restores first-cell heights at faces by moving nodes along grid lines."""
+"""Restores first-cell heights at faces, by moving nodes along grid lines."""
 
 import numpy as np
 
@@ -14,17 +14,13 @@ CROWDED = 0.5
 """Ratio of the first step to the mean step below which nodes count as clustered at that end."""
 
 REACH = 12.0
-"""Number of steps over which the change of the first step decays by a factor e."""
+"""Number of steps over which the correction decays by a factor e."""
 
 
 def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, ...]:
-    """Redistribute grid lines of `planes` (3, ni, nj, nk), in place, at faces with clustered nodes.
+    """Restore, in place, first cells of `planes` (3, ni, nj, nk) at faces with clustered nodes; return these.
 
-    Splines continue the node distributions of the faces as parameters, so that heights of cells depend on the
-    lengths of the lines. Here, first-cell heights at such a face are interpolated between those of its four
-    edges. The nodes of each line are moved accordingly, less and less away from the face.
-
-    Returns the names of these faces.
+    First-cell heights at a face are interpolated between those of its four edges.
     """
     kept: list[str] = []
     for axis in range(3):
@@ -42,10 +38,7 @@ def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, 
 
 
 def _heights(faces: SixFaces, face: Side) -> Floats:
-    """Return the first-cell heights (n, m) at a face, interpolated between those of its edges.
-
-    0 on the edges.
-    """
+    """Return first-cell heights (n, m) at a face, from those of its edges; 0 on the edges."""
     axis = PLACES[face][0]
     first, second = (each for each in range(3) if each != axis)
     beside = [side for side in FACES if PLACES[side][0] != axis]

@@ -20,10 +20,11 @@ SAME = 1e-9
 
 
 def uniform_laws(counts: tuple[int, int, int]) -> Laws:
-    """Return equal steps along each direction with `counts` nodes.
+    """Return laws with equal steps along directions with `counts` nodes.
 
-    The laws of a direction are an array (4, n) of parameters from 0 to 1: one row for each of the four edges,
-    at the (low, low), (high, low), (low, high) and (high, high) ends of the other two directions.
+    The laws of a direction are (4, n) parameters from 0 to 1, for the edges at the (low, low), (high, low),
+    (low, high) and
+    (high, high) ends of the other two directions.
     """
     xi, eta, zeta = (np.tile(np.linspace(0.0, 1.0, n), (4, 1)) for n in counts)
     return xi, eta, zeta
@@ -36,7 +37,7 @@ def arc_laws(faces: SixFaces) -> Laws:
 
 
 def mean_laws(laws: Laws) -> Laws:
-    """Return for each direction the mean of its four laws, repeated four times."""
+    """Return the mean of the four laws of each direction, four times."""
     xi, eta, zeta = (np.tile(law.mean(axis=0), (4, 1)) for law in laws)
     return xi, eta, zeta
 
@@ -62,8 +63,8 @@ class Spline:
     Parameters
     ----------
     coefficients : (3, m1, m2, m3)
-    first : for each direction, (n,) index of the first of the four coefficients for each node.
-    weights : weights of these four coefficients, (n, 4) along xi and eta, (4, n) along zeta.
+    first : for each direction, (n,) index of the first of four coefficients at each node.
+    weights : weights of these coefficients, (n, 4) along xi and eta, (4, n) along zeta.
     """
 
     coefficients: Floats
@@ -74,12 +75,11 @@ class Spline:
 def interpolate(
     faces: SixFaces, laws: Laws, spline: Spline | None = None, out: Floats | None = None
 ) -> Floats:
-    """Return the Boolean sum of the interpolations along three directions at `laws`, plus the `spline`.
+    """Return nodes (ni, nj, nk, 3) by interpolation along three directions at `laws`, plus a `spline`.
 
-    The result is an array of nodes (ni, nj, nk, 3) in planar layout.
-
-    `out` (3, ni, nj, nk) is used for the result if given; allocating memory costs as much as computing the
-    nodes. Gordon and Hall, Int. J. Numer. Methods Eng. 7 (1973) 461-477.
+    They are stored in `out` (3, ni, nj, nk) if given; allocation costs as much as the computation. Gordon and
+    Hall, Int. J.
+    Numer. Methods Eng. 7 (1973) 461-477.
     """
     planes = np.empty((3, *faces.counts)) if out is None else out
     sides = tuple(np.moveaxis(face, -1, 0) for face in faces.faces)

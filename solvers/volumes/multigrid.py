@@ -1,9 +1,7 @@
 """Full approximation scheme for Winslow's equations in a volume, with semi-coarsening.
 
-Levels are coarsened only in the directions with the shortest steps until cells are about as long as wide.
-Line relaxation in all three directions is then effective on every level. Node counts are arbitrary: a coarser
-level has every second node if possible, and equal steps of its own otherwise.
-
+Only the directions with the shortest steps are coarsened; line relaxation in three directions is then
+effective.
 Brandt, Math. Comp. 31 (1977) 333-390; Trottenberg, Oosterlee and Schüller, Multigrid (2001), section 5.1.
 """
 
@@ -26,11 +24,15 @@ SWEEPS, FIRST = 12, 30  # on the coarsest level: in a cycle, and to start with
 
 @dataclass(frozen=True, eq=False)
 class Transfer:
-    """Transfer, along one direction, between the nodes of a level and those of the next coarser level.
+    """Transfer along one direction between a level and the next coarser one.
 
-    An operator is given by the first node and the weights of each result. `up` (n, 2) is linear interpolation
-    to the fine nodes, `down` (m, terms) its transpose divided by the ratio of the steps, `at` (m, 4) cubic
-    interpolation at the coarse nodes.
+    Each operator has the first node and the weights of each result.
+
+    Parameters
+    ----------
+    up : (n, 2) linear interpolation to the fine nodes.
+    down : (m, terms) its transpose divided by the ratio of the steps.
+    at : (m, 4) cubic interpolation at the coarse nodes.
     """
 
     up: tuple[NDArray[np.intp], Floats]
@@ -57,13 +59,13 @@ class Level:
             winslow_smooth(x, self.right if forced else None, factor, self.threads, self.room)
 
     def norm(self, x: Floats, forced: bool) -> float:
-        """Return the norm of the residual of x (3, ni, nj, nk), which is stored in the array `residual`."""
+        """Return the norm of the residual of x (3, ni, nj, nk), which is stored in `residual`."""
         right = self.right if forced else None
         return float(np.sqrt(winslow_residual(x, right, self.residual, self.threads, self.room)))
 
 
 class VolumeMultigrid:
-    """Multigrid cycles for a volume inside `faces`; `sweeps` relaxations before and after each transfer."""
+    """Multigrid cycles inside `faces`, with `sweeps` relaxations before and after transfers."""
 
     def __init__(self, faces: SixFaces, sweeps: int = 1, factor: float = 1.0) -> None:
         self.levels = [Level(faces, coarse=False)]
@@ -76,12 +78,11 @@ class VolumeMultigrid:
             self.levels.append(Level(level.faces.resampled(counts), coarse=True))
 
     def nested(self) -> tuple[Floats, float, float]:
-        """Return x (3, ni, nj, nk) after a cycle on each level, starting with the coarsest, and two numbers.
+        """Return x (3, ni, nj, nk) after a cycle on each level from the coarsest on, and two numbers.
 
-        Each level starts from transfinite interpolation plus a correction, interpolated from the next coarser
-        level. The first number is the largest difference of a coordinate between the two finest levels, about
-        three times the discretisation error. The second is the largest change of a coordinate in the last
-        cycle.
+        They are the largest difference of a coordinate between the two finest levels, about three
+        discretisation errors, and
+        the largest change of a coordinate in the last cycle.
         """
         last = len(self.levels) - 1
         x = self.levels[last].start.copy()
@@ -99,10 +100,10 @@ class VolumeMultigrid:
         return x, apart, change
 
     def cycle(self, x: Floats) -> tuple[float, float]:
-        """Do one V cycle on `x` (3, ni, nj, nk) in place.
+        """Do one V cycle on `x` (3, ni, nj, nk), in place.
 
-        Returns the norm of the residual before the cycle, and the largest change of a coordinate, evaluated
-        at every third node of each direction.
+        Returns the norm of the residual before it, and the largest change of a coordinate at every third
+        node.
         """
         some = x[:, ::SOME, ::SOME, ::SOME]
         before = some.copy()
@@ -139,10 +140,7 @@ class VolumeMultigrid:
         return norm
 
     def _moved(self, depth: int, way: str, values: Floats, to: Floats | None = None) -> Floats:
-        """Return values transferred to the next level, in reused memory; or add them to `to`.
-
-        Differences are zero on faces before and after.
-        """
+        """Return values transferred to the next level, in reused memory; or add them to `to`."""
         fine, coarse = self.levels[depth].faces.counts, self.levels[depth + 1].faces.counts
         counts = fine if way == "up" else coarse
         order = (2, 1, 0) if way == "up" else (0, 1, 2)  # while arrays are short, or soon
@@ -164,7 +162,7 @@ class VolumeMultigrid:
 
 
 def transfer(n: int, m: int) -> Transfer:
-    """Return the transfer between n equally spaced nodes and m equally spaced nodes, where m < n."""
+    """Return the transfer between n and m < n equally spaced nodes."""
     at = np.arange(n) * ((m - 1) / (n - 1))
     first = np.minimum(at.astype(np.intp), m - 2)
     weights = np.stack([1.0 - (at - first), at - first], axis=1)
@@ -185,7 +183,7 @@ def transfer(n: int, m: int) -> Transfer:
 
 
 def _lagrange(t: Floats, terms: int) -> Floats:
-    """Return the weights (n, terms) of values at 0, 1, ... for the interpolation polynomial at t (n,)."""
+    """Return the weights (n, terms) of values at 0, 1, ... for their polynomial at t (n,)."""
     weights = np.ones((len(t), terms))
     for a in range(terms):
         for b in range(terms):
@@ -196,7 +194,7 @@ def _lagrange(t: Floats, terms: int) -> Floats:
 
 
 def _coarser(faces: SixFaces) -> tuple[int, int, int] | None:
-    """Return the node counts of the next coarser level, or None if there is none."""
+    """Return the node counts of the next coarser level, or None."""
     counts = faces.counts
     steps = []
     for axis in range(3):

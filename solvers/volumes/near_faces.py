@@ -1,4 +1,4 @@
-"""Checks whether interior nodes next to faces have a valid position."""
+"""Checks whether inner nodes next to faces have a valid position."""
 
 from collections.abc import Iterator
 from itertools import combinations
@@ -18,13 +18,13 @@ Ranges = list[tuple[int, int]]
 
 
 def closed_place(faces: SixFaces) -> Place | None:
-    """Return indices i, j, k of an interior node that has no valid position, or None.
+    """Return indices i, j, k of an inner node that has no valid position, or None.
 
-    A corner of a cell at a node q of a face has two edges in the face, with the normal n, and one edge to an
-    interior node p. It is valid if n · (p - q) > 0. So p must lie in half-spaces, four for each face next to
-    it. By Helly's theorem the half-spaces have no common point exactly if some four of them have none. By
-    Farkas' lemma, four have none if λ >= 0 with Σ λ n = 0 implies Σ λ n·q >= 0; for four normals, each λ is
-    the determinant of the other three.
+    Each corner of a cell at a node q of a face asks n · (p - q) > 0 of the inner node p, with the normal n of
+    the corner's
+    two edges in the face. By Helly's theorem such half-spaces have a common point unless four of them have
+    none, which
+    Farkas' lemma decides.
     """
     for sides, ranges in next_to_faces(faces.counts):
         walls = tuple((np.ascontiguousarray(getattr(faces, side)), *PLACES[side]) for side in sides)
@@ -38,7 +38,7 @@ def closed_place(faces: SixFaces) -> Place | None:
 
 
 def next_to_faces(counts: tuple[int, int, int]) -> Iterator[tuple[tuple[Side, ...], Ranges]]:
-    """Yield sets of three, two or one sides; and for each set the interior nodes next to all its sides."""
+    """Yield sets of three, two or one sides, and the inner nodes next to all of them."""
     for size in (3, 2, 1) if min(counts) > 2 else ():
         for sides in combinations(FACES, size):
             if len({PLACES[side][0] for side in sides}) == size:
@@ -46,7 +46,6 @@ def next_to_faces(counts: tuple[int, int, int]) -> Iterator[tuple[tuple[Side, ..
 
 
 def _ranges(sides: tuple[Side, ...], counts: tuple[int, int, int]) -> Ranges:
-    """Return the interior nodes next to all `sides`."""
     ranges = [(1, n - 1) for n in counts]
     for side in sides:
         axis, end = PLACES[side]

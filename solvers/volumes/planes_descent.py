@@ -1,4 +1,4 @@
-"""Minimisation of the functional over the interior nodes of one block, with mean lengths as targets."""
+"""Minimisation of the functional over the inner nodes of one block."""
 
 from itertools import product
 
@@ -12,9 +12,9 @@ from meshonet.solvers.energy.hexes import HexProblem, Slides, descent_of
 
 
 class PlanesDescent(HexProblem):
-    """Minimisation of a functional over the interior nodes of planes (3, ni, nj, nk), in place.
+    """Minimisation over the inner nodes of planes (3, ni, nj, nk), in place.
 
-    With `cubes`, edges of all directions have the same target length.
+    Target lengths are means; with `cubes` the same in all directions.
     """
 
     def __init__(self, planes: Floats, cubes: bool = False) -> None:
@@ -34,14 +34,14 @@ class PlanesDescent(HexProblem):
         self.descent = descent_of(self.nodes, tables, sizes, self.mesh.cells, slides, over)
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
-        """Do at most `most` iterations; return the smallest Jacobian and the value of the functional."""
+        """Do at most `most` iterations; return the smallest Jacobian and the functional."""
         smallest_and_value = super().run(weights, most, epsilon)
         self.planes[...] = self.nodes.T.reshape(self.planes.shape)
         return smallest_and_value
 
 
 def inverse_lengths(planes: Floats) -> tuple[float, float, float]:
-    """Return 1 / mean step along the volume's edges, for each direction of `planes` (3, ni, nj, nk)."""
+    """Return 1 / mean step along the volume's edges for each direction of `planes` (3, ni, nj, nk)."""
     lengths = []
     for axis in range(3):
         rows = np.moveaxis(planes, axis + 1, -1)

@@ -1,9 +1,6 @@
-"""Refines a volume grid to any resolution, by splines of its difference from transfinite interpolation.
+"""Refines a volume grid by splines S of its difference from transfinite interpolation T.
 
-    x = T(fine faces) + S (x_c - T(coarse faces))
-
-T is transfinite interpolation in the parameters of the nodes, S tricubic spline interpolation on the uniform
-knots of the coarse grid. The difference is smooth, and T contains the details of the faces.
+x = T(fine faces) + S (x_c - T(coarse faces)): the difference is smooth, and T has the details of the faces.
 """
 
 from functools import lru_cache
@@ -19,11 +16,9 @@ from meshonet.solvers.volumes.interpolate import Laws, Spline, interpolate, unif
 
 
 def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws: Laws) -> Floats:
-    """Return nodes (3, ni, nj, nk) inside `faces` at the parameters `laws`.
+    """Return nodes (3, ni, nj, nk) inside `faces` at the parameters `laws`, four equal ones per direction.
 
-    The four laws of each direction must be equal.
-
-    `coarse` (3, mi, mj, mk) are the nodes inside `coarse_faces`, equally spaced in the parameters.
+    `coarse` (3, mi, mj, mk) are nodes inside `coarse_faces`, at equal steps of the parameters.
     """
     start = interpolate(coarse_faces, uniform_laws(coarse_faces.counts))
     spline = spline_of(coarse - np.moveaxis(start, -1, 0), tuple(law[0] for law in laws))
@@ -31,7 +26,7 @@ def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws:
 
 
 def spline_of(values: Floats, places: tuple[Floats, ...]) -> Spline:
-    """Return the spline through `values` (3, mi, mj, mk) on uniform knots, evaluated at the `places`."""
+    """Return the spline through `values` (3, mi, mj, mk) on uniform knots, at `places`."""
     coefficients = values
     for axis in range(3):
         matrix = coefficient_matrix(values.shape[axis + 1])
@@ -44,10 +39,9 @@ def spline_of(values: Floats, places: tuple[Floats, ...]) -> Spline:
 
 @lru_cache(maxsize=16)
 def coefficient_matrix(m: int) -> Floats:
-    """Return the matrix (m + 2, m) from values at m >= 2 uniform knots to coefficients of cubic B-splines.
+    """Return the matrix (m + 2, m) from values at m >= 2 uniform knots to cubic B-spline coefficients.
 
-    The third derivative is continuous at the second and the last but one knot ("not a knot"). de Boor, A
-    Practical Guide to Splines (1978), chapter XIII.
+    The ends are "not a knot": de Boor, A Practical Guide to Splines (1978), chapter XIII.
     """
     system = np.zeros((m + 2, m + 2))
     for row in range(m):
@@ -62,7 +56,7 @@ def coefficient_matrix(m: int) -> Floats:
 
 
 def _reached(m: int, places: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """Return for `places` (n,), 0 to 1, the index of the first of four coefficients, and weights (n, 4)."""
+    """Return the first of four coefficients (n,) and their weights (n, 4) at `places` (n,) from 0 to 1."""
     at = places * (m - 1)
     first = np.clip(at.astype(np.intp), 0, m - 2)
     t = at - first

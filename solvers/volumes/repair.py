@@ -12,18 +12,18 @@ from meshonet.solvers.energy.hexes import NEARLY
 from meshonet.solvers.volumes.planes_descent import PlanesDescent
 
 MARGINS = 5, 8, 11, 14
-"""Numbers of nodes around a group of folded cells in a window, for successive rounds."""
+"""Numbers of nodes around folded cells in a window, for successive rounds."""
 LARGEST_CELLS = 40_000  # of a window: two seconds of untangling
 ROUNDS, ROUND = 20, 8
 """Largest number of rounds of untangling in a window, and iterations of each."""
 FIRST, OPEN, LAST = 15, 8, 10
 """Iterations of the stages that improve the cells after untangling."""
 ENOUGH = 0.02
-"""Smallest Jacobian above which the complete functional is used in a window."""
+"""Smallest Jacobian above which a window gets the complete functional."""
 
 
 def repair(planes: Floats) -> int:
-    """Untangle cells of planes (3, ni, nj, nk) in place; return the number of folded cells left."""
+    """Untangle cells of planes (3, ni, nj, nk) in place; return how many stay folded."""
     nodes = np.moveaxis(planes, 0, -1)
     bad = folded_cells(nodes)
     if min(planes.shape[1:]) < 3:
@@ -38,7 +38,7 @@ def repair(planes: Floats) -> int:
 
 
 def open_flat_cells(planes: Floats) -> None:
-    """Open flat cells of planes (3, ni, nj, nk), in place, in windows around them."""
+    """Open flat cells of planes (3, ni, nj, nk), in place."""
     nodes = np.moveaxis(planes, 0, -1)
     (scaled,) = solid_metric(Grid.from_nodes(nodes), "scaled_jacobian")
     for window in windows(np.argwhere(scaled < NEARLY), MARGINS[0], nodes.shape[:3], False, LARGEST_CELLS):

@@ -14,9 +14,9 @@ from meshonet.solvers.volumes.interpolate import arc_laws, interpolate, uniform_
 def tfi(faces: SixFaces, *, blending: Blending = "arclength") -> Solution:
     """Return the grid of a volume by transfinite interpolation between its six faces.
 
-    With `blending` ``arclength`` the parameters of a node are interpolated between the relative arc lengths
-    along the edges, so that clustering along the edges continues inside. With ``linear`` the parameters are
-    index / number of cells. Cells may fold where faces are bent.
+    Parameters of nodes are interpolated relative arc lengths of the edges (``arclength``), or index / number
+    of cells
+    (``linear``). Cells may fold where faces are bent.
 
     Raises InputError: an edge without length; an unknown `blending`; a left-handed volume.
     """

@@ -1,4 +1,4 @@
-"""Variational volumes inside six faces: optimised on few nodes, refined to all nodes, and repaired there."""
+"""Variational volumes inside six faces: optimised on few nodes, refined, and repaired."""
 
 import time
 from typing import Literal
@@ -25,12 +25,12 @@ COARSE = 33
 SPARE = 41
 """Largest node count along a direction for which the nodes of the faces are used instead of coarse ones."""
 EVEN = 1.5
-"""Largest ratio of the longest to the shortest step of an edge that counts as evenly spaced."""
+"""Largest ratio of the steps of an evenly spaced edge."""
 COARSEST = 11  # a copy of no more nodes along each direction is solved from the interpolation
 ITERATIONS = 30, 20, 40
-"""Largest numbers of iterations: on coarser levels, on the last but one, on the last."""
+"""Largest numbers of iterations on coarser levels, on the last but one, on the last."""
 FEW = 20
-"""Largest node count of levels on which flat cells are opened first; finer ones start without flat cells."""
+"""Largest node count of levels on which flat cells are opened first."""
 LEAST = 5  # nodes along a direction of coarse faces
 
 
@@ -43,14 +43,17 @@ def variational(
 ) -> Solution:
     """Minimise a functional of `meshonet.solvers.energy.hex_functional` over the nodes inside `faces`.
 
-    The minimum is computed by nested iteration on at most `coarse` nodes in each direction ("auto": 33; None:
-    all nodes of the faces), which are evenly spaced in the mean arc length of the edges. Splines then give
-    the positions of all nodes; where this folds cells at faces, they are repaired in windows. `max_cycles`
-    limits the iterations on the finest level that is solved. `energy` selects the functional: ``angles``, for
-    right angles and gradual changes of lengths, or ``shape``, for cells like cubes.
+    Splines give all nodes from a coarse optimum; cells that fold there are repaired in windows.
 
-    Raises InputError: cells are folded because of the faces, whatever the interior nodes (the error names the
-    node); an edge has no length; a setting is not positive.
+    Parameters
+    ----------
+    max_cycles : largest number of iterations on the finest level that is solved.
+    coarse : most nodes per direction of that level; "auto": 33; None: all nodes of the faces.
+    energy : ``angles``, for right angles and gradual changes of lengths, or ``shape``, for cells like cubes.
+
+    Raises InputError: cells are folded because of the faces, for any inner nodes (the error names the node);
+    an edge has
+    no length; a setting is not positive.
     """
     begun = time.perf_counter()
     _check(max_cycles, coarse, energy)
@@ -87,8 +90,7 @@ def optimum(
 ) -> tuple[Floats, int]:  # fmt: skip
     """Return the minimum (3, ni, nj, nk) inside evenly spaced `faces`, and the finest level's iterations.
 
-    Coarser copies are solved first; the coarsest starts from transfinite interpolation. A grid that cannot be
-    untangled is returned folded.
+    Coarser copies are solved first. A grid that cannot be untangled is returned folded.
     """
     levels = [faces]
     while max(levels[-1].counts) > COARSEST:
@@ -107,15 +109,13 @@ def optimum(
 
 
 def _interpolated(faces: SixFaces) -> Floats:
-    """Return planes interpolated between evenly spaced `faces`."""
     return np.ascontiguousarray(np.moveaxis(interpolate(faces, uniform_laws(faces.counts)), -1, 0))
 
 
 def _solved(planes: Floats, faces: SixFaces, most: int, weights: HexWeights) -> tuple[Floats, int]:
     """Return the minimum from planes, which are overwritten, and the iterations.
 
-    If the planes stay folded, for example because splines overshoot at kinks of faces, the iteration starts
-    from the interpolation if that has fewer folded cells.
+    If they stay folded, the iteration starts again from the interpolation if that is less folded.
     """
     count, smallest = _settle(planes, most, weights)
     if smallest <= 0.0:
@@ -126,7 +126,7 @@ def _solved(planes: Floats, faces: SixFaces, most: int, weights: HexWeights) -> 
 
 
 def _settle(planes: Floats, most: int, weights: HexWeights) -> tuple[int, float]:
-    """Untangle and minimise planes in place; return the iterations and the smallest Jacobian."""
+    """Untangle and minimise planes in place; return iterations and smallest Jacobian."""
     if min(planes.shape[1:]) < 3:
         return 0, np.inf
     descent = PlanesDescent(planes, weights.of_cubes)
@@ -153,7 +153,7 @@ def _halved(counts: tuple[int, int, int]) -> tuple[int, int, int]:
 
 
 def _coarse_faces(faces: SixFaces, laws: Laws, coarse: int | Literal["auto"] | None) -> SixFaces:
-    """Return the faces for the optimisation: `faces` themselves if they have few, evenly spaced nodes."""
+    """Return the faces for the optimisation: `faces` themselves if few and evenly spaced."""
     most = max(faces.counts) if coarse is None else COARSE if coarse == "auto" else coarse
     spare = SPARE if coarse == "auto" else most
     steps = [np.diff(law[0]) for law in laws]

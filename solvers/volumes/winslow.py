@@ -1,4 +1,4 @@
-"""Winslow's grid inside six faces, solved to the accuracy of the discretisation."""
+"""Winslow's grid inside six faces, to the accuracy of the discretisation."""
 
 import numpy as np
 
@@ -25,13 +25,17 @@ CAREFUL = ((1, 1.0), (2, 0.7))
 def winslow(faces: SixFaces, *, tol: float | None = None, max_cycles: int | None = None) -> Solution:
     """Solve Winslow's equations inside `faces`: computational coordinates are harmonic functions of x, y, z.
 
-    ``a11 x_11 + a22 x_22 + a33 x_33 + 2 (a12 x_12 + a13 x_13 + a23 x_23) = 0``, where a is the adjugate of
-    the metric, is solved by central differences and multigrid cycles. Without `tol`, cycles end when they
-    change nodes by less than the discretisation error; with `tol`, when the residual is `tol` times that of
-    the transfinite interpolation. Cells can fold where walls are re-entrant.
+    ``a11 x_11 + a22 x_22 + a33 x_33 + 2 (a12 x_12 + a13 x_13 + a23 x_23) = 0``, with the adjugate a of the
+    metric, by
+    central differences and multigrid. Cells can fold where walls are re-entrant. Winslow, J. Comput. Phys. 1
+    (1966) 149-172.
 
-    Raises InputError: cells are folded because of the faces, whatever the interior nodes; a setting is not
-    positive; SolverError: cycles diverge. Winslow, J. Comput. Phys. 1 (1966) 149-172.
+    Cycles end when they change nodes by less than the discretisation error, or when the residual is `tol`
+    times that of the
+    transfinite interpolation.
+
+    Raises InputError: cells are folded because of the faces; a setting is not positive; SolverError: cycles
+    diverge.
     """
     check_tolerances(tol, max_cycles)
     check_corners(faces)
@@ -48,10 +52,7 @@ def winslow(faces: SixFaces, *, tol: float | None = None, max_cycles: int | None
 def _solved(
     multigrid: VolumeMultigrid, tol: float | None, most: int
 ) -> tuple[Floats, int, float | None, bool]:
-    """Return the nodes, the number of cycles on the finest level, the residual, and whether it converged.
-
-    The residual is None if `tol` is not given.
-    """
+    """Return the nodes, the number of cycles, the residual if `tol` is given, and whether it converged."""
     x, apart, change = multigrid.nested()
     cycles = 1
     if tol is not None:
