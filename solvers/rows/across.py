@@ -1,4 +1,4 @@
-"""Pairs of places opposite each other across the channel between two blades, as a mean over sections."""
+"""Places opposite each other across the channel between two blades, as means over sections."""
 
 from __future__ import annotations
 
@@ -16,14 +16,13 @@ _FROM = -0.25  # least place: u = 0, the leading edge, is between others
 
 @dataclass(frozen=True, eq=False)
 class ChannelLines:
-    """Lines across the channel between two blades, normal to the layers' outer edges, averaged over sections.
+    """Mean lines across the channel between two blades, normal to the outer edges of layers.
 
     Parameters
     ----------
     upper : (n,) places u (see `SectionPlane`) on the upper side of a blade, from 0 to 0.5.
     lower : (n,) 1 - u of the opposite places, on the lower side of the next blade.
-    slant : (n,) tangent of the angle between line and normal if one end of the line is moved by 1 in u; 0
-        where no place is opposite.
+    slant : (n,) tangent of the angle to the normal if an end moves by 1 in u; 0 where nothing is opposite.
     """
 
     upper: Floats
@@ -45,10 +44,11 @@ class ChannelLines:
         return cls(upper, upper, squares)
 
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
-        """Return how much more lines deviate from the normal with places `u` (k,) than with `start` (k,).
+        """Return how much more lines lean with places `u` (k,) than with `start` (k,).
 
-        The result is the increase of the tangent of each line's angle to the normal, linearised at `u` and
-        multiplied by `weight`. `pairs` (p, 2) are the indices of the two places that each line joins.
+        That is the increase of tangents of angles to the normal, linearised at `u`, times `weight`. `pairs`
+        (p, 2) are the
+        indices of the places that lines join.
         """
         one = u[pairs[:, 0]]
         slope = np.interp(one, self.upper, np.gradient(self.lower, self.upper))
@@ -58,20 +58,14 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square of tan(angle to the normal) of the lines between `pairs` (p, 2) of places.
-
-        `u` (k,) are the places.
-        """
+        """Return the mean square of tan(angle to the normal) of lines between `pairs` (p, 2) of `u` (k,)."""
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return the squares (p,) of `slant` for the lines between pairs (p, 2) of places u."""
+        """Return the squares (p,) of `slant` for lines between pairs (p, 2) of places u."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return by how much u (p,) the lower places of `pairs` (p, 2) differ from their ideal places.
-
-        The ideal place is the one opposite the upper end.
-        """
+        """Return how far (p,), in u, lower places of `pairs` (p, 2) are from those opposite the upper ones."""
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

@@ -1,8 +1,6 @@
 """Nodes behind the blade whose positions change evenly along the span.
 
-The functional of a section changes little if nodes move in the direction of the flow. Nodes of neighbouring
-sections therefore differ by more than the sections do, and where the span is short, lines along the span
-would lean strongly behind the blade.
+The functional hardly holds nodes along the flow; on short spans, lines along the span would lean strongly.
 """
 
 from __future__ import annotations
@@ -27,12 +25,12 @@ _KEPT = 0.4  # smallest accepted ratio of a cell's smallest Jacobian after the m
 
 
 def even_behind(sections: Sequence[KeySection], columns: Indices) -> tuple[KeySection, ...]:
-    """Return the sections with nodes behind the blade moved onto polynomials of the height along the span.
+    """Return the sections, at `key_heights`, with nodes behind the blade on polynomials of the height.
 
-    The `sections` are those at `key_heights`. For each node, two quantities become polynomials of the height:
-    its position along the passage (see `SectionPlane.shares`), and its theta minus that of the trailing edge.
-    The nodes `columns` (k, m) of layers are fixed; nodes near the layers and near the trailing edge move by a
-    fraction of the way. If a Jacobian would become too small, all nodes move less.
+    The polynomials are those of the nodes' `SectionPlane.shares`, and of theta minus that of the trailing
+    edge. The nodes
+    `columns` (k, m) of layers are fixed; nodes near them move by a fraction, and all move less if cells would
+    get too small.
     """
     mesh = sections[0].layout.mesh
     values = []
@@ -60,7 +58,7 @@ def even_behind(sections: Sequence[KeySection], columns: Indices) -> tuple[KeySe
 
 
 def _moved(section: KeySection, moved: Indices, wanted: Floats, part: Floats) -> KeySection:
-    """Return a section with nodes `moved` (k,) by a part (k,) of the way to shares and theta (k, 2)."""
+    """Return a section with nodes `moved` (k,) by fractions (k,) of the way to shares and theta (k, 2)."""
     plane, mesh = section.plane, section.layout.mesh
     nodes = mesh.nodes.copy()
     to = np.stack([plane.stations(wanted[:, 0]), wanted[:, 1] + plane.edges[1, 1]], axis=1)
@@ -73,7 +71,7 @@ def _smooth(t: Floats) -> Floats:
 
 
 def _cells_from(mesh: QuadMesh, columns: Indices) -> Floats:
-    """Return the number of edges (n,), at most 4, between each node and the layers."""
+    """Return the number of edges (n,), at most 4, between nodes and layers."""
     away = np.full(len(mesh.nodes), float(_CELLS))
     away[columns] = 0.0
     partner = mesh.places.partner

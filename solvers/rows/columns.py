@@ -1,4 +1,4 @@
-"""Layers of a section in space: respaced so that first cells have the prescribed height in space."""
+"""Layers of a section, respaced so that first cells have the prescribed height in space."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _STRAIGHT, _MARCHED = 0.5, 1.5  # distances of straight and marched columns from
 
 
 def layer_columns(layout: Layout) -> Indices:
-    """Return the nodes (k, rows + 1) of the columns of layers: clockwise, and each from the wall outwards."""
+    """Return the nodes (k, rows + 1) of the columns of layers, clockwise, each from the wall outwards."""
     blocks = [layout.blocks[number] for number in layout.layers]
     ordered, left = [blocks[0]], blocks[1:]
     while left:
@@ -24,11 +24,9 @@ def layer_columns(layout: Layout) -> Indices:
 
 
 def straight_near(lines: Floats, away: Floats) -> Floats:
-    """Return the columns `lines` (k, m, 2), straightened where they are close to a corner.
+    """Return the columns `lines` (k, m, 2), straightened close to a corner, where marched ones are curved.
 
-    `away` (k,) are the distances of the columns from the nearest corner. Marched columns are curved where
-    they diverge around a corner. Between straight columns, the distance changes linearly from the wall to the
-    outer edge of the layers.
+    `away` (k,) are the distances of columns from the nearest corner.
     """
     thickness = norms(np.diff(lines, axis=1)).sum(axis=1).max()
     t = np.clip((_MARCHED - away / thickness) / (_MARCHED - _STRAIGHT), 0.0, 1.0)
@@ -38,35 +36,30 @@ def straight_near(lines: Floats, away: Floats) -> Floats:
 
 
 def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
-    """Return the coordinates `values` (k, m, 2) of columns of nodes, moved along the columns.
+    """Return coordinates `values` (k, m, 2) moved along columns, with first cells `first` high in space.
 
-    `space` (k, m, 3) are the positions of the nodes in space. First cells get the height `first`. The outer
-    ends of the columns are fixed; displacements decrease to zero towards them.
+    `space` (k, m, 3) are the nodes in space. Moves fade to zero at the outer ends.
     """
     steps = norms(np.diff(space, axis=1))
     return resampled(values, steps, with_first(steps, np.full(len(steps), first)))
 
 
 def resampled(values: Floats, steps: Floats, new: Floats) -> Floats:
-    """Return `values` (k, m, 2), known at the nodes of k lines, interpolated at new nodes of these lines.
+    """Return `values` (k, m, 2), known at the nodes of k lines, at new nodes.
 
-    `steps` (k, m - 1) are the distances between consecutive given nodes, `new` (k, m - 1) those between new
-    nodes; the sum along each line is the same.
+    `steps` and `new` (k, m - 1) are the distances of given and of new nodes, with equal sums.
     """
     arcs = arcs_of(steps)
     return sampled(values, arcs, arcs_of(new))
 
 
 def arcs_of(steps: Floats) -> Floats:
-    """Return the arc lengths (k, m + 1) at the nodes of k lines; they are the sums of `steps` (k, m)."""
+    """Return the arc lengths (k, m + 1) at the nodes of lines with `steps` (k, m)."""
     return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
 
 
 def with_first(steps: Floats, first: Floats) -> Floats:
-    """Return `steps` (k, m), scaled so that the first step of each line is `first` (k,).
-
-    The factor changes gradually along each line, so that the sum of its steps stays the same.
-    """
+    """Return `steps` (k, m) scaled to begin with `first` (k,); factors change gradually, and sums stay."""
     t = np.linspace(0.0, 1.0, steps.shape[1])
     begin = steps * exp(log(first[:, None] / steps[:, :1]) * (1.0 - t) ** 2)
     total = steps.sum(axis=1)

@@ -1,4 +1,4 @@
-"""First cells of exact height at walls, of nodes next to one wall, and of those next to two."""
+"""First cells of exact height at walls, also of nodes next to two walls."""
 
 from __future__ import annotations
 
@@ -16,16 +16,12 @@ def exact_in_corners(
     nodes: Floats, begins: tuple[Floats, Floats], sizes: tuple[float, Floats],
     in_space: Callable[[Floats], Floats],
 ) -> Floats:  # fmt: skip
-    """Return nodes (..., 3), each moved so that the two lines that end at it have the lengths `sizes`.
-
-    Newton's method: in each round a node moves along both lines so far that both lengths would be exact if
-    the map to space were linear. Rounds end when the lengths no longer improve: only rounding errors are
-    left.
+    """Return nodes (..., 3) moved by Newton's method so that the two lines to each have the lengths `sizes`.
 
     Parameters
     ----------
     nodes : (..., 3) nodes in any coordinates.
-    begins : (..., 3) starts of the two lines to each node, in the same coordinates.
+    begins : starts (..., 3) of the two lines to each node.
     sizes : lengths of the two lines; the second is an array (...).
     in_space : maps coordinates to x, y, z.
     """

@@ -1,4 +1,4 @@
-"""Blocks in a gap, inside the outline of the blade: nodes at both ends of the gap, and between them."""
+"""Blocks in a gap, inside the outline of the blade."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _ROUNDS = 4
 
 @dataclass(frozen=True, eq=False)
 class GapEnds:
-    """Nodes inside the outline of the blade at the lower and the upper end of a gap.
+    """Nodes inside the outline of the blade at both ends of a gap.
 
     Parameters
     ----------
-    fill : numbering of the nodes; nodes of the outline come first. low, high : (n, 2) s and theta of the
-        nodes at the lower and at the upper end.
+    fill : numbering of the nodes; those of the outline come first.
+    low, high : (n, 2) s and theta at the lower and at the upper end.
     """
 
     fill: GapFill
@@ -37,13 +37,13 @@ class GapEnds:
 
 @dataclass(frozen=True, eq=False)
 class GapBlocks:
-    """The blocks in one tip or hub gap, which fill the outline of the blade.
+    """The blocks in a gap, which fill the outline of the blade.
 
     Parameters
     ----------
-    fill : numbering of the nodes; nodes of the outline come first.
-    outline : (k,) for each node of the outline, its index among the nodes of a section of the row.
-    space : (levels, n, 3) x, y, z of the nodes.
+    fill : numbering of the nodes; those of the outline come first.
+    outline : (k,) indices of the outline's nodes in a section of the row.
+    space : (levels, n, 3) x, y, z.
     """
 
     fill: GapFill
@@ -58,12 +58,12 @@ def gap_ends(
 
     Parameters
     ----------
-    beside : function of the height that returns (k, 2, 3): for each node of the blade, clockwise, s, theta, h
-        of this node and of the node next to it away from the blade.
+    beside : function of the height that returns (k, 2, 3) s, theta, h of the blade's nodes, clockwise, and of
+        those next
+        to them.
     lead : index of the node at the leading edge.
     zone : the gap.
-    first, growth : height of the cells inside the outline that touch it, and largest ratio of neighbouring
-        cells.
+    first, growth : height of the cells inside the outline, and largest ratio of neighbours.
 
     Raises NoValidGridError: cells stay folded.
     """
@@ -89,10 +89,10 @@ def gap_ends(
 def gap_blocks(
     row: Row, ends: GapEnds, around: Indices, outline: Floats, zone: Zone, growth: float
 ) -> GapBlocks:
-    """Return the blocks of a gap, with nodes between its lower and its upper end.
+    """Return the blocks of a gap, with nodes between its ends.
 
-    `around` (k,) are the indices, in a section, of the nodes of the blade, clockwise; `outline` (levels, k,
-    3) are s, theta and h of these nodes on each level of the gap.
+    `around` (k,) are the indices of the blade's nodes in a section, clockwise; `outline` (levels, k, 3) their
+    s, theta, h.
     """
     fill = ends.fill
     blade = row.channel.in_space(outline[:, fill.outline])
@@ -101,7 +101,7 @@ def gap_blocks(
 
 
 def _carried(fill: GapFill, outline: Floats) -> Floats:
-    """Return nodes (n, 2) inside another outline: by the affine map nearest to their change, and the rest."""
+    """Return nodes (n, 2) inside another outline, by the nearest affine map and harmonic moves."""
     mesh, wanted = fill.layout.mesh, outline[fill.outline]
     k = len(wanted)
     centre = mesh.nodes[:k].mean(axis=0)
@@ -115,7 +115,7 @@ def _carried(fill: GapFill, outline: Floats) -> Floats:
 def _between(
     row: Row, low: Floats, high: Floats, zone: Zone, outline: Floats, fill: GapFill, growth: float
 ) -> Floats:
-    """Return nodes (levels, n, 3) in space between those at both ends, `outline` (levels, k, 3) as given."""
+    """Return nodes (levels, n, 3) in space between both ends, `outline` (levels, k, 3) as given."""
     channel, k = row.channel, outline.shape[1]
 
     def at(part: Floats) -> Floats:

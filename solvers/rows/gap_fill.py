@@ -1,12 +1,8 @@
-r"""Five blocks inside the outline of a blade, in a gap: a ring of four, and a core.
+"""Five blocks inside the outline of a blade, in a gap: a ring of four, and a core.
 
-::
-
-      .---------- side 0 ----------.        The ring's blocks count i along the outline, j inwards. The core
-    .'\ _________________________ /'.       counts i along side 0 and j from side 0 to side 2; sides 1 and 3
-   (  |___________ core __________|  )      go around the edges of the blade.
-    './                           \.'
-      '---------- side 2 ----------'
+Ring blocks count i along the outline and j inwards, the core i along side 0 and j from side 0 to side 2.
+Sides 1 and 3
+go around the edges of the blade.
 """
 
 from __future__ import annotations
@@ -43,11 +39,7 @@ FLAT, SMOOTH, MARGIN = 0.95, 1e-3, 0.93
 STEEP, STEEPEST = 0.7, 6.0
 """Smallest and largest weight of the growth of cells."""
 UNEVEN = 3.3, 3.9
-"""Ratios of the logarithm of the largest growth, with the smallest weight, to that of its limit: from the
-first on the weight is larger than the smallest, from the second on it is the largest.
-
-Cells grow that much behind narrow edges, where the largest weight hardly changes angles.
-"""
+"""Logarithms of the growth over that of its limit, where the weight begins to rise and where it is largest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +48,7 @@ class GapFill:
 
     Parameters
     ----------
-    outline : (k,) indices of nodes of the given outline, clockwise, starting with the first node of side 0.
-        In `layout` these nodes come first, in this order.
+    outline : (k,) indices of nodes of the given outline, clockwise from side 0; they come first in `layout`.
     layout : the five blocks, the core last.
     """
 
@@ -66,10 +57,10 @@ class GapFill:
 
 
 def outline_sides(count: int, lead: int, aside: int) -> list[Indices]:
-    """Return, for each of the four sides, the indices of its nodes in an outline of `count` nodes.
+    """Return the indices of the nodes of each of four sides, in an outline of `count` nodes.
 
-    Side 1 is at the trailing edge and side 3 at the leading edge of the blade, where node `lead` is. These
-    two sides extend over `aside` nodes in both directions from the edge.
+    Side 1 is at the trailing edge, side 3 at the leading edge with node `lead`; both reach `aside` nodes from
+    the edge.
     """
     m, half = aside, count // 2
     cuts = [m, half - m, half + m, count - m, count + m]
@@ -77,11 +68,7 @@ def outline_sides(count: int, lead: int, aside: int) -> list[Indices]:
 
 
 def _counts(outline: Floats, lead: int, first: float, growth: float) -> tuple[int, int]:
-    """Return how many nodes sides 1 and 3 reach from the edges, and the rows of the ring.
-
-    These sides are about half circles. There are fewer rows than cells that grow from `first` evenly: where
-    the blade is thin, more would be askew.
-    """
+    """Return how many nodes sides 1 and 3 reach from the edges, about half circles, and the ring's rows."""
     count = len(outline)
     m = np.arange(1, max(count // 8, 2))
     asides, widest = [], 0.0
@@ -99,11 +86,15 @@ def _counts(outline: Floats, lead: int, first: float, growth: float) -> tuple[in
 
 
 def filled_outline(outline: Floats, outside: Floats, lead: int, first: float, growth: float) -> GapFill:
-    """Return the five blocks inside a clockwise outline (k, 2); cells that touch it are about `first` high.
+    """Return the five blocks inside a clockwise outline (k, 2), with outer cells about `first` high.
 
-    `outside` (k, 2) are the nodes next to the outline on its outer side; `lead` is the index of the node at
-    the leading edge; `growth` is the largest ratio of neighbouring cells. Raises NoValidGridError: cells are
-    folded.
+    Parameters
+    ----------
+    outside : (k, 2) nodes next to the outline, outside.
+    lead : index of the node at the leading edge.
+    growth : largest ratio of neighbouring cells.
+
+    Raises NoValidGridError: cells are folded.
     """
     aside, rows = _counts(outline, lead, first, growth)
     sides = outline_sides(len(outline), lead, aside)
@@ -131,9 +122,9 @@ def filled_outline(outline: Floats, outside: Floats, lead: int, first: float, gr
 
 
 def _optimum(mesh: QuadMesh, held: Bools, growth: float) -> QuadMesh:
-    """Return the mesh with its nodes at the optimum, but for those that are `held` (n,).
+    """Return the mesh with all but `held` (n,) nodes at the optimum.
 
-    The weight of growth depends continuously on what remains of it with the least one.
+    The weight of growth depends continuously on the growth with the smallest weight.
     """
     aspects = mesh.aspects(mesh.edge_lengths)
 
@@ -153,7 +144,7 @@ def _optimum(mesh: QuadMesh, held: Bools, growth: float) -> QuadMesh:
 
 
 def _largest_growth(mesh: QuadMesh, held: Bools) -> float:
-    """Return the largest log ratio of consecutive edges, one of which is not between `held` nodes."""
+    """Return the largest log ratio of consecutive edges that are not both between `held` nodes."""
     edges, lengths = mesh.edges, mesh.edge_lengths
     quads = np.ascontiguousarray(mesh.quads)
     line, _ = line_neighbours(quads, mesh.edge_of, np.arange(len(mesh.nodes)), np.arange(len(edges)))
@@ -165,7 +156,7 @@ def _largest_growth(mesh: QuadMesh, held: Bools) -> float:
 def _first_guess(
     sides: Sequence[Floats], outline: Floats, lead: int, rows: int, first: float, growth: float
 ) -> tuple[Floats, list[Indices]]:
-    """Return nodes (n, 2), those of the outline first, and the blocks of their numbers."""
+    """Return nodes (n, 2), the outline's first, and the blocks of their numbers."""
     low, high = sides[0], sides[2][::-1]
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     width = norms(half)
@@ -195,10 +186,7 @@ def _first_guess(
 
 
 def _grown(lengths: Floats, first: float, cells: int) -> Floats:
-    """Return distances (n, cells + 1) from 0 to `lengths` (n,) of cells that grow from `first` by one ratio.
-
-    Where so many of the first would be too long, they are equal.
-    """
+    """Return distances (n, cells + 1) of cells that grow from `first`, or are equal, over `lengths` (n,)."""
     k = np.arange(float(cells))
     low, high = np.zeros(len(lengths)), np.full(len(lengths), 3.0)
     for _ in range(_BISECTIONS):
@@ -211,7 +199,7 @@ def _grown(lengths: Floats, first: float, cells: int) -> Floats:
 
 
 def _numbered(ring: Sequence[Floats], core: Floats) -> tuple[Floats, list[Indices]]:
-    """Return the nodes (n, 2) of ring blocks and core, shared ones once, and the blocks of their numbers."""
+    """Return the nodes (n, 2) of ring and core, shared ones once, and the blocks of their numbers."""
     counts = np.cumsum([0, *(len(block) - 1 for block in ring)])
     rows = ring[0].shape[1]
     points, number = [np.concatenate([block[:-1, 0] for block in ring]), core.reshape(-1, 2)], int(counts[-1])

@@ -10,17 +10,16 @@ from meshonet.solvers.sparse import SparsePattern
 
 
 class HarmonicMoves:
-    """Displacements of the nodes of a mesh: some are prescribed, the others are harmonic.
+    """Displacements of nodes that are harmonic except where prescribed.
 
-    The object serves all meshes with the same quads and the same prescribed nodes. Harmonic means: the
-    displacement of a node is the mean of the displacements of its neighbours, weighted by their inverse
-    square distances, so that small cells keep their form. Nodes with a periodic partner move as the partner
-    does.
+    A free node moves by the mean of its neighbours' moves, weighted by inverse square distances. Periodic
+    partners move
+    alike. One object serves all meshes with the same quads and prescribed nodes.
 
     Parameters
     ----------
     mesh : one of the meshes.
-    prescribed : (n,) nodes whose displacements are prescribed.
+    prescribed : (n,) nodes with prescribed displacements.
     """
 
     def __init__(self, mesh: QuadMesh, prescribed: Bools) -> None:
@@ -38,7 +37,7 @@ class HarmonicMoves:
         self.pattern = SparsePattern(len(self.free), rows, columns)
 
     def of(self, mesh: QuadMesh, moves: Floats) -> Floats:
-        """Return displacements (n, 2): `moves` (n, 2) at prescribed nodes, harmonic ones at the others."""
+        """Return displacements (n, 2): `moves` (n, 2) at prescribed nodes, harmonic elsewhere."""
         moves = np.where(self.prescribed[:, None], moves, 0.0)
         (a, b), count = self.edges, len(moves)
         off = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]

@@ -1,13 +1,7 @@
-"""Key sections of a row: all have the same blocks and counts; each starts from the nodes of its neighbour.
+"""Key sections of a row, with the same blocks and counts; each starts from its neighbour's nodes.
 
-::
-
-    the middle section: template, counts, optimum -> layers, rows to inlet and outlet
-        -> places of the nodes around the blade, for all sections
-    its neighbours, and theirs: the nodes of the last one carried along, then the optimum
-
-All sections are the optimum of the same functional, which limits the growth of cells along grid lines.
-Sections change little from one to the next, so that few iterations lead to the next optimum.
+All are optima of one functional, which limits the growth of cells along lines, and the middle one is made
+first.
 """
 
 from __future__ import annotations
@@ -39,8 +33,7 @@ FLAT, SMOOTH = 0.95, 1e-3
 BEND = 0.3
 """Fraction of the way to the outlet over which lines turn into the direction of the wake."""
 STEEP, MARGIN = 3.0, 0.93
-"""Weight of the growth of cells, and the fraction of the logarithm of its limit from which on growth counts.
-"""
+"""Weight of growth, and the fraction of the logarithm of its limit from which on it counts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,15 +43,15 @@ class SectionPlan:
     Parameters
     ----------
     growth : largest ratio of neighbouring cells.
-    columns : (k, rows + 1) nodes of the layers: columns are ordered clockwise around the blade, and the nodes
-        of each from the blade outwards.
-    outward : (k,) for each column, the next node beyond the layers.
+    columns : (k, rows + 1) nodes of the layers, clockwise, each column from the blade outwards.
+    outward : (k,) next node beyond each column.
     ends : nodes at inlet and outlet.
-    held : (n,) mask of the nodes in layers or at inlet and outlet.
-    moves : computes the displacements of all other nodes from those of the held nodes.
-    places : places u (see `SectionPlane`) of the first nodes of the columns.
-    wake : theta at the outlet minus theta at the trailing edge, along a straight wake, at half the height;
-        and the derivative of this difference with respect to the height.
+    held : (n,) mask of nodes in layers or at inlet and outlet.
+    moves : displacements of all other nodes from those of the held ones.
+    places : places u (see `SectionPlane`) of the first nodes of columns.
+    wake : theta at the outlet minus theta at the trailing edge along a straight wake, at half the height; and
+        its
+        derivative by the height.
     """
 
     growth: float
@@ -71,7 +64,7 @@ class SectionPlan:
     wake: tuple[float, float]
 
     def bent(self, plane: SectionPlane, nodes: Floats) -> Floats:
-        """Return nodes (n, 2) of a section in (m', theta), shifted in theta so that they follow the wake."""
+        """Return nodes (n, 2) in (m', theta), shifted in theta to follow the wake."""
         most = self.wake[0] + self.wake[1] * (plane.height - 0.5)
         start = float(plane.edges[1, 0])
         t = np.maximum(nodes[:, 0] - start, 0.0) / (plane.map.length - start)
@@ -81,13 +74,13 @@ class SectionPlan:
 
 @dataclass(frozen=True, eq=False)
 class LayerColumns:
-    """Columns of the layers of a section, before the final nodes are distributed along them.
+    """Columns of the layers of a section, before their final nodes are distributed.
 
     Parameters
     ----------
-    walls : (k,) arc lengths on the blade at which columns begin.
-    lines : (k, m, 2) nodes along the columns.
-    ends : (k, 2) points at which columns end, on the outer edge of the layers.
+    walls : (k,) arc lengths on the blade at which they begin.
+    lines : (k, m, 2) nodes along them.
+    ends : (k, 2) points on the outer edge of the layers at which they end.
     """
 
     walls: Floats
@@ -96,7 +89,7 @@ class LayerColumns:
 
     @classmethod
     def of(cls, plane: SectionPlane, places: Floats) -> LayerColumns:
-        """Return the columns of a section that begin at the places u (k,) on the blade."""
+        """Return the columns that begin at places u (k,) on the blade."""
         front = plane.front_arcs(places)
         lines, walls = plane.cascade.ring.columns(front)
         lines = straight_near(lines, plane.from_corners(walls))
@@ -110,9 +103,8 @@ class KeySection:
     Parameters
     ----------
     plane : the section as a plane cascade.
-    layout : the blocks of the section in (m', theta); the domain of this layout is that of the middle
-        section.
-    places : (k,) places u of the first nodes of the columns of layers.
+    layout : its blocks in (m', theta), with the domain of the middle section.
+    places : (k,) places u of the first nodes of columns.
     """
 
     plane: SectionPlane
@@ -122,14 +114,14 @@ class KeySection:
 
 @dataclass(frozen=True, eq=False)
 class Beginning:
-    """The middle section, and the data from which all other sections are made.
+    """The middle section, and the data for all others.
 
     Parameters
     ----------
     plan : data that all sections share.
-    columns : columns of the layers of each section; None for the middle section.
+    columns : columns of the layers of each section; None for the middle one.
     middle : the middle section.
-    following : objects that make the sections towards the hub, and towards the casing.
+    following : makers of the sections towards the hub, and towards the casing.
     """
 
     plan: SectionPlan
@@ -144,9 +136,12 @@ def planned(
 ) -> Beginning:  # fmt: skip
     """Return the plan of all sections, and the middle section with about `cells` cells.
 
-    `coarse` is the `coarse_section` of the middle section, if it is known. `longest` has the largest lengths
-    of the rows to inlet and outlet, by the index of their loop. `wake` is that of `SectionPlan`. `gaps` tells
-    whether the blade ends in a gap at the hub, and whether it does at the casing.
+    Parameters
+    ----------
+    coarse : `coarse_section` of the middle section, if known.
+    longest : largest lengths of the rows to inlet and outlet, by loop.
+    wake : as in `SectionPlan`.
+    gaps : whether the blade ends in a gap at the hub, and at the casing.
     """
     plane = planes[len(planes) // 2]
     whole = middle_section(planes, cells, longest, coarse)
@@ -172,7 +167,7 @@ def planned(
 
 
 def _begun(plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySection) -> Beginning:
-    """Return the beginning by a plan, the middle section with nodes at the plan's places."""
+    """Return the beginning by a plan, with the middle section's nodes at the plan's places."""
     others = [plane for plane in planes if plane is not section.plane]
     columns = [partial(LayerColumns.of, plane, plan.places.at(plane.height)) for plane in others]
     following = [partial(NextSections, plan, section)] * 2
@@ -182,14 +177,14 @@ def _begun(plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySectio
 
 
 class NextSections:
-    """Makes sections one after another, each from the nodes of the one before, with the same blocks."""
+    """Makes sections one after another with the same blocks, each from the one before."""
 
     def __init__(self, plan: SectionPlan, section: KeySection) -> None:
         self.plan = plan
         self._problem = _problem(plan, section.plane, section.layout.mesh)
 
     def of(self, before: KeySection, plane: SectionPlane, columns: LayerColumns | None = None) -> KeySection:
-        """Return the section in `plane`, made from the section `before`; `columns` are computed unless given.
+        """Return the section in `plane` from the section `before`; `columns` are computed unless given.
 
         Raises NoValidGridError: its cells stay folded.
         """
@@ -215,7 +210,7 @@ def _beyond(layout: Layout, columns: Indices) -> Indices:
 
 
 def _pairs(layout: Layout, columns: Indices) -> Indices:
-    """Return numbers (p, 2) of columns on the upper side, and of those across the channel from them."""
+    """Return columns (p, 2) on the upper side, and those opposite across the channel."""
     number = np.full(len(layout.mesh.nodes), -1)
     number[columns[:, -1]] = np.arange(len(columns))
     return np.stack([number[layout.blocks[UPPER][:, 0]], number[layout.blocks[LOWER][::-1, 0]]], axis=1)
@@ -224,7 +219,7 @@ def _pairs(layout: Layout, columns: Indices) -> Indices:
 def _placed(plan: SectionPlan, section: KeySection) -> KeySection:
     """Return the middle section with the nodes around the blade at the plan's places, in steps if need be.
 
-    Nodes of inlet and outlet slide along these.
+    Nodes at inlet and outlet slide along these.
     """
     plane, wanted = section.plane, plan.places.at(section.plane.height)
     move = wrapped(wanted - section.places)
@@ -246,10 +241,11 @@ def _placed(plan: SectionPlan, section: KeySection) -> KeySection:
 def _carried(
     plan: SectionPlan, before: KeySection, plane: SectionPlane, columns: LayerColumns
 ) -> tuple[Layout, Floats]:
-    """Return a neighbour's layout with layers, inlet and outlet of a section, and u of nodes at the blade.
+    """Return a neighbour's layout with the layers and ends of a section, and u of nodes at the blade.
 
-    Nodes keep their share of the way from inlet to blade, along it, and on to the outlet, and follow the
-    middle line of the blade in theta. Between inlet, outlet and layers the rest of displacements is harmonic.
+    Nodes keep their share of the way along the passage, and follow the blade's middle line in theta. The rest
+    of the moves
+    is harmonic.
     """
     nodes = before.layout.mesh.nodes
     shares = before.plane.shares(nodes)
@@ -270,7 +266,6 @@ def _carried(
 
 
 def _problem(plan: SectionPlan, plane: SectionPlane, mesh: QuadMesh, *, ends_slide: bool = False) -> Problem:
-    """Return the minimisation over the nodes of a section beyond its layers."""
     held = plan.held.copy()
     if ends_slide:
         for own in plan.ends:
@@ -285,7 +280,6 @@ def _problem(plan: SectionPlan, plane: SectionPlane, mesh: QuadMesh, *, ends_sli
 def _optimum(
     plan: SectionPlan, plane: SectionPlane, layout: Layout, problem: Problem, iterations: int
 ) -> Layout:
-    """Return the layout with nodes beyond the layers where the functional is least."""
     growth = STEEP, MARGIN * math.log(plan.growth)
     optimum = minimise(problem, iterations, TOLERANCE, ((FLAT, SMOOTH),), growth)
     if not optimum.valid:

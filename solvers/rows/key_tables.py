@@ -1,4 +1,4 @@
-"""The key sections of a row: from the middle one to the hub and to the casing, both in parallel."""
+"""The key sections of a row, from the middle to hub and casing in parallel."""
 
 from __future__ import annotations
 
@@ -32,14 +32,12 @@ _HALVINGS = 3
 _SAME = 0.98  # ratio of thicknesses of layers from which on they are the same
 _SOME_MORE = 1.05  # than is missing, since m' is a length over the radius, which changes
 LEAN = 12.0
-"""Largest angle, in degrees, by which lines along the span lean at the outlet if they follow the wakes of all
-sections; beyond it they follow the wakes in part.
-"""
+"""Largest lean in degrees of lines along the span at the outlet; beyond it they follow wakes in part."""
 
 
 @dataclass(frozen=True, eq=False)
 class KeyTables:
-    """Key sections at `key_heights`, from hub to casing, and the plan that they share."""
+    """Key sections at `key_heights`, from hub to casing, and their plan."""
 
     plan: SectionPlan
     sections: tuple[KeySection, ...]
@@ -48,8 +46,9 @@ class KeyTables:
 def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
     """Return the key sections of a row, with about `cells` cells each.
 
-    `first` and `growth` are the first-cell height and the growth ratio of the layers around the blade. Raises
-    InputError: no room for layers, inlet or outlet. Raises NoValidGridError: cells are folded.
+    `first` and `growth` are first-cell height and growth ratio of the layers. Raises InputError: no room for
+    layers, inlet
+    or outlet. Raises NoValidGridError: cells are folded.
     """
     planes, coarse = _planes(row, first, growth)
     gaps = row.hub_gap > 0.0, row.tip_gap > 0.0
@@ -73,10 +72,9 @@ def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
 
 
 def _planes(row: Row, first: float, growth: float) -> tuple[list[SectionPlane], Layout | None]:
-    """Return the key sections, and the coarse blocks of the middle one, if they are known yet.
+    """Return the key sections, and the coarse blocks of the middle one, if known yet.
 
-    In the middle section straight rows lead to inlet and outlet. They are longest, unless a section has less
-    room: it is begun with these while the other sections are not known.
+    The middle one, with the longest straight rows to inlet and outlet, is begun before the others are known.
     """
 
     def plane_at(height: float, share: float = 1.0) -> SectionPlane:
@@ -112,10 +110,9 @@ def _planes(row: Row, first: float, growth: float) -> tuple[list[SectionPlane], 
 
 
 def _even_shares(planes: Sequence[SectionPlane]) -> dict[int, float]:
-    """Return shares of the thickness of layers for sections, by number, that are to be thinner.
+    """Return smaller fractions of the thickness of layers by section, with logarithms convex in the height.
 
-    Layers that fold are made thinner section by section, in large steps. Polynomials through sections would
-    overshoot next to these: logarithms of the shares of all sections become a convex function of the height.
+    Layers that fold are made thinner section by section, and polynomials would overshoot beside these.
     """
     kept = np.array([plane.cascade.kept for plane in planes])
     x, logs = np.array([plane.height for plane in planes]), log(kept)
@@ -126,7 +123,7 @@ def _even_shares(planes: Sequence[SectionPlane]) -> dict[int, float]:
 
 
 def _check_room(row: Row, planes: Sequence[SectionPlane]) -> None:
-    """Raise InputError where hub and shroud begin or end too near to the blades for blocks in between."""
+    """Raise InputError if hub and shroud begin or end too close to the blades."""
     least = SHORTEST * planes[0].cascade.pitch[1]
     heights = np.array([plane.height for plane in planes])
     words = ("begin", "before", "upstream"), ("end", "behind", "downstream")
@@ -144,7 +141,7 @@ def _check_room(row: Row, planes: Sequence[SectionPlane]) -> None:
 
 @contextmanager
 def _of_section(height: float) -> Iterator[None]:
-    """Say of input errors with a place in (m', theta) in which section that is."""
+    """Within the ``with`` block, add the section to the place of input errors."""
     try:
         yield
     except InputError as error:
@@ -154,7 +151,7 @@ def _of_section(height: float) -> Iterator[None]:
 
 
 def _longest(planes: Sequence[SectionPlane]) -> dict[int, float]:
-    """Return the greatest lengths of the rows to inlet and outlet, by the number of their loop."""
+    """Return the largest lengths of the rows to inlet and outlet, by loop."""
     near = planes[len(planes) // 2].cascade.near
     rows = [[max(room - part, 0.0) for room, part in zip(plane.room, near, strict=True)] for plane in planes]
     pitch = planes[0].cascade.pitch[1]
@@ -162,9 +159,9 @@ def _longest(planes: Sequence[SectionPlane]) -> dict[int, float]:
 
 
 def _wake(row: Row, planes: Sequence[SectionPlane]) -> tuple[float, float]:
-    """Return theta of wakes at the outlet from the trailing edge: at half the height, and its slope.
+    """Return theta of wakes at the outlet from the trailing edge, at half the height, and its slope.
 
-    That is the line nearest to the wakes of all sections which leans by `LEAN` degrees in space at the most.
+    They fit the wakes of all sections, with a lean of at most `LEAN` degrees in space.
     """
     off = np.array([plane.height - 0.5 for plane in planes])
     aside = np.array([plane.wake for plane in planes])
@@ -180,7 +177,7 @@ def _reached(
     following: NextSections, section: KeySection, plane: SectionPlane,
     plane_at: Callable[[float], SectionPlane], halvings: int, columns: LayerColumns | None = None,
 ) -> KeySection:  # fmt: skip
-    """Return a section from another, where cells stay folded by way of that half-way between both."""
+    """Return a section from another; if cells stay folded, by way of the section half-way."""
     try:
         return following.of(section, plane, columns)
     except NoValidGridError:

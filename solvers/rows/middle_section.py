@@ -1,4 +1,4 @@
-"""The middle section of a row, from which the others start: its template, counts and optimum."""
+"""The middle section of a row, from which the others start."""
 
 from __future__ import annotations
 
@@ -33,9 +33,7 @@ _TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relat
 
 
 def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
-    """Return the coarse blocks of a section.
-
-    If `early`, corners of the blade are nodes from the start.
+    """Return the coarse blocks of a section; if `early`, corners of the blade are nodes from the start.
 
     Raises InputError: no room for inlet or outlet. Raises NoValidGridError: cells are folded.
     """
@@ -45,10 +43,14 @@ def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
 def middle_section(
     planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], coarse: Layout | None = None
 ) -> Layout:
-    """Return the middle section of `planes` with about `cells` cells, including its layers and rows.
+    """Return the middle section of `planes` with about `cells` cells, layers and rows.
 
-    `longest` has the largest lengths in any section of the rows to inlet and outlet, by the index of their
-    loop. `coarse` is the `coarse_section`, if it is known. Raises NoValidGridError: cells are folded.
+    Parameters
+    ----------
+    longest : largest lengths in any section of the rows to inlet and outlet, by loop.
+    coarse : `coarse_section`, if known.
+
+    Raises NoValidGridError: cells are folded.
     """
     plane = planes[len(planes) // 2]
     try:
@@ -58,7 +60,6 @@ def middle_section(
 
 
 def _made(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], coarse: Layout) -> Layout:
-    """Return the middle section from its coarse blocks."""
     plane = planes[len(planes) // 2]
     cascade = plane.cascade
     chords = Chords.of(coarse)
@@ -80,9 +81,9 @@ def _made(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, floa
 
 
 def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
-    """Return the blocks beyond the layers with the nodes at which the functional is least.
+    """Return the blocks beyond the layers at the optimum, with cell sizes by `metric`, if any.
 
-    `metric` prescribes the cell sizes; None: none are prescribed. Nodes at which the cut ends do not move.
+    Nodes at which the cut ends do not move.
     """
     mesh = layout.mesh
     optimum = optimise(
@@ -95,14 +96,14 @@ def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout
 
 
 def folded_section(plane: SectionPlane, mesh: QuadMesh) -> NoValidGridError:
-    """Return the error for a section whose mesh is folded, with the position of its worst cell."""
+    """Return the error for a folded section, with the position of its worst cell."""
     worst = int(smallest_jacobians(mesh.nodes, mesh.quads).argmin())
     place = plane.place(mesh.nodes[mesh.quads[worst]].mean(axis=0))
     return NoValidGridError(f"cells stay folded in the {place}; {REMEDY}")
 
 
 def _joined(plane: SectionPlane, scale: float, rows: int) -> SizeMetric:
-    """Return the sizes for cells `scale` times as long, across the front those beyond `rows` of layers."""
+    """Return the sizes of cells `scale` times as long, that continue `rows` of layers across the front."""
     cascade = plane.cascade
     sizes, thickness = cascade.metric, cascade.ring.thickness
     none = np.full(len(thickness), np.inf)

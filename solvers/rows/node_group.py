@@ -1,11 +1,6 @@
 """Nodes of a row that are computed together, from polynomials along the span to positions in space.
 
-::
-
-    polynomials --arcs of each line--> heights --(s, theta, h)--> nodes of the blade put on it
-        --> first cells exact at blade, hub, tip and casing --> x, y, z
-
-A group consists of complete columns of layers, or of other nodes; it is small enough for the cache.
+Groups are complete columns of layers, or other nodes, and fit the cache.
 """
 
 from __future__ import annotations
@@ -34,9 +29,9 @@ class NodeGroup:
     ----------
     row : the row.
     zones : zones of the span, from hub to casing.
-    ids : (m,) numbers of the nodes. lines : s and theta of the nodes as functions of the height.
-    around : places u on the blade at which the columns of layers begin, as functions of the height; None if
-        the group has no columns.
+    ids : (m,) indices of the nodes.
+    lines : s and theta of the nodes as functions of the height.
+    around : places u at which columns of layers begin, as functions of the height; None without columns.
     first : height of first cells at the blade.
     """
 
@@ -49,11 +44,11 @@ class NodeGroup:
 
     @property
     def columns(self) -> int:
-        """Number of columns of layers in the group; the nodes of one column are consecutive."""
+        """Number of columns of layers; the nodes of each are consecutive."""
         return self.around.coefficients.shape[1] if self.around else 0
 
     def arcs(self) -> list[LineArcs]:
-        """Return, for each zone, the arc lengths of the lines along the span through the nodes."""
+        """Return the arc lengths of the lines along the span, for each zone."""
         out = []
         for zone in self.zones:
             at = zone.low + (zone.high - zone.low) * key_heights(_IN_GAP if zone.gap else SAMPLES)
@@ -63,10 +58,7 @@ class NodeGroup:
         return out
 
     def values(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
-        """Return s, theta, h (levels, m, 3) of the nodes for the spacing in each zone.
-
-        `arcs` is the result of the method `arcs`.
-        """
+        """Return s, theta, h (levels, m, 3) of the nodes, from `arcs` and the spacing of each zone."""
         values = self.at(self._heights(arcs, spacings))
         self._exact_along_span(values)
         if self.around:
@@ -74,10 +66,7 @@ class NodeGroup:
         return values
 
     def at(self, heights: Floats) -> Floats:
-        """Return s, theta, h (levels, m, 3) at heights (levels, m).
-
-        Columns have exact first cells at the blade.
-        """
+        """Return s, theta, h (levels, m, 3) at heights (levels, m), with exact first cells at the blade."""
         values = np.empty((*heights.shape, 3))
         values[..., :2], values[..., 2] = self.lines.at(heights), heights
         np.clip(values[..., 0], 0.0, 1.0, out=values[..., 0])
@@ -89,7 +78,6 @@ class NodeGroup:
         return values
 
     def _heights(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
-        """Return heights (levels, m)."""
         parts: list[Floats] = []
         for zone, line, spacing in zip(self.zones, arcs, spacings, strict=True):
             part = zone.low + (zone.high - zone.low) * line.parts(spacing)
@@ -99,7 +87,7 @@ class NodeGroup:
 
     @property
     def _ends(self) -> tuple[Indices, Indices, Floats]:
-        """Levels that bound zones, the levels next to them, and the heights of the cells between."""
+        """Levels that bound zones, levels next to them, and heights of the cells between."""
         walls: list[int] = []
         beside: list[int] = []
         sizes: list[float] = []
@@ -120,16 +108,16 @@ class NodeGroup:
         values[beside] = end
 
     def _exact_in_corners(self, own: Floats) -> None:
-        """Make both first cells exact of nodes next to the blade and to hub, tip or casing."""
+        """Make both first cells of nodes in corners exact."""
         walls, beside, sizes = self._ends
         begins = own[beside][:, :, 0], own[walls][:, :, 1]
         lengths = self.first, sizes[:, None]
         own[beside, :, 1] = exact_in_corners(own[beside][:, :, 1], begins, lengths, self.row.channel.in_space)
 
     def store(self, values: Floats, rises: Sequence[Rise], space: Floats) -> None:
-        """Store the positions x, y, z of the group's nodes in `space` (levels, n, 3), which has all nodes.
+        """Store x, y, z of the group's nodes in `space` (levels, n, 3) of all nodes.
 
-        `values` (levels, m, 3) are s, theta, h of the group's nodes. Nodes of layers are moved by `rises`.
+        `values` (levels, m, 3) are their s, theta, h; `rises` move those of layers.
         """
         self.row.channel.store(values, self.ids, space)
         if rises:

@@ -1,4 +1,4 @@
-"""Places of nodes around a blade that lie opposite each other on both sides."""
+"""Places of nodes around a blade that are opposite each other on both sides."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from meshonet.solvers.rows.across import ChannelLines
 
 
 def opposite_places(places: Floats, pairs: Indices, lines: ChannelLines) -> Floats:
-    """Return places u (k,) of nodes clockwise around a blade, with a node at 1 - u for each node at u.
+    """Return places u (k,) of nodes clockwise around a blade, with a node at 1 - u for each at u.
 
-    Both sides have the same number of nodes, so that the blocks inside the blade's outline in a gap are not
-    skewed. `pairs` (p, 2) are a node on the upper and a node on the lower side that a line across the channel
-    joins, in order from the leading edge. k is even; the leading and the trailing edge have a node. Of the
-    nodes between those of the first pair, the one at the leading edge is chosen so that `lines` deviate least
-    from the normal.
+    k is even, and both edges have a node, so that blocks in a gap are not skewed. `pairs` (p, 2) are nodes on
+    the upper and
+    the lower side that lines across the channel join, from the leading edge. The node at the leading edge is
+    the one with
+    which `lines` lean least.
     """
     both = _both_sides(places)
     k, half = len(places), len(places) // 2
@@ -28,7 +28,7 @@ def opposite_places(places: Floats, pairs: Indices, lines: ChannelLines) -> Floa
 
 
 def _both_sides(places: Floats) -> Floats:
-    """Return places u (k / 2 + 1,), from 0 to 0.5: means of those of both sides."""
+    """Return places u (k / 2 + 1,), from 0 to 0.5: means of both sides."""
     k = len(places)
     half, lead = k // 2, _leading_node(places)
     along = places[0] + np.concatenate([[0.0], np.cumsum(np.mod(np.diff(places), 1.0))])
@@ -46,9 +46,9 @@ def _both_sides(places: Floats) -> Floats:
 
 
 def _leading_node(places: Floats) -> int:
-    """Return which of nodes at places u (k,), clockwise around a blade, is to be at the leading edge.
+    """Return which of nodes at places u (k,), clockwise, shall be at the leading edge.
 
-    It is the one from which on half of them are nearest to the upper side.
+    From it on, half of them are nearest to the upper side.
     """
     k = len(places)
     off = np.abs(wrapped(places))

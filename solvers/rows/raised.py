@@ -1,11 +1,7 @@
 """Layers that rise or fall from the blade next to a narrow gap, so that their first cells lean less.
 
-::
-
-    casing -----------------------         Lines off the blade lie in surfaces of revolution. Where the blade
-              gap    ____________ raised   leans far over these, so do its cells. Where they are narrow along
-    tip    .________/____________ even     the span, as next to a gap, the middle of a cell is far beside its
-          /  blade                         face on the blade. There these lines rise from the blade, or fall.
+Lines off the blade lie in surfaces of revolution; where the blade leans far over these, narrow cells would be
+skewed.
 """
 
 from __future__ import annotations
@@ -22,10 +18,7 @@ from meshonet.solvers.rows.span_lines import SpanLines
 from meshonet.solvers.rows.zones import Zone
 
 LEAN = 1.5
-"""Tangent of the largest angle between first cells and the normal of the blade next to narrow gaps.
-
-OpenFOAM's skewness of a narrow face is this over 0.4, and is to be less than 4.
-"""
+"""Largest tangent between first cells and the blade's normal at narrow gaps, 0.4 of OpenFOAM's skewness."""
 NARROW = 0.4
 """Cells along the span next to a gap, in first cells of the blade, below which layers rise."""
 _MOST = 0.12  # largest move of nodes, as a fraction of the width of the gap
@@ -40,11 +33,10 @@ class Rise:
     Parameters
     ----------
     end : height at which the blade ends.
-    up : 1 where the gap is above it, -1 below.
+    up : 1 if the gap is above it, -1 below.
     gap : height of the gap.
-    deep : (k,) for each column, the distance in height from this end of the blade at which displacements
-        become 0.
-    moves : (k, 3) for each column, the displacement in space of the node next to the end of the blade.
+    deep : (k,) height below the end at which displacements of each column become 0.
+    moves : (k, 3) displacement in space of the node of each column at the end.
     """
 
     end: float
@@ -60,8 +52,8 @@ class Rise:
         Parameters
         ----------
         row, blade : the row, and the zone of the blade.
-        around : places u on the blade at which the k columns begin, as functions of the height.
-        lines : s and theta of the k (rows + 1) nodes of these columns, as functions of the height.
+        around : places u of the k columns as functions of the height.
+        lines : s and theta of the k (rows + 1) nodes of these columns as functions of the height.
         """
         end, up, width = (blade.high, 1.0, row.tip_gap)
         if zone.low == 0.0:
@@ -78,7 +70,7 @@ class Rise:
         return replace(self, deep=self.deep[part], moves=self.moves[part])
 
     def shares(self, heights: Floats) -> Floats:
-        """Return, for each height and column, the fraction of the displacement (levels, k)."""
+        """Return the fractions (levels, k) of displacements, by height and column."""
         off = self.up * (heights - self.end)
         away = np.where(off > 0.0, off / self.gap, -off / self.deep)
         return np.asarray(smooth_step(np.clip(1.0 - away, 0.0, 1.0)))
@@ -87,10 +79,7 @@ class Rise:
 def rises_of(
     row: Row, zones: Sequence[Zone], around: SpanLines, lines: SpanLines, first: float
 ) -> list[Rise]:
-    """Return the displacements of columns next to each narrow gap; parameters are as for `Rise.of`.
-
-    `first` is the height of first cells at the blade.
-    """
+    """Return the displacements of columns next to each narrow gap (`Rise.of`)."""
     blade = next(zone for zone in zones if not zone.gap)
     narrow = [zone for zone in zones if zone.gap and zone.ends[0] < NARROW * first]
     rises = [Rise.of(row, zone, blade, around, lines) for zone in narrow]
@@ -100,15 +89,14 @@ def rises_of(
 def raise_layers(
     rises: Sequence[Rise], space: Floats, heights: Floats, ends: tuple[Indices, Indices, Floats], first: float
 ) -> None:
-    """Displace the nodes of columns; `space` is changed in place. First cells keep their exact heights.
+    """Displace the nodes of columns, in place; first cells keep their exact heights.
 
     Parameters
     ----------
     rises : the displacements.
     space : (levels, k, rows, 3) x, y, z of the nodes.
     heights : (levels, k) heights of the nodes on the blade.
-    ends : indices of the levels that bound zones; indices of the levels next to them; heights of the cells
-        between these two levels.
+    ends : levels that bound zones, levels next to them, and heights of the cells between.
     first : height of first cells at the blade.
     """
     rows = space.shape[2]
@@ -130,9 +118,9 @@ def raise_layers(
 
 
 def _at_end(row: Row, end: float, up: float, around: SpanLines, lines: SpanLines) -> tuple[Floats, Floats]:
-    """Return s, theta, h of places on the blade at its end, and of the nodes next to it (k, 3).
+    """Return s, theta, h (4, k, 3) on the blade at its end, and of the nodes next to it (k, 3).
 
-    The former (4, k, 3) are where columns begin, next to there along the span, and on both sides around.
+    The four are where columns begin, next along the span, and on both sides around.
     """
     inside = end - up * _STEP
     u, nodes = around.at(np.array([[end], [inside]])), lines.at(np.array([[end]]))[0]
@@ -146,10 +134,9 @@ def _at_end(row: Row, end: float, up: float, around: SpanLines, lines: SpanLines
 
 
 def _moves(row: Row, walls: Floats, first_nodes: Floats) -> tuple[Floats, Floats]:
-    """Return lengths (k,) of a unit of height along the blade, and moves (k, 3) for cells to lean little.
+    """Return lengths (k,) per unit of height along the blade, and moves (k, 3) that limit lean to `LEAN`.
 
-    A line off the blade leans by its component in the tangent plane of the blade. The move, along the span,
-    limits this component to `LEAN` times the normal one, as far as it can.
+    Lean is the component of a line in the blade's tangent plane over the normal one.
     """
     wall, inside, before, after = row.channel.in_space(walls)
     off, along = row.channel.in_space(first_nodes) - wall, wall - inside

@@ -1,7 +1,7 @@
-"""The grid of a blade row: blocks around the blade in each zone of the span, and inside its outline in gaps.
+"""The grid of a blade row: blocks around the blade in each zone of the span, and inside it in gaps.
 
-Patches are named blade, tip (or foot, at a gap at the hub), hub, shroud, inlet, outlet, periodic1 and
-periodic2; the last two are connected by a rotation about the x axis.
+Patches are blade, tip (or foot, at a hub gap), hub, shroud, inlet, outlet, and the connected periodic1 and
+periodic2.
 """
 
 from __future__ import annotations
@@ -39,10 +39,9 @@ _OTHER = 0.15  # relative difference from the requested number of cells above wh
 
 
 def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
-    """Return the grid of one passage of a row (or of several passages), and notes for the report.
+    """Return the grid of one passage of a row, and notes.
 
-    Raises InputError: a row that leaves no room for layers, inlet or outlet. Raises NoValidGridError: cells
-    are folded.
+    Raises InputError: no room for layers, inlet or outlet. Raises NoValidGridError: cells are folded.
     """
     first, growth = request.height() * row.chord, request.ratio
     zones = zones_of(row, first, growth, request.cells)
@@ -78,17 +77,19 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
 
 
 def turned_by(angle: float) -> Motion:
-    """Return the rotation about the x axis that increases theta = atan2(y, z) by `angle`, in radians."""
+    """Return the rotation about the x axis that adds `angle`, in radians, to theta = atan2(y, z)."""
     c, s = math.cos(angle), math.sin(angle)
     return Motion(turn=((1.0, 0.0, 0.0), (0.0, c, s), (0.0, -s, c)))
 
 
 @dataclass(frozen=True, eq=False)
 class ZoneSection:
-    """The blocks around the blade on one level of a zone, and the blocks inside the outline of the blade.
+    """The blocks on one level of a zone.
 
-    The blocks around the blade are given as a planar grid, `plane`, and as a layout. The blocks inside the
-    outline, `inside`, are None unless the zone is a gap.
+    Parameters
+    ----------
+    plane, layout : those around the blade, as a planar grid and as a layout.
+    inside : those inside its outline, in a gap.
     """
 
     plane: Grid
@@ -100,7 +101,6 @@ def _joined(
     row: Row, stacked: StackedRow, zones: Sequence[Zone], sections: Sequence[ZoneSection], space: Floats,
     turn: Motion,
 ) -> Grid:  # fmt: skip
-    """Return all blocks as one grid."""
     blocks: list[tuple[Floats, Indices]] = []
     patches: list[Patch] = []
     connections: list[Connection] = []
@@ -128,7 +128,7 @@ def _joined(
 
 
 def _block(nodes: Floats, ids: Indices) -> Block:
-    """Return the block of nodes (levels, n, 3) with the numbers `ids` (ni, nj) in each level."""
+    """Return the block of nodes (levels, n, 3) with indices `ids` (ni, nj) in each level."""
     block = np.empty((3, *ids.shape, len(nodes)))
     stacked_block(nodes, ids.ravel(), block.reshape(3, ids.size, -1))
     if not np.isfinite(block).all():
@@ -138,7 +138,7 @@ def _block(nodes: Floats, ids: Indices) -> Block:
 
 
 def _end_patches(zone: Zone, layout: Layout, start: int, whole: int) -> list[Patch]:
-    """Return the patches at both ends of a zone; its blocks from number `whole` on are in a gap."""
+    """Return the patches at both ends of a zone; blocks from `whole` on are in a gap."""
     patches = []
     sides: tuple[Side, Side] = ("bottom", "top")
     for number, ids in enumerate(layout.blocks):
@@ -151,7 +151,7 @@ def _end_patches(zone: Zone, layout: Layout, start: int, whole: int) -> list[Pat
 
 
 def _end_name(zone: Zone, side: Side, inside: bool) -> str:
-    """Return the name of the patch at the bottom or the top of a block, empty where another block follows."""
+    """Return the name of the patch at the end of a block, empty where another block follows."""
     if side == "bottom" and zone.low == 0.0:
         return "hub"
     if side == "top" and zone.high == 1.0:
@@ -160,7 +160,6 @@ def _end_name(zone: Zone, side: Side, inside: bool) -> str:
 
 
 def _with_inside(layout: Layout, inside: GapBlocks) -> Layout:
-    """Return the layout of a section with the blocks inside the outline of the blade."""
     mesh, own, k = layout.mesh, inside.fill.layout, len(inside.outline)
     count = len(mesh.nodes)
     number = np.concatenate([inside.outline, count + np.arange(len(own.mesh.nodes) - k)])
@@ -174,7 +173,7 @@ def _with_inside(layout: Layout, inside: GapBlocks) -> Layout:
 
 
 def _other_cells(grid: Grid, wanted: int, fewest: int, growth: float) -> tuple[str, ...]:
-    """Return a note if there are many more or fewer cells than the number that was given."""
+    """Return a note if the number of cells is far from the requested one."""
     cells = sum(block.cells for block in grid.blocks)
     if abs(cells - wanted) <= _OTHER * wanted:
         return ()

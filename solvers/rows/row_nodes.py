@@ -1,7 +1,4 @@
-"""The nodes of a row, level by level along the span: in space, and next to the blade in (s, theta, h).
-
-theta is atan2(y, z): the directions of s, theta and h are then right-handed.
-"""
+"""The nodes of a row: in space, and beside the blade in (s, theta, h) with theta = atan2(y, z)."""
 
 from __future__ import annotations
 
@@ -17,8 +14,7 @@ class RowNodes:
     Parameters
     ----------
     space : (levels, n, 3) x, y, z.
-    beside : (levels, k, 2, 3) for each node of the blade, clockwise: s, theta, h of this node and of the node
-        next to it.
+    beside : (levels, k, 2, 3) s, theta, h of each node of the blade, clockwise, and of the node next to it.
     """
 
     space: Floats

@@ -1,7 +1,6 @@
-"""The section of a blade row at a height as a plane cascade, and the map between both.
+"""A section of a blade row as a plane cascade with the pitch 2 pi / blades.
 
-On a surface of revolution (m', theta) with dm' = dm / r is conformal: angles are those in space, and the
-passage is that of a plane cascade with the pitch 2 pi / blades.
+On a surface of revolution (m', theta) with dm' = dm / r is conformal.
 """
 
 from __future__ import annotations
@@ -27,9 +26,7 @@ from meshonet.solvers.layers.layer_settings import LayerSettings
 _AROUND = 400  # number of points of a section
 _SHARES = np.array([-1.0, 0.0, 1.0, 2.0])
 STEEPEST = 45.0
-"""Largest angle to the axis, in degrees, at which grid lines follow a wake: cells behind the blade are skewed
-by this angle.
-"""
+"""Largest angle to the axis in degrees at which lines follow a wake; cells are skewed by it."""
 ON_SIDE = read_only(np.linspace(0.0, 0.5, 201))
 """Places on the upper side for which the places opposite them across the channel are computed."""
 _EDGE = 3  # of these at both edges have nothing opposite them
@@ -41,15 +38,16 @@ _NEAR_EDGE = 0.06  # places before and behind the trailing edge by which the mea
 class SectionPlane:
     """A section of a blade row, mapped to a plane cascade.
 
-    A place u around the blade is a number: 0 at the leading edge, increasing along the upper side to 0.5 at
-    the trailing edge, and along the lower side to 1, again at the leading edge.
+    A place u around the blade is 0 at the leading edge, 0.5 at the trailing edge after the upper side, and 1
+    after the
+    lower side.
 
     Parameters
     ----------
-    height : height h in the channel, from 0 at the hub to 1 at the casing.
+    height : height h in the channel, 0 at the hub to 1 at the casing.
     map : map between s and m'.
     cascade : the cascade in (m', theta).
-    places : (n,) places u of the points of the cascade's blade, ascending from 0.
+    places : (n,) ascending places u of the points of the cascade's blade.
     """
 
     height: float
@@ -59,9 +57,8 @@ class SectionPlane:
 
     @classmethod
     def of(cls, row: Row, height: float, first: float, growth: float, share: float = 1.0) -> SectionPlane:
-        """Return the section of a row at a height.
+        """Return the section of a row at a height, with first cells of height `first` in space.
 
-        First cells of its layers have the height `first` in space.
         `share` is that of `Cascade`.
         """
         u, lines = _lines(row.surface)
@@ -89,13 +86,13 @@ class SectionPlane:
 
     @property
     def room(self) -> tuple[float, float]:
-        """Distances from the outer edge of the layers to the inlet and to the outlet, in pitches."""
+        """Distances in pitches from the layers to the inlet and to the outlet."""
         before, behind = self.cascade.ends
         return before / self.cascade.pitch[1], behind / self.cascade.pitch[1]
 
     @property
     def thickest(self) -> float:
-        """Place u (0 to 0.5) where the blade is thickest: the points at u and 1 - u are farthest apart."""
+        """Place u, 0 to 0.5, whose distance from 1 - u is largest."""
         u = np.linspace(0.1, 0.4, 61)
         return float(u[int(modulus(self._opposite(u) - self._opposite(1.0 - u)).argmax())])
 
@@ -109,9 +106,9 @@ class SectionPlane:
 
     @property
     def wake(self) -> float:
-        """Theta at the outlet minus theta at the trailing edge, along the continuation of the mean line.
+        """Theta at the outlet minus theta at the trailing edge, along the straight mean line.
 
-        The continuation is straight, and inclined by at most `STEEPEST` degrees to the axis.
+        It is inclined by at most `STEEPEST` degrees.
         """
         one, other = self._opposite(np.array([0.5 - _NEAR_EDGE, 0.5 + _NEAR_EDGE]))
         way = complex(*self.edges[1]) - complex(0.5 * (one + other))
@@ -122,8 +119,7 @@ class SectionPlane:
     def ending(self, near: tuple[float, float], thickest: float) -> SectionPlane:
         """Return the section with straight rows of cells from `near` pitches before and behind the blade.
 
-        The centre of the conformal map is the midpoint of the points at the places `thickest` and 1 -
-        `thickest`.
+        The conformal map is centred between the places `thickest` and 1 - `thickest`.
         """
         one, other = self._opposite(np.array([thickest, 1.0 - thickest]))
         centre = complex(0.5 * (one + other))
@@ -135,10 +131,7 @@ class SectionPlane:
         return self.places[list(self.cascade.blade.corners)]
 
     def from_corners(self, arcs: Floats) -> Floats:
-        """Return, for points at arc lengths (n,) on the blade, the distances from the nearest corner.
-
-        The distances are infinite if the blade has no corner.
-        """
+        """Return the distances of arc lengths (n,) on the blade from the nearest corner, if any."""
         off = wrapped((arcs - self.wall_arcs(self.corners)[:, None]) / self._walls[-1])
         return np.asarray(self._walls[-1] * np.abs(off).min(axis=0, initial=np.inf))
 
@@ -147,7 +140,7 @@ class SectionPlane:
         return np.append(self.cascade.blade.curve.knots, self.cascade.blade.length)
 
     def wall_arcs(self, u: Floats) -> Floats:
-        """Return the arc lengths (n,) on the blade at the places u (n,), which are from 0 to 1."""
+        """Return the arc lengths (n,) on the blade at places u (n,), 0 to 1."""
         return np.interp(u, np.append(self.places, 1.0), self._walls)
 
     def places_of(self, arcs: Floats) -> Floats:
@@ -155,7 +148,7 @@ class SectionPlane:
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:
-        """Return the arc lengths (n,), on the outer edge of the layers, of the columns from places u (n,)."""
+        """Return the arc lengths (n,) on the outer edge of the layers of columns from places u (n,)."""
         ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)
@@ -165,10 +158,7 @@ class SectionPlane:
 
     @cached_property
     def across(self) -> tuple[Floats, Floats]:
-        """For the places `ON_SIDE` (n,): 1 - u (n,) of the places across the channel, and the slant (n,).
-
-        See `ChannelLines`.
-        """
+        """1 - u (n,) of the places opposite `ON_SIDE` (n,), and the slant (n,); see `ChannelLines`."""
         front, pitch = self.cascade.ring.front, np.array([0.0, self.cascade.pitch[1]])
         one, other = (front.at(self.front_arcs(u)) for u in (ON_SIDE, 1.0 - ON_SIDE))
         off = ((other + pitch).T[:, None] - one.T[:, :, None]) ** 2
@@ -182,7 +172,7 @@ class SectionPlane:
         return lower, np.where(inside, self.cascade.blade.length / np.sqrt(here), 0.0)
 
     def place(self, point: Floats) -> str:
-        """Return a text for messages: where a point (2,) is along the span and along the blade."""
+        """Return where a point (2,) is along the span and the blade, as text."""
         share = float(self.shares(point[None])[0])
         along = f"between the blades, {100.0 * share:.0f} % of the way along them"
         if share < _AT_EDGE:
@@ -192,18 +182,18 @@ class SectionPlane:
         return f"section at {100.0 * self.height:.3g} % of the span, {along}"
 
     def shares(self, points: Floats) -> Floats:
-        """Return how far points (n, 2) are along the passage, as numbers (n,) called shares.
+        """Return how far points (n, 2) are along the passage.
 
-        A share is -1 at the inlet, 0 at the leading edge, 1 at the trailing edge and 2 at the outlet.
+        A share is -1 at the inlet, 0 at the leading edge, 1 at the trailing edge, 2 at the outlet.
         """
         return np.interp(points[:, 0], self._stations, _SHARES)
 
     def stations(self, shares: Floats) -> Floats:
-        """Return the coordinate m' (n,) at `shares` (n,) along the passage, the inverse of `shares`."""
+        """Return m' (n,) at `shares` (n,) along the passage."""
         return np.interp(shares, _SHARES, self._stations)
 
     def camber(self, shares: Floats) -> Floats:
-        """Return theta (n,) of the mean line of the blade at `shares` (n,), which are from 0 to 1."""
+        """Return theta (n,) of the blade's mean line at `shares` (n,) from 0 to 1."""
         u = np.linspace(0.0, 0.5, _AROUND)
         middle = 0.5 * (self._opposite(u) + self._opposite(1.0 - u))
         part = np.maximum.accumulate(self.shares(pairs_of(middle)))
@@ -217,13 +207,12 @@ class SectionPlane:
 
 @lru_cache(maxsize=8)
 def _lines(surface: BladeSurface) -> tuple[Floats, CubicTable]:
-    """Return the places of the points of sections, with the corners of the blade, and the lines there."""
+    """Return the places of a section's points, with the blade's corners, and the lines there."""
     u = read_only(_with_corners(clustered(_AROUND), surface.corners))
     return u, surface.lines(u)
 
 
 def _with_corners(u: Floats, corners: Floats) -> Floats:
-    """Return places with those nearest to corners put there."""
     u = u.copy()
     for corner in corners:
         k = int(np.abs(u - corner).argmin())

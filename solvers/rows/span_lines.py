@@ -15,7 +15,7 @@ from meshonet.kernels._native import chebyshev_sums
 
 
 def key_heights(count: int) -> Floats:
-    """Return `count` heights from 0 to 1: the extrema of a Chebyshev polynomial."""
+    """Return `count` heights from 0 to 1, the extrema of a Chebyshev polynomial."""
     heights = 0.5 * (1.0 - cos(np.pi * np.arange(count) / (count - 1)))
     heights[0], heights[-1] = 0.0, 1.0
     return np.asarray(heights)
@@ -23,16 +23,15 @@ def key_heights(count: int) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class SpanLines:
-    """Chebyshev coefficients (k, n, ...) of n functions of the height (0 to 1)."""
+    """Chebyshev coefficients (k, n, ...) of n functions of the height, 0 to 1."""
 
     coefficients: Floats
 
     @classmethod
     def through(cls, values: Floats, degree: int | None = None) -> SpanLines:
-        """Return the n polynomials through the values (k, n, ...) at the heights ``key_heights(k)``.
+        """Return the polynomials through values (k, n, ...) at ``key_heights(k)``.
 
-        With a `degree` below k - 1, they are least-squares approximations in which both ends have half
-        weight.
+        With a `degree` below k - 1 they are least-squares fits with half weight at both ends.
         """
         kept = _fit(len(values))[: len(values) if degree is None else degree + 1]
         return cls(_times(kept, values))
@@ -51,12 +50,12 @@ class SpanLines:
 
 
 def slopes_at_keys(values: Floats) -> Floats:
-    """Return d/dheight (k, n, ...), at the key heights, of the polynomials through `values` (k, n, ...)."""
+    """Return the derivatives (k, n, ...) at key heights of polynomials through `values` (k, n, ...)."""
     return _times(_slopes(len(values)), values)
 
 
 def integrals_at_keys(values: Floats) -> Floats:
-    """Return the integrals (k, n, ...) from height 0 to the key heights of polynomials through `values`."""
+    """Return the integrals (k, n, ...) from 0 to key heights of polynomials through `values`."""
     return _times(_integrals(len(values)), values)
 
 
@@ -66,13 +65,13 @@ def _times(matrix: Floats, values: Floats) -> Floats:
 
 @cache
 def _fit(count: int) -> Floats:
-    """Return the matrix (count, count) from values at `key_heights` to Chebyshev coefficients."""
+    """Return the matrix (count, count) from values at key heights to Chebyshev coefficients."""
     return inverse(np.stack(_polynomials(2.0 * key_heights(count) - 1.0, count), axis=1))
 
 
 @cache
 def _slopes(count: int) -> Floats:
-    """Return the matrix (count, count) from values at `key_heights` to derivatives there."""
+    """Return the matrix (count, count) from values at key heights to derivatives there."""
     c = _fit(count)
     slopes = np.zeros_like(c)
     for k in range(count - 1, 0, -1):
@@ -83,7 +82,7 @@ def _slopes(count: int) -> Floats:
 
 @cache
 def _integrals(count: int) -> Floats:
-    """Return the matrix (count, count) from values at `key_heights` to integrals up to there."""
+    """Return the matrix (count, count) from values at key heights to integrals there."""
     c = _fit(count)
     sums = np.zeros((count + 1, count))
     for k in range(1, count + 1):

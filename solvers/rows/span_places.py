@@ -1,8 +1,7 @@
-"""Places of nodes around a blade, from hub to casing.
+"""Places of nodes around a blade, linear in the height from hub to casing.
 
-At an end with a gap, nodes are opposite each other on both sides of the blade, so that blocks inside its
-outline are not skew. At an end without a gap, nodes are placed so that lines across the channel are normal to
-the blades. Between both ends places change linearly with the height.
+At an end with a gap both sides have opposite nodes; at other ends lines across the channel are normal to
+blades.
 """
 
 from __future__ import annotations
@@ -32,9 +31,8 @@ class SpanPlaces:
 
     Parameters
     ----------
-    ends : places u (k,) at the hub, and places u (k,) at the casing.
-    gaps : whether the blade ends in a gap at the hub, and whether it does at the casing; at such an end there
-        is a node at 1 - u for each node at u.
+    ends : places u (k,) at the hub and at the casing.
+    gaps : whether the blade ends there in a gap; then each node at u has one at 1 - u.
     """
 
     ends: tuple[Floats, Floats]
@@ -44,10 +42,13 @@ class SpanPlaces:
     def of(
         cls, planes: Sequence[SectionPlane], places: Floats, pairs: Indices, gaps: tuple[bool, bool]
     ) -> SpanPlaces:
-        """Return places near those of the middle section, `places` (k,), with a node at each corner.
+        """Return places near `places` (k,) of the middle section, with a node at each corner.
 
-        `planes` are all sections. `pairs` (p, 2) are a node on the upper and a node on the lower side that a
-        line across the channel joins. `gaps` is as in the class.
+        Parameters
+        ----------
+        planes : all sections.
+        pairs : (p, 2) nodes on the upper and the lower side that lines across the channel join.
+        gaps : as in the class.
         """
         corners, half = planes[0].corners, len(planes) // 2
         if any(gaps):
@@ -71,7 +72,7 @@ class SpanPlaces:
         return np.asarray(np.mod(start + height * wrapped(end - start), 1.0))
 
     def evened(self, planes: Sequence[SectionPlane], growth: float, pairs: Indices) -> SpanPlaces:
-        """Return places so that, in all sections, steps between nodes grow by at most about `growth`."""
+        """Return places with steps that grow by about `growth` at most in all sections."""
         lines, corners = ChannelLines.of(planes), planes[0].corners
 
         def even(k: int) -> Floats:
@@ -83,7 +84,7 @@ class SpanPlaces:
 
 
 def at_corners(places: Floats, corners: Floats) -> Floats:
-    """Return `places` u (k,) with the nearest place to each of the `corners` u (c,) moved to the corner."""
+    """Return `places` u (k,), the nearest ones moved to `corners` u (c,)."""
     out = places.copy()
     out[corner_nodes(places, corners)] = corners
     return out
@@ -95,7 +96,7 @@ def corner_nodes(places: Floats, corners: Floats) -> Indices:
 
 
 def _with_corners(places: Floats, nodes: Indices, corners: Floats) -> tuple[Indices, Floats]:
-    """Return the nodes at `corners` (c,), `nodes` (c,) or some farther apart, and places (k,) with these."""
+    """Return the nodes at `corners` (c,), some farther apart, and places (k,) with these."""
     wide = _widened(nodes, corners, len(places))
     out = places.copy() if (wide == nodes).all() else _drawn(places, wide, corners)
     out[wide] = corners
@@ -103,10 +104,7 @@ def _with_corners(places: Floats, nodes: Indices, corners: Floats) -> tuple[Indi
 
 
 def _widened(nodes: Indices, corners: Floats, count: int) -> Indices:
-    """Return the nodes (c,) at `corners` (c,), of `count` around the blade, farther apart at narrow edges.
-
-    An edge that is cut off gets `BASE` cells or more between its corners, as many more from each side.
-    """
+    """Return the nodes (c,) at `corners` (c,), with `BASE` cells or more at cut edges."""
     out = nodes.copy()
     for edge in (0.0, 0.5):
         off = wrapped(corners - edge)
@@ -121,9 +119,9 @@ def _widened(nodes: Indices, corners: Floats, count: int) -> Indices:
 
 
 def _opposite_nodes(mirrored: Floats, corners: Floats) -> Indices:
-    """Return which of places (k,), the same on both sides, are nearest to `corners` (c,).
+    """Return which of symmetric places (k,) are nearest to `corners` (c,).
 
-    Corners of both sides that are within a step of being opposite each other have opposite nodes.
+    Corners within a step of being opposite get opposite nodes.
     """
     nodes = corner_nodes(mirrored, corners)
     lead = int(np.abs(wrapped(mirrored)).argmin())
@@ -137,9 +135,9 @@ def _opposite_nodes(mirrored: Floats, corners: Floats) -> Indices:
 
 
 def _drawn(places: Floats, nodes: Indices, corners: Floats) -> Floats:
-    """Return places (k,) with some `nodes` (c,) at `corners` (c,), and those between drawn along in order.
+    """Return places (k,) with `nodes` (c,) at `corners` (c,), and those between drawn along.
 
-    An edge without corners stays where it is.
+    An edge without corners stays.
     """
     if not len(nodes):
         return places

@@ -1,4 +1,4 @@
-"""Heights of nodes along the span: given cells at both ends, which grow to a largest size between."""
+"""Heights of nodes along the span: prescribed cells at both ends, which grow to a largest size."""
 
 from __future__ import annotations
 
@@ -23,14 +23,13 @@ MOST_CELLS = 1000
 
 
 Ends: TypeAlias = tuple[Floats | float, Floats | float]
-"""Lengths of the first and of the last cells of n lines; each a number for all lines, or (n,)."""
+"""First and last cells of n lines, each a number or (n,)."""
 
 
 def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least: int) -> int:
     """Return the number of cells, at least `least`, that fill a length.
 
-    The first and the last cell have the lengths `ends`; from both ends, cells grow by the ratio `growth` up
-    to the length `largest`.
+    They grow by `growth` from both `ends` up to the length `largest`.
     """
 
     def reach(cells: int) -> float:
@@ -40,7 +39,7 @@ def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least
 
 
 def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,); cells grow from both ends."""
+    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,); cells grow from both ends."""
     from_ends = _from_ends(ends, growth, cells)
     least, most = lengths / cells, lengths
     largest = least
@@ -57,11 +56,10 @@ def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
 
 
 def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | None], cells: int) -> Floats:
-    """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,); cell sizes change evenly.
+    """Return arc lengths (n, cells + 1) on lines of `lengths` (n,), with evenly changing cells.
 
-    The logarithm of the cell size is a quadratic function of the index of the cell; `ends` are the sizes of
-    the first and the last cell. If the second of `ends` is None, the function is linear, and the size of the
-    last cell follows.
+    The logarithm of cells is quadratic in their index, with the first and the last of `ends`. None as the
+    last: linear.
     """
     t = np.linspace(0.0, 1.0, cells)
     first, last = (None if end is None else np.broadcast_to(end, lengths.shape)[:, None] for end in ends)
@@ -86,10 +84,9 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
 def smooth_cells(
     length: Floats | float, ends: tuple[Floats | float, Floats | float | None], growth: float, least: int
 ) -> int:
-    """Return the smallest number of cells, at least `least`, that grow by at most `growth`.
+    """Return the fewest cells, at least `least`, of `smooth_arcs` that grow by at most `growth`.
 
-    The cells are those that `smooth_arcs` returns for a line of this `length`, or for n lines with `length`
-    (n,) and `ends` (n,).
+    `length` and `ends` are numbers, or (n,) for n lines.
     """
     lengths = np.atleast_1d(length)
     for cells in range(max(least, 4), MOST_CELLS):
@@ -102,14 +99,14 @@ def smooth_cells(
 
 
 def _from_ends(ends: Ends, growth: float, cells: int) -> Floats:
-    """Return what both `ends` ask for of sizes (n or 1, cells), to the power -4."""
+    """Return sizes (n or 1, cells) that `ends` ask for, to the power -4."""
     grown = power(growth, np.arange(cells, dtype=np.float64))
     low, high = (np.reshape(end, (-1, 1)) for end in ends)
     return np.asarray(_fourth(1.0 / (low * grown)) + _fourth(1.0 / (high * grown[::-1])))
 
 
 def _sizes(largest: Floats, from_ends: Floats) -> tuple[Floats, Floats]:
-    """Return sizes (n, cells) that grow from both ends up to `largest` (n,), and relative slopes by that."""
+    """Return sizes (n, cells) up to `largest` (n,), and their relative slopes by that."""
     middle = _fourth(1.0 / largest)[:, None]
     both = 1.0 / (from_ends + middle)
     return np.sqrt(np.sqrt(both)), both * middle
@@ -121,12 +118,12 @@ def _fourth(values: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Spacing:
-    """Results of `two_sided` divided by the length of the line, tabulated for a range of lengths.
+    """Results of `two_sided` in lengths of the line, tabulated for a range of lengths.
 
     Parameters
     ----------
-    lengths : lengths of the shortest and of the longest line.
-    table : (cells + 1, m) relative arc lengths for m equally spaced lengths, for interpolation.
+    lengths : shortest and longest line.
+    table : (cells + 1, m) relative arc lengths at m equally spaced lengths.
     """
 
     lengths: tuple[float, float]
@@ -152,12 +149,12 @@ class Spacing:
 
 @dataclass(frozen=True, eq=False)
 class LineArcs:
-    """Arc lengths along n lines as functions of the parameter along each line, which is from 0 to 1.
+    """Arc lengths along n lines, by their parameter from 0 to 1.
 
     Parameters
     ----------
     lengths : (n,) lengths of the lines.
-    ahead : parameter minus relative arc length, as a function of the relative arc length.
+    ahead : parameter minus relative arc length, by relative arc length.
     """
 
     lengths: Floats
@@ -165,7 +162,7 @@ class LineArcs:
 
     @classmethod
     def through(cls, samples: Floats) -> LineArcs:
-        """Return n lines through positions (k, n, 3) at the parameters ``key_heights(k)``."""
+        """Return n lines through positions (k, n, 3) at parameters ``key_heights(k)``."""
         speed = norms(slopes_at_keys(samples))
         arcs = integrals_at_keys(speed)
         lengths, wanted = arcs[-1], key_heights(len(samples))[:, None]
@@ -175,20 +172,20 @@ class LineArcs:
         return cls(lengths, SpanLines.through(ahead))
 
     def parts(self, spacing: Spacing) -> Floats:
-        """Return the parameters (cells + 1, n), from 0 to 1, of the nodes on the lines for a `spacing`."""
+        """Return the parameters (cells + 1, n) of nodes with a `spacing`."""
         return self.parts_at(spacing.at(self.lengths))
 
     def parts_at(self, arcs: Floats) -> Floats:
-        """Return the parameters (cells + 1, n), from 0 to 1, at relative arc lengths (cells + 1, n)."""
+        """Return the parameters (cells + 1, n) at relative arc lengths (cells + 1, n)."""
         parts = np.clip(arcs + self.ahead.at(arcs), 0.0, 1.0)
         parts[0], parts[-1] = 0.0, 1.0
         return parts
 
 
 def line_parts(samples: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return the parameters (cells + 1, n), from 0 to 1, of the nodes of `two_sided` on n lines.
+    """Return the parameters (cells + 1, n) of the nodes of `two_sided` on n lines.
 
-    `samples` (SAMPLES, n, 3) are positions on the lines at the parameters ``key_heights(SAMPLES)``.
+    `samples` (SAMPLES, n, 3) are positions at parameters ``key_heights(SAMPLES)``.
     """
     arcs = LineArcs.through(samples)
     range_ = float(arcs.lengths.min()), float(arcs.lengths.max())

@@ -1,9 +1,4 @@
-"""Key sections stacked along the span: nodes with the same number are on a polynomial of the height.
-
-::
-
-    key sections --layers exact in space--> polynomials --in groups of nodes--> RowNodes
-"""
+"""Key sections stacked along the span: each node is on a polynomial of the height."""
 
 from __future__ import annotations
 
@@ -27,8 +22,7 @@ from meshonet.solvers.rows.span_spacing import LineArcs, Spacing
 from meshonet.solvers.rows.zones import Zone
 
 DEGREE = 5
-"""Degree of the polynomials along the span. It is low because optima of neighbouring sections contain noise.
-"""
+"""Degree of the polynomials along the span; optima of neighbouring sections contain noise."""
 _AT_ONCE = 1 << 16  # number of nodes that are computed together, so that they fit into the cache
 
 
@@ -37,18 +31,14 @@ class StackedRow:
 
     Parameters
     ----------
-    row : the row.
-    keys : its key sections.
+    row, keys : the row, and its key sections.
     zones : zones of the span, from hub to casing.
-    first : height of first cells at the blade.
-    growth : largest ratio of neighbouring cells.
+    first, growth : first-cell height at the blade, and largest ratio of neighbouring cells.
 
     Attributes
     ----------
-    columns : (k, rows + 1) nodes of the layers: columns are ordered clockwise around the blade, and the nodes
-        of each from the blade outwards.
-    leading : (2,) indices of the columns that start nearest to the leading edge, at the hub and at the
-        casing.
+    columns : (k, rows + 1) nodes of the layers, clockwise, each column from the blade outwards.
+    leading : (2,) columns nearest to the leading edge, at the hub and at the casing.
     """
 
     def __init__(self, row: Row, keys: KeyTables, zones: Sequence[Zone], first: float, growth: float) -> None:
@@ -62,7 +52,7 @@ class StackedRow:
         self.lines = SpanLines.through(np.stack(in_threads(self._key, keys.sections)), DEGREE)
 
     def _key(self, section: KeySection) -> Floats:
-        """Return s, theta (n, 2) of a key section, its layers exact in space."""
+        """Return s, theta (n, 2) of a key section with exact layers in space."""
         plane = section.plane
         nodes = self.plan.bent(plane, section.layout.mesh.nodes)
         values = np.stack([plane.map.back(nodes[:, 0]), nodes[:, 1]], axis=1)
@@ -78,7 +68,7 @@ class StackedRow:
 
     @cached_property
     def levels(self) -> tuple[int, ...]:
-        """Numbers of the levels that bound the zones."""
+        """Indices of the levels that bound zones."""
         return tuple(np.cumsum([0, *(zone.cells for zone in self.zones)]).tolist())
 
     @cached_property
@@ -88,7 +78,7 @@ class StackedRow:
 
     @property
     def bounds(self) -> list[tuple[int, int]]:
-        """Numbers of the first and the last level of each zone."""
+        """First and last level of each zone."""
         return list(zip(self.levels[:-1], self.levels[1:], strict=True))
 
     @property
@@ -99,19 +89,15 @@ class StackedRow:
         return second, partner[second]
 
     def beside(self, height: float) -> Floats:
-        """Return s, theta, h (k, 2, 3), at a height, of each node of the blade and of the node next to it.
-
-        The height must be a boundary of a zone. The result equals `RowNodes.beside` at this level, but no
-        other level is computed.
-        """
+        """Return s, theta, h (k, 2, 3) of the blade's nodes and those next to them, at a bound of a zone."""
         group = self._group(self.columns.ravel(), self.around)
         values = group.at(np.full((1, self.columns.size), height))
         return values.reshape(*self.columns.shape, 3)[:, :2]
 
     def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
-        """Return the nodes, so far without those of layers off the blade, and tasks that store these.
+        """Return the nodes, and tasks that store those of layers off the blade.
 
-        The tasks can run in any order. The nodes of the second periodic side are not computed.
+        The nodes of the second periodic side are not computed.
         """
         groups = self._groups()
         arcs = in_threads(NodeGroup.arcs, groups)
@@ -126,14 +112,13 @@ class StackedRow:
         return made, [partial(self._store, made, group, own) for group, own in values if group.columns]
 
     def _spacing(self, lines: tuple[Zone, tuple[LineArcs, ...]]) -> Spacing:
-        """Return the spacing of all lines of a zone."""
         zone, arcs = lines
         shortest = min(float(each.lengths.min()) for each in arcs)
         longest = max(float(each.lengths.max()) for each in arcs)
         return Spacing.of((shortest, longest), zone.ends, self.growth, zone.cells)
 
     def _groups(self) -> list[NodeGroup]:
-        """Return the groups of all nodes but those of the second periodic side, first those of layers."""
+        """Return the groups of all nodes but the second periodic side, first those of layers."""
         count, levels = len(self.layout.mesh.nodes), self.levels[-1] + 1
         own = max(1, _AT_ONCE // (levels * self.columns.shape[1]))
         groups = []
@@ -152,23 +137,20 @@ class StackedRow:
     def _layers(
         self, made: RowNodes, group: NodeGroup, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]
     ) -> Floats:
-        """Return s, theta, h of a group of layers, and store those at the blade."""
+        """Return s, theta, h of a group of layers, and store those beside the blade."""
         values = group.values(arcs, spacings)
         made.beside[:, self._part(group)] = values.reshape(len(values), group.columns, -1, 3)[:, :, :2]
         return values
 
     def _part(self, group: NodeGroup) -> slice:
-        """Return which columns a group of layers has."""
         start = int(np.flatnonzero(self.columns[:, 0] == group.ids[0])[0])
         return slice(start, start + group.columns)
 
     def _fill(
         self, made: RowNodes, group: NodeGroup, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]
     ) -> None:
-        """Work out the nodes of a group."""
         self._store(made, group, group.values(arcs, spacings))
 
     def _store(self, made: RowNodes, group: NodeGroup, values: Floats) -> None:
-        """Store the nodes of a group, given at s, theta, h."""
         rises = [rise.of_columns(self._part(group)) for rise in self._rises] if group.columns else []
         group.store(values, [rise for rise in rises if rise.moves.any()], made.space)

@@ -1,7 +1,7 @@
 """Places of nodes around a blade, at ends without a gap, with which lines across the channel lean less.
 
-The place opposite a given place of the upper side changes from hub to casing: the ratio of length to width of
-a channel that turns outwards is much larger at the hub. Places change linearly with the height.
+Opposite places change from hub to casing, as does the ratio of length to width of a channel that turns
+outwards.
 """
 
 from __future__ import annotations
@@ -28,12 +28,17 @@ def upright(
     ends: tuple[Floats, Floats], free: tuple[bool, bool], planes: Sequence[SectionPlane], pairs: Indices,
     fixed: Bools,
 ) -> tuple[Floats, Floats]:  # fmt: skip
-    """Return places u (k,) at hub and casing so that lines across the channel are more nearly normal.
+    """Return places u (k,) at hub and casing with which lines across the channel lean less.
 
-    `ends` are the given places; only those at ends that are `free` are moved. `pairs` (p, 2) are a node on
-    the upper side of a blade and a node on the lower side of the next blade that a line joins. Nodes in the
-    mask `fixed` (k,) do not move, and no node moves beyond the leading or the trailing edge. No node moves
-    if, in the half of the span at each free end, no line deviates from the normal by more than `LEAN`.
+    No node moves beyond an edge of the blade, and none if no line in the half of the span at a free end leans
+    by more than
+    `LEAN`.
+
+    Parameters
+    ----------
+    ends, free : given places at hub and casing, and which of them move.
+    pairs : (p, 2) nodes on the upper side, and on the lower side of the next blade, that lines join.
+    fixed : (k,) mask of nodes that do not move.
     """
     heights = np.array([plane.height for plane in planes])
     parts = np.stack([1.0 - heights, heights], axis=1)[:, free]
@@ -57,14 +62,14 @@ def upright(
 
 
 def _missing(line: ChannelLines, pairs: Floats) -> tuple[Floats, Floats]:
-    """Return by how much pairs (p, 2) of places would have to move so that lines lean little, and weights."""
+    """Return how far pairs (p, 2) of places must move for lines to lean little, and weights."""
     weights, off = line.weights(pairs), -line.aside(pairs)
     little = LEAN / np.sqrt(np.where(weights > 0.0, weights, 1.0))
     return np.where(weights > 0.0, off - np.clip(off, -little, little), 0.0), weights
 
 
 def _fitted(parts: Floats, missing: Floats, weights: Floats) -> Floats:
-    """Return moves (e, p) whose combinations by `parts` (q, e) are nearest to what is `missing` (q, p)."""
+    """Return moves (e, p) whose combinations by `parts` (q, e) best match `missing` (q, p)."""
     ridge = _RIDGE * weights.mean() * len(parts)
     squares = (parts[:, :, None] ** 2 * weights[:, None]).sum(axis=0) + ridge
     right = (parts[:, :, None] * (weights * missing)[:, None]).sum(axis=0)
@@ -75,9 +80,9 @@ def _fitted(parts: Floats, missing: Floats, weights: Floats) -> Floats:
 
 
 def _moved(places: Floats, pairs: Indices, moves: Floats, fixed: Bools) -> Floats:
-    """Return places (k,), those of `pairs` (p, 2) moved apart by `moves` (p,), those between drawn along.
+    """Return places (k,), `pairs` (p, 2) moved apart by `moves` (p,), those between drawn along.
 
-    Of both, the one farther from an edge moves more.
+    The one farther from an edge moves more.
     """
     room = 0.25 - np.abs(0.25 - np.abs(wrapped(places[pairs])))
     share = room / np.maximum(room.sum(axis=1, keepdims=True), _TINY)

@@ -1,7 +1,4 @@
-"""Places of nodes around a blade, with a limited growth of the steps between neighbouring nodes.
-
-The limit holds at the wall and along the outer edge of the layers, in all key sections.
-"""
+"""Places of nodes around a blade, with limited growth of steps at wall and front in all sections."""
 
 from __future__ import annotations
 
@@ -16,11 +13,9 @@ from meshonet.solvers.rows.across import ChannelLines
 from meshonet.solvers.rows.section_plane import SectionPlane
 
 MARGIN = 0.93
-"""Fraction of the logarithm of the largest growth to which steps are limited, since nodes still move
-afterwards.
-"""
+"""Fraction of the logarithm of the largest growth to which steps are limited; nodes still move."""
 SHEAR = 10.0
-"""Square root of the weight of the tangents by which lines across the channel lean more than before."""
+"""Square root of the weight of tangents by which lines lean more than before."""
 _TIMES = 4  # evened again while this changes much
 _SAME = 1e-9
 
@@ -29,12 +24,13 @@ def even_wall_places(
     planes: Sequence[SectionPlane], places: Floats, corners: Floats, growth: float, pairs: Indices,
     lines: ChannelLines, *, opposite: bool,
 ) -> Floats:  # fmt: skip
-    """Return places u (k,) of nodes clockwise around the blade: `places` (k,) moved until steps are even.
+    """Return `places` u (k,) clockwise around the blade, moved until steps are even.
 
-    Nodes at `corners` (c,) do not move. `pairs` (p, 2) are a node on the upper side of a blade and a node on
-    the lower side of the next blade that one of the `lines` across the channel joins; it is penalised if a
-    line deviates more from the normal than before. With `opposite`, there remains a node at 1 - u for each
-    node at u, and `lines` have no effect.
+    Parameters
+    ----------
+    corners : (c,) places of nodes that stay.
+    pairs, lines : (p, 2) nodes on both sides that lines join, which should not lean more than before.
+    opposite : whether each node at u keeps one at 1 - u; `lines` then have no effect.
     """
     limit = MARGIN * math.log(growth)
     lead = int(np.abs(wrapped(places)).argmin())
@@ -58,7 +54,7 @@ def even_wall_places(
 
 
 def _fixed(u: Floats, corners: Floats) -> Bools:
-    """Return which places (k,) are at corners, at 0 or at 0.5."""
+    """Return which places (k,) are at corners or edges."""
     at = np.concatenate([[0.0, 0.5], corners])
     off = wrapped(u[:, None] - at)
     return np.asarray((np.abs(off) < _SAME).any(axis=1))
@@ -76,7 +72,7 @@ def _evened(
 
 
 def _around(planes: Sequence[SectionPlane]) -> tuple[Floats, Floats]:
-    """Return places (m,) from 0 to 1, and lengths (k, m) at wall and front there, as parts of the whole."""
+    """Return places (m,) from 0 to 1, and relative lengths (k, m) at walls and fronts."""
     u = np.append(planes[0].places, 1.0)
     values = []
     for plane in planes:
@@ -94,7 +90,6 @@ def _measures(planes: Sequence[SectionPlane]) -> Measures:
 
 
 def _side_measures(planes: Sequence[SectionPlane]) -> Measures:
-    """Return measures of both sides from the leading to the trailing edge."""
     u, values = _around(planes)
     q = np.unique(np.concatenate([u[u <= 0.5], 1.0 - u[u >= 0.5]]))
     rows = []

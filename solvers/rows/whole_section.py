@@ -1,4 +1,4 @@
-"""Adds the layers, and the rows to inlet and outlet, to the blocks of a section beyond its layers."""
+"""Adds layers, and rows to inlet and outlet, to the blocks of a section."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ _RATIO = 2.0
 def whole_section(
     plane: SectionPlane, beyond: Layout, layers: int, largest: float, longest: Mapping[int, float]
 ) -> Layout:  # fmt: skip
-    """Return the layout of a section: layers, the blocks `beyond` the layers, rows to inlet and outlet.
+    """Return the layout of a section: layers, the blocks `beyond` them, rows to inlet and outlet.
 
     Parameters
     ----------
     beyond : layout of the blocks beyond the layers in (m', theta).
     layers : number of rows of the layers.
     largest : size of the largest cells.
-    longest : largest lengths, in any section, of the rows to inlet and outlet, by the index of their loop.
-        The lengths determine the numbers of cells.
+    longest : largest lengths in any section of the rows to inlet and outlet, by loop; they determine numbers
+        of cells.
     """
     cascade = plane.cascade
     mesh = beyond.mesh
@@ -55,7 +55,7 @@ def whole_section(
 
 
 def _grown(first: float, length: float, cells: int) -> Floats:
-    """Return distances (cells + 1,) from 0 to a length of cells that follow one of size `first` evenly."""
+    """Return distances (cells + 1,) from 0 to a length, of cells that follow one of size `first`."""
     low, high = 1.0 / _RATIO, _RATIO
     for _ in range(_BISECTIONS):
         ratio = 0.5 * (low + high)

@@ -10,9 +10,7 @@ from meshonet.geometry.rows.row import Row
 from meshonet.solvers.rows.span_spacing import spaced_cells
 
 PARTS, PARTS_CELLS = 42.0, 800_000
-"""Number of cells along the span, if all of it had the spacing that is used away from walls, in a row of so
-many cells.
-"""
+"""Cells along the span, if all were as long as in its middle, in a row of so many cells."""
 # cells of a section: the first over log(growth), within the other two; fewer are too small at blade edges
 _NEEDED, _FEWEST, _ENOUGH = 740.0, 1700, 8000
 _INSIDE = 0.33  # cells inside the outline of the blade in a gap, relative to those of a section
@@ -27,10 +25,10 @@ class Zone:
 
     Parameters
     ----------
-    low, high : heights in the channel at which the zone begins and ends, from 0 to 1.
-    ends : lengths along the span of its first and its last cells, in the unit of the row.
-    cells : number of cells from `low` to `high`.
-    gap : whether the zone is a gap, without the blade.
+    low, high : heights in the channel, 0 to 1.
+    ends : first and last cells along the span, in the unit of the row.
+    cells : number of cells along the span.
+    gap : whether the zone is a gap.
     """
 
     low: float
@@ -41,15 +39,12 @@ class Zone:
 
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
-    """Return the number of cells that a section needs so that the row has about `cells` cells.
-
-    The number is larger if `growth` demands more cells.
-    """
+    """Return the cells of a section for about `cells` cells of the row, more if `growth` needs them."""
     return max(_needed(growth), int(cells / _sections(zones)))
 
 
 def fewest_cells(zones: Sequence[Zone], growth: float) -> int:
-    """Return approximately the smallest number of cells of a row whose cells grow by at most `growth`."""
+    """Return about the fewest cells of a row whose cells grow by at most `growth`."""
     return round(_needed(growth) * _sections(zones))
 
 
@@ -58,14 +53,14 @@ def _needed(growth: float) -> int:
 
 
 def _sections(zones: Sequence[Zone]) -> float:
-    """Return how many times the cells of a section there are, with those inside gaps."""
+    """Return how many times a section's cells there are, with those in gaps."""
     return sum(zone.cells * (1.0 + _INSIDE * zone.gap) for zone in zones)
 
 
 def zones_of(row: Row, first: float, growth: float, cells: int) -> list[Zone]:
     """Return the zones of a row with about `cells` cells, from hub to casing.
 
-    First cells in gaps have the height `first`, or less if a gap is too narrow for `GAP_ROWS` such cells.
+    First cells in gaps are `first` high, or less for `GAP_ROWS` cells.
     """
     channel = row.channel
     parts = PARTS * math.cbrt(cells / PARTS_CELLS)
