@@ -66,6 +66,6 @@ class ChannelLines:
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return how far (p,), in u, lower places of `pairs` (p, 2) are from those opposite the upper ones."""
+        """Return how far (p,), in u, lower places of `pairs` (p, 2) are from those opposite the upper."""
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

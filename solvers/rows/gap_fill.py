@@ -39,7 +39,7 @@ FLAT, SMOOTH, MARGIN = 0.95, 1e-3, 0.93
 STEEP, STEEPEST = 0.7, 6.0
 """Smallest and largest weight of the growth of cells."""
 UNEVEN = 3.3, 3.9
-"""Logarithms of the growth over that of its limit, where the weight begins to rise and where it is largest."""
+"""Logarithms of growth, over that of its limit, at which the weight begins to rise and is largest."""
 
 
 @dataclass(frozen=True, eq=False)
