@@ -1,8 +1,17 @@
-"""The application: its commands, and the exit code of each error.
+"""The application: its commands, and the one place that maps errors to exit codes.
 
-0 done, 1 a check failed, 2 bad usage or input, 3 no valid grid, 130 interrupted, 143 terminated; a batch ends
-with
-the greatest code of its members.
+===== ==========================================================================
+code  meaning
+===== ==========================================================================
+0     done
+1     a check of ``--fail-on`` or ``--profile`` failed
+2     bad usage or bad input
+3     no valid grid could be made
+130   interrupted
+143   terminated
+===== ==========================================================================
+
+A batch ends with the greatest code of its members: 3 is worse than 2, and 2 is worse than 1.
 """
 
 import contextlib
@@ -137,18 +146,17 @@ def main() -> NoReturn:
     words = sys.argv[1:]
     hide_warnings()
     mpi = "--engine=mpi" in words or ("--engine", "mpi") in pairwise(words)
-    code = _on_ranks(words) if mpi else run(words)
+    if mpi:
+        from meshonet_cli.batch.executors.mpi_engine import on_ranks
+
+        code = on_ranks(lambda: run(words))
+    else:
+        code = run(words)
     with contextlib.suppress(BrokenPipeError):
         sys.stdout.flush()
         sys.exit(code)
     _silence_stdout()
     sys.exit(code)
-
-
-def _on_ranks(arguments: Sequence[str]) -> int:
-    from meshonet_cli.batch.executors.mpi_engine import on_ranks
-
-    return on_ranks(lambda: run(arguments))
 
 
 def _explained(error: Exception, name: str) -> str:

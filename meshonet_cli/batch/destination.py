@@ -93,22 +93,17 @@ class Destination:
             raise InputError(problem, f"use a shorter -o {_escaped(self.text)[:80]}", source=item.label)
         place = str(Path(path).parent) if self.format.fills_folder else path
         if place in self._taken:
-            raise InputError(
-                f"would overwrite {place} of {self._taken[place]}",
-                f"put {{{{index}}}} into -o {_escaped(self.text)}",
-                source=item.label,
-            )
+            problem, remedy = f"would overwrite {place} of {self._taken[place]}", "put {{index}} into -o "
+            raise InputError(problem, remedy + _escaped(self.text), source=item.label)
         self._taken[place] = item.label
         return path
 
     def check_room(self, remedy: str = "") -> None:
         """Raise InputError, with `remedy`, if there are several inputs and the file stores one."""
         if not (self.each or self.format.many):
-            raise InputError(
-                f"several inputs and one {self.format.name} file, which holds one",
-                "; ".join(filter(None, (f"use -o '{_escaped(_pattern(self.text))}' or one .h5", remedy))),
-                source=self.text,
-            )
+            remedies = filter(None, (f"use -o '{_escaped(_pattern(self.text))}' or one .h5", remedy))
+            problem = f"several inputs and one {self.format.name} file, which holds one"
+            raise InputError(problem, "; ".join(remedies), source=self.text)
 
     def part_size_for(self, inputs: Inputs | DrawnInputs, files: Files, *, elsewhere: bool) -> int:
         """Return the number of inputs in a part of the dataset, 0 for an output without parts.
@@ -133,8 +128,10 @@ class Destination:
         if index.exists() and not index.with_suffix("").is_dir():
             problem = "is there, and the parts would replace it"
             raise InputError(problem, "remove it, or choose another name", source=self.text)
+        from meshonet.formats.hdf5.parts import PartFiles
+
         most = _MOST_FOR_MANY_WORKERS if shared or elsewhere else _MOST_IN_PART
-        return self._part_size or _size_there(index) or usual_part_size(self._nodes, most)
+        return self._part_size or PartFiles(index).size_there() or usual_part_size(self._nodes, most)
 
     def part_files(self, make: object, size: int) -> PartFiles:
         """Return the files of a dataset in parts of `size` inputs, computed by `make`."""
@@ -147,25 +144,15 @@ class Destination:
     def check_several(self, item: Item[Any]) -> None:
         """Raise InputError if the output stores one result and the file of `item` has several."""
         if not (self.each or self.format.many):
-            raise InputError(
-                f"holds several grids or boundaries, and a {self.format.name} file holds one",
-                f"use -o '{_escaped(_pattern(self.text, 'index'))}' or one .h5",
-                source=item.source,
-            )
+            problem = f"holds several grids or boundaries, and a {self.format.name} file holds one"
+            remedy = f"use -o '{_escaped(_pattern(self.text, 'index'))}' or one .h5"
+            raise InputError(problem, remedy, source=item.source)
 
     def write(self, path: str, what: Iterable[Any]) -> None:
         """Write `what` to `path` atomically."""
         folder = self.format.fills_folder
         with whole_file(path, make_folder=self.each or folder, beside=folder or self.format.beside) as part:
             self._put(part, what, *([] if self.failed is None else [self.failed]))
-
-
-def _size_there(index: Path) -> int:
-    if not index.with_suffix("").is_dir():
-        return 0
-    from meshonet.formats.hdf5.parts import PartFiles
-
-    return PartFiles(index).size_there()
 
 
 def usual_part_size(nodes: int | None, most: int = _MOST_IN_PART) -> int:
@@ -194,10 +181,8 @@ def _pattern(text: str, field: str = "stem") -> str:
 def _fields(text: str) -> list[str]:
     """Return the fields of a pattern. Raises InputError: an unknown or unsuitable field."""
     fields: list[str] = []
-    problem, remedy = (
-        "has a field that is not known",
-        "use {{stem}}, {{index}} or {{name}}; write {{ and }} for braces",
-    )
+    problem = "has a field that is not known"
+    remedy = "use {{stem}}, {{index}} or {{name}}; write {{ and }} for braces"
     try:
         for _, field, form, _ in string.Formatter().parse(text):
             if field is not None and field not in FIELDS:

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.bad_cell import BadCell, centre_of
+from meshonet.geometry.quality.bad_cell import centre_of
 from meshonet.geometry.quality.blocks import LINES, BlockFigures
 from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import Judgement, verdict_word
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.metrics import metrics_of
-from meshonet.geometry.quality.profiles import CheckResult, Limit, ProfileReport
+from meshonet.geometry.quality.profiles import CheckResult, ProfileReport
 from meshonet.geometry.quality.report import Comparison, QualityReport
 from meshonet.geometry.quality.wall_y_plus import Flow, YPlus
 from meshonet.geometry.quality.walls import Spread, WallRow
@@ -55,11 +55,8 @@ class Measured(Timed):
         grid, quality = report.grid, report.quality
         folded = folded_words(quality)
         many = grid.topology == "blocks"
-        size = (
-            f"{grid.ni} x {grid.nj} nodes, {grid.topology} grid"
-            if not many
-            else blocks_line(report.figures.blocks)
-        )
+        size = "" if many else f"{grid.ni} x {grid.nj} nodes, {grid.topology} grid"
+        size = size or blocks_line(report.figures.blocks)
         rows = [f"{self.item.label}: {size}, {quality.cells} cells, {folded}", quality_table(grid, quality)]
         if many:
             rows.append(lines_table(grid, report.figures.blocks))
@@ -76,7 +73,7 @@ class Measured(Timed):
             rows += _largest_growth(grid, report.figures)
         if report.profile:
             rows.append(profile_table(report.profile))
-        rows += [f"folded at {cell_text(cell)}" for cell in report.worst]
+        rows += [f"folded at {cell.indices}: {cell.centre}" for cell in report.worst]
         if report.comparison:
             rows.append(comparison_lines(report.comparison))
         return "\n".join(rows)
@@ -137,11 +134,6 @@ def lines_table(grid: Grid, blocks: BlockFigures) -> str:
             values = (extreme.mean, extreme.p99, extreme.max)
             rows.append([label + unit, *map(_figure, values), *_cell(grid, extreme.at)])
     return aligned(rows)
-
-
-def cell_text(cell: BadCell) -> str:
-    """Return the place of a folded cell as text."""
-    return f"{cell.indices}: {cell.centre}"
 
 
 def folded_words(quality: Quality) -> str:
@@ -212,7 +204,8 @@ def y_plus_table(flow: Flow, y_plus: Mapping[str, YPlus]) -> str:
 def growth_table(figures: Figures) -> str:
     """Return the growth of cells as a table."""
     grid = figures.grid
-    rows = [["growth", "mean", "max", _places_of(figures), _axes(grid)]]
+    places = _PLACES[1 + len(grid.blocks[0].counts) if grid.topology == "blocks" else 2]
+    rows = [["growth", "mean", "max", f"at {places}", _axes(grid)]]
     for name, extreme in figures.growth.families().items():
         values = (figure(extreme.mean), figure(extreme.max))
         rows.append([f"along {name}", *values, *_cell(grid, extreme.at)])
@@ -227,27 +220,13 @@ def profile_table(profile: ProfileReport) -> str:
     return aligned(rows + [_check_row(result) for result in profile.results])
 
 
-def _places_of(figures: Figures) -> str:
-    grid = figures.grid
-    return f"at {_PLACES[1 + len(grid.blocks[0].counts) if grid.topology == 'blocks' else 2]}"
-
-
 def _check_row(result: CheckResult) -> list[str]:
     value = "-" if result.value is None else figure(result.value)
     place = _place(result.at) if result.at else ""
     centre = ", ".join(map(figure, result.centre or ()))
-    limits = ", ".join(limit_text(limit) for limit in result.check.limits)
+    limits = ", ".join(f"{each.level} {each.compare} {each.value:g}" for each in result.check.limits)
     limits += " (--fail-on)" if result.gated else ""
     return [result.check.figure, value, place, centre, limits, verdict_word(result.verdict)]
-
-
-def limit_text(limit: Limit) -> str:
-    """Return a limit as text.
-
-    >>> limit_text(Limit("fail", ">=", 90))
-    'fail >= 90'
-    """
-    return f"{limit.level} {limit.compare} {limit.value:g}"
 
 
 def _spread(spread: Spread) -> list[str]:

@@ -6,18 +6,15 @@ from functools import partial
 from meshonet.api.deform import rotation
 from meshonet.api.files import only, read_all
 from meshonet.formats.registry import read_grids
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.criteria import Criteria
 from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.deformation.targets import NewWall
 from meshonet.solvers.pipeline.deformations import make_deformed
-from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import Batch, BatchTask, each
 from meshonet_cli.options.groups import bad_value
-from meshonet_cli.report.grid import Report
-from meshonet_cli.tasks.grids import reported
+from meshonet_cli.tasks.grids import made_by
 
 
 def write_deformed(
@@ -28,17 +25,8 @@ def write_deformed(
     percentiles = criteria is not None and criteria.percentiles
     request = DeformRequest(allow_invalid, percentiles, batch.engine.threads(threads))
     batch.session.judges = criteria is not None
-    make = each(_deformed, walls=walls, request=request, criteria=criteria)
+    make = each(made_by, solve=partial(make_deformed, walls=walls, request=request), criteria=criteria)
     return batch.run(BatchTask(partial(read_grids, fmt=batch.files.from_format), make))
-
-
-def _deformed(
-    item: Item[Grid],
-    walls: Mapping[str, NewWall] | NewWall,
-    request: DeformRequest,
-    criteria: Criteria | None,
-) -> tuple[Grid, Report]:
-    return reported(item, make_deformed(item.what, walls, request), criteria)
 
 
 def walls_of(

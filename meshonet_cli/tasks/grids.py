@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from operator import attrgetter
@@ -73,6 +73,13 @@ def reported(
             report.left_out = criteria.leave_out and judgement.verdict == "fail"
             facts |= {"verdict": judgement.verdict, "limits_exceeded": ", ".join(judgement.beyond)}
     return grid.with_provenance(**facts), report
+
+
+def made_by(
+    member: Item[Any], solve: Callable[[Any], Result], criteria: Criteria | None
+) -> tuple[Grid, Report]:
+    """Return the grid that `solve` makes of the content of `member`, and its report."""
+    return reported(member, solve(member.what), criteria)
 
 
 def write_grids(

@@ -9,21 +9,15 @@ from typing import TYPE_CHECKING, Any
 from meshonet.api.grid import domain_parameters
 from meshonet.formats.cross_section import read_sections
 from meshonet.formats.path import path_of
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.revolve import Revolution
-from meshonet.geometry.curves.path import Path
-from meshonet.geometry.shapes.shape import Shape
 from meshonet.solvers.pipeline.parameters import grid_request
-from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.sweeps import make_sweep
 from meshonet.solvers.pipeline.uses import Counts
 from meshonet.solvers.sweeping.sweep import Sweep
-from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import Batch, BatchTask, each
 from meshonet_cli.options.groups import bad_value
 from meshonet_cli.options.sampling import resolution
-from meshonet_cli.report.grid import Report
-from meshonet_cli.tasks.grids import reported
+from meshonet_cli.tasks.grids import made_by
 from meshonet_cli.tasks.volumes import VOLUME_NODES, shared
 
 if TYPE_CHECKING:
@@ -40,16 +34,10 @@ def write_sweeps(
     request = grid_request(res=None if res is None else _counts(res), **parameters)
     way = path_of(path) if isinstance(path, str) else path
     batch.session.judges = criteria is not None
-    make = each(_swept, path=way, request=request, settings=settings, criteria=criteria, around=around)
+    swept = partial(make_sweep, path=way, request=request, settings=settings, around=around)
+    make = each(made_by, solve=swept, criteria=criteria)
     read = partial(read_sections, fmt=batch.files.from_format)
     return batch.run(BatchTask(read, make, nodes=VOLUME_NODES, space="volumes"))
-
-
-def _swept(
-    item: Item[Shape], path: Path | Revolution, request: GridRequest, settings: Sweep,
-    criteria: Criteria | None, around: int | None,
-) -> tuple[Grid, Report]:  # fmt: skip
-    return reported(item, make_sweep(item.what, path, request, settings, around), criteria)
 
 
 def _counts(text: str) -> Counts:

@@ -18,8 +18,7 @@ from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.provenance import provenance
 from meshonet_cli.batch.run import Batch, BatchTask, each
 from meshonet_cli.report.delivered import Delivered, delivered, part_names
-from meshonet_cli.report.grid import Report
-from meshonet_cli.tasks.grids import reported
+from meshonet_cli.tasks.grids import made_by
 
 if TYPE_CHECKING:
     from meshonet.geometry.aircraft.aircraft import Aircraft
@@ -37,7 +36,7 @@ def write_stacks(
     if surface and criteria:
         raise InputError("{fail_on} and {profile} judge cells, and a surface has none", "leave them out")
     batch.session.judges = criteria is not None
-    volumes = each(_stacked, parameters=chosen, criteria=criteria)
+    volumes = each(made_by, solve=partial(make_stacked, **chosen), criteria=criteria)
     make = each(_surface, parameters=chosen) if surface else volumes
     space: Space = "surfaces" if surface else "volumes"
     read = partial(_stack, tip=tip, surface=surface)
@@ -46,12 +45,6 @@ def write_stacks(
 
 def _stack(source: str, tip: Tip | None, surface: bool) -> Iterator[Sections]:
     return iter([with_tip(stack_of(source), tip, surface=surface)])
-
-
-def _stacked(
-    item: Item[Sections], parameters: Mapping[str, Any], criteria: Criteria | None
-) -> tuple[Grid, Report]:
-    return reported(item, make_stacked(item.what, **parameters), criteria)
 
 
 def _surface(item: Item[Stack | Aircraft], parameters: Mapping[str, Any]) -> tuple[Grid, Delivered]:
