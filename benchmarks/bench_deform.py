@@ -39,18 +39,19 @@ angles and CPU time. Like `deform`, both methods use inverse-distance weighting 
 grids](../guide/deform.md) explains how to use `deform`.
 
 The deformations are random (seed {seed}). *airfoils*: the thickness is multiplied by 0.9 to 1.1 and the
-camber changed by -2 to 2 % of the chord, in viscous C grids of 250 x 100 nodes with y+ 1 at Reynolds
-number 6e6. *flap*: the flap of a section with slat and main element is rotated by up to 10 degrees in
-either direction about a point near its leading edge, in a multi-block grid of about 25,000 cells with
-first-cell heights of 1e-5.
+camber changed by -2 to 2 % of the chord, in C grids of 250 x 100 nodes with first cells of y+ = 1 at
+Reynolds number 6e6. *flap*: the flap of an airfoil with slat and main element is rotated by up to 10
+degrees in either direction about a point near the leading edge of the flap, in a multi-block grid of about
+25,000 cells with first-cell heights of 1e-5.
 
 - *deformations*: kind, with the number of deformations in brackets. Deformations whose new outline is not
-  valid are left out; their number is {refused}.
-- *folded*: number of grids with folded cells, and the largest number of folded cells in one grid.
+  valid are left out ({refused} here).
+- *folded*: number of grids with folded cells and, if there are any, the largest number of folded cells in
+  one grid.
 - *first cell*: largest relative change of a first-cell height, over all wall nodes and deformations.
-- *angle*: increase of the largest cell corner angle of a grid by the deformation, in degrees; the table gives
-  the largest increase over all deformations.
-- *CPU ms*: CPU time from the grid and the new outline in memory to the new grid in memory, median / 90th
+- *angle*: increase of the largest cell corner angle of a grid by the deformation, in degrees; the table
+  gives the largest increase over all deformations.
+- *CPU ms*: CPU time to compute the new grid from the grid and the new outline in memory, median / 90th
   percentile, one thread of {machine}, while other programs used the machine.
 - *IDW*: interpolation of displacements with weights 1/r^3 (Witteveen, Bijl, AIAA 2009-3996). *IDW,
   rotations*: interpolation of displacements and rotations with the weights of Luke, Collins and Blades
@@ -60,9 +61,9 @@ first-cell heights of 1e-5.
 """
 TAIL = """
 `meshonet deform` uses the method of Luke, Collins and Blades. Their paper has the exponents 3 and 5; for
-two-dimensional grids, as here, `deform` uses 2 and 4. It sums near wall nodes one by one and distant nodes in
-groups. If the result has folded cells, `deform` repeats the deformation in several steps. The number of
-deformations that needed several steps is {steps}.
+two-dimensional grids, as here, `deform` uses 2 and 4. To save time, `deform` combines distant boundary
+nodes in groups. If the result has folded cells, `deform` repeats the deformation in several steps; {steps}
+of the deformations needed several steps.
 """
 SEED = 20261122
 COLUMNS = "deformations", "method", "folded", "first cell", "angle", "CPU ms"

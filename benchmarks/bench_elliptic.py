@@ -35,19 +35,21 @@ HEAD = """# Elliptic solvers: time, convergence, memory
 
 <!-- made by python benchmarks/bench_elliptic.py --largest 3200 --page docs/benchmarks/elliptic.md -->
 
-Use this page to find CPU time, convergence and memory of `solve-pde` with the methods `winslow`,
-`thomas-middlecoff` and `steger-sorenson`. For the methods see [elliptic grids](../theory/elliptic.md).
+Use this page to find the CPU time, the convergence and the memory of `solve-pde` with the methods
+`winslow`, `thomas-middlecoff` and `steger-sorenson`. For the methods see [elliptic
+grids](../theory/elliptic.md).
 
 Times are CPU times of one thread on {processor}, in float64, while other programs used the machine.
 
-- *default*: time if the iteration stops when its error is below the discretisation error. *to 1e-8*: time
-  until the residual is 1e-8 times the initial residual. *cycles*, after each time: the number of multigrid
-  cycles.
-- *rate*: residual after a multigrid cycle divided by the residual before it, geometric mean of the cycles
-  of *to 1e-8*.
+- *default*: CPU time if the iteration stops when its error is below the discretisation error. *to 1e-8*:
+  CPU time until the residual is 1e-8 times the initial residual. *cycles*, after each time: number of
+  multigrid cycles in this time.
+- *rate*: residual after a multigrid cycle divided by the residual before the cycle; geometric mean over
+  the cycles of *to 1e-8*.
 - *doubles per node*: peak memory of the solver, including the grid, in float64 numbers per node.
 - *folded*: number of folded cells in the solution, before repair.
-- *repair*: stages of the repair, their time, and the number of folded cells that remain.
+- *repair*: whether folded cells were repaired, the CPU time of the check and the repair, and the number of
+  folded cells that remain.
 """
 
 OTHERS = """

@@ -28,15 +28,15 @@ HEAD = """# Kershaw's cube
 
 <!-- made by python benchmarks/bench_kershaw.py --page docs/benchmarks/kershaw.md -->
 
-Use this page to compare `--energy shape` with TMOP, the mesh optimiser of [MFEM](https://mfem.org): quality
-of the grids, and CPU time. The test case is Kershaw's map of the unit cube, which shears and compresses the
-cells in six layers. A parameter ε, here the same for y and z, prescribes the compression: ε = 1 gives the
-uniform grid, and smaller values compress the cells more.
+Use this page to compare the grid quality and the CPU time of `solve-pde --energy shape` with those of
+TMOP, the mesh optimiser of [MFEM](https://mfem.org). The test case is Kershaw's map of the unit cube,
+which shears and compresses the cells in six layers. A parameter ε, here the same for y and z, prescribes
+the compression: ε = 1 gives the uniform grid, and the smaller ε, the stronger the compression.
 
-The objective is metric 303 of TMOP with ideal targets. For one cell, it is the integral of f = |**T**|² / (3
-det(**T**)^⅔) − 1, where **T** is the Jacobian matrix of the map from a reference cube to the cell and |**T**|
-its Frobenius norm. The objective of a grid is the mean over its cells; it is 0 if all cells are cubes. For
-all grids the integral is evaluated with the quadrature that TMOP uses by default, Gauss-Lobatto with six
+The objective is metric 303 of TMOP with ideal targets. For one cell, it is the integral of f = |**T**|² /
+(3 det(**T**)^⅔) − 1, where **T** is the Jacobian matrix of the map from a reference cube to the cell and
+|**T**| its Frobenius norm. The objective of a grid is the mean over its cells; it is 0 if all cells are
+cubes. For all grids the integral is evaluated with TMOP's default quadrature, Gauss-Lobatto with six
 points per direction.
 
 *Deviation*: for each cell corner, the largest deviation of its three angles from 90 degrees; the table gives
@@ -46,10 +46,10 @@ of one thread.
 TAIL = """
 TMOP is set up as in MFEM's mini-app `mesh-optimizer` with `-mid 303 -tid 1`: Newton's method with at most
 100 MINRES iterations per step, started from Kershaw's grid. With the mini-app's option `-fix-bnd` the
-boundary nodes are fixed. This is the problem that meshonet solves: it takes only the six boundary faces
-as input, discards Kershaw's interior nodes and starts from its own initial grid. Without that option TMOP
-lets boundary nodes slide in the faces of the cube. The minimum, 0, is then the uniform grid, and the test
-is trivial. meshonet never moves the nodes on the faces of a volume.
+boundary nodes are fixed. meshonet solves the same problem, but starts from its own initial grid: its input
+is only the six boundary faces. Without `-fix-bnd`, TMOP lets boundary nodes slide in the faces of the
+cube. The minimum of the objective is then 0, at the uniform grid, and the test is trivial. meshonet never
+moves the nodes on the faces of a volume.
 
 The default functional (`--energy angles`) has another aim: angles near 90 degrees and gradual changes of
 edge length. It keeps the cell sizes that the compressed faces impose and does not penalise the aspect

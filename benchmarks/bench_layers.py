@@ -37,15 +37,16 @@ HEAD = """# Layers
 
 <!-- made by python benchmarks/bench_layers.py; rows of about 32 grids with --count 32 -->
 
-Use this page to compare the functions of [`meshonet.layer`](../guide/layers.md) with the compiled solvers:
-the distance between their grids, folded cells, and the time of a gradient. Each function computes one batch
-of domains in double precision, and once more in single precision, with sides rounded to single precision.
+Use this page to compare the functions of [`meshonet.layer`](../guide/layers.md), which generate grids in
+torch, with the compiled solvers: the distance between their grids, the folded cells, and the time of a
+gradient. Each function computes one batch of domains in double precision, and a batch in single precision,
+with sides rounded to single precision.
 
-- *Distance*: largest distance between a node and the corresponding node of the compiled solver, relative to
-  the domain size, over all domains. For single precision, the compiled solver gets the rounded sides, and the
-  nodes of `meshonet.layer` are rounded to 6e-8.
+- *Distance*: largest distance between a node and the corresponding node of the compiled solver, relative
+  to the domain size, over all domains. In single precision, the compiled solver gets the rounded sides
+  too, and the nodes of `meshonet.layer` have a rounding error of 6e-8.
 - *Folded*: number of domains for which the grid of `meshonet.layer` has folded cells. *More*: number of
-  domains for which only the grid of `meshonet.layer` has folded cells, not the grid of the compiled solver.
+  these domains for which the grid of the compiled solver has none.
 - *Backward*: time of the gradient with respect to all boundary nodes, divided by the time of the grids.
 - Times are CPU times of one thread.
 
@@ -54,10 +55,10 @@ Airfoils without a conformal map are left out: 2 of the first 1,000.
 
 TAIL = """
 The compiled variational solver stops before the optimum. For this comparison, Newton's method with the
-compiled gradient therefore continues the minimisation to the optimum, and the distance is measured from the
-optimum. For `conformal`, the compiled Picard steps are repeated until nodes do not move any more. The
-discrete solution of Winslow's equations has folded cells at sharp corners; `solve-pde` repairs these cells.
-`variational` converges for all 924 domains, without folded cells.
+compiled gradient continues to the optimum, and the distance is measured from there. For `conformal`, the
+compiled Picard steps are repeated until the nodes do not move any more. The discrete solution of Winslow's
+equations has folded cells at sharp corners; `solve-pde` repairs these cells. `variational` converges for
+all 924 domains, without folded cells.
 """
 
 FUNCTIONS = "transfinite,winslow,variational,conformal"

@@ -42,26 +42,24 @@ HEAD = """# Volumes marched from surfaces: quality and time
 Use this page to find the quality and the CPU time of volume grids that are marched from surfaces. For the
 method see [marching from surfaces](../guide/marching-surfaces.md).
 
-- *patches, nodes*: numbers of patches and of nodes of the surface. *levels*: number of node layers from the
-  surface to the far field.
+- *surface*: the first four are read from files, the others are computed. *patches, nodes*: numbers of
+  patches and of nodes of the surface. *levels*: number of node layers from the surface to the far field.
 - *first cell, distance*: prescribed first-cell height, and distance of the far field, in the unit of the
   surface.
 - *tries*: number of marches until the grid was valid, each with other smoothing parameters.
 - *folded*: number of cells in which a corner Jacobian, or a Bezier coefficient of the Jacobian, is not
   positive.
 - *first cell*: largest relative error of the first-cell height over all wall nodes.
-- *quality*: the ratio of the smallest to the largest Jacobian at the eight corners of a cell, in the worst
-  cell; pyHyp prints this value. *SJ*: minimum scaled Jacobian at the corners.
+- *quality*: the smallest divided by the largest Jacobian at the eight corners of a cell, in the worst
+  cell. The marching program pyHyp prints the same measure. *SJ*: minimum scaled Jacobian at the corners.
 - *off the normal*: angle in degrees between grid lines and the normals of the node layers, mean / 99th
   percentile / maximum.
-- *growth*: three numbers. The first is the prescribed growth ratio minus 1. The others are the largest growth
-  ratio minus 1 along a grid line: the second as marched, the third after nodes are redistributed along the
-  lines.
-- *CPU*: CPU time in seconds, from patches in memory to tested blocks, best of 3. *us a node*: the same time
-  in microseconds per node of the volume. *process*: CPU time of the whole command, including writing the
-  volume; only for surfaces that are read from files.
-  One thread of {machine}, while other programs
-  used the machine.
+- *growth*: three growth ratios, each minus 1: the prescribed ratio; the largest ratio along a grid line
+  after the march; the largest ratio after nodes are redistributed along the grid lines.
+- *CPU*: CPU time in seconds to march and to test the volume, without reading and writing, best of 3. *us a
+  node*: the same time in microseconds per node of the volume. *process*: CPU time of the whole command,
+  including reading and writing; only for surfaces that are read from files. One thread of {machine}, while
+  other programs used the machine.
 
 """
 COLUMNS = (

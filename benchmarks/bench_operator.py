@@ -239,13 +239,13 @@ HEAD = """# All methods compared: airfoils and four-sided domains
 
 <!-- made by python benchmarks/bench_operator.py --page docs/benchmarks/o-grids.md (make bench) -->
 
-Use this page to find, for each method, the CPU time and the distance of its grid to a converged solution. For
-short advice see [choosing a method](../start/choosing-a-method.md).
+Use this page to find, for each method, the CPU time, the angles, and the distance of the grid to a
+converged solution. For short advice see [choosing a method](../start/choosing-a-method.md).
 
-**Timing.** All methods of a table ran on the same boundaries, in one run, on {machine}, while other programs
-used the machine. *ms* is the CPU time to generate the grid, including set-up, without reading, writing and
-repair. Each value is the median over the shapes, with one run each. The last digits are not significant. Bold
-rows are the default of `infer` and the networks.
+**Timing.** All methods of a table ran on the same boundaries, in one run, on {machine}, while other
+programs used the machine. *ms* is the CPU time to generate the grid, including set-up, without reading,
+writing and repair. Each time is the median over the shapes, with one run for each shape; the last digits
+are not significant. Bold rows are the networks and the default of `infer`.
 
 **Methods.** `infer, default`: the command without options.
 
@@ -263,31 +263,33 @@ rows are the default of `infer` and the networks.
 | MeshONet-hard | a similar network, whose boundary nodes are exactly the given nodes |
 
 **Distance** is a relative L2 norm: the root mean square distance of the nodes to the reference nodes,
-divided by the root mean square distance of the reference nodes to the centre of the shape. *Near the
-wall* means within 1.5 chords of the centre of an airfoil, or in the 10 % of the rows that are nearest to
+divided by the root mean square distance of the reference nodes to the centre of the shape. *Near the wall*
+are the nodes within 1.5 chords of the centre of an airfoil, or in the 10 % of the rows that are nearest to
 each side of a four-sided domain.
 
-**Reference.** Winslow's equations are solved twice, to a residual of 1e-8: on a grid with twice and on a grid
-with four times as many cells in each direction as the grids of the table. (For 800x800 nodes these are a grid
-with as many cells and a grid with twice as many.) The reference is extrapolated from the two solutions. The
-reference of variational grids is the converged variational grid of the same size.
+**Reference.** Winslow's equations are solved to a residual of 1e-8 on two finer grids, with twice and with
+four times as many cells in each direction as the grids of the table. (For 800x800 nodes: with as many and
+with twice as many.) The reference is extrapolated from these two solutions. The reference of variational
+grids is the converged variational grid of the same size.
 
 **Angles** are divided by the angles of Winslow's grid, which multigrid solves to a residual of 1e-8 on the
-same nodes. A value below 1 is better than Winslow's grid. *Valid* is the share of grids without a folded cell
-before any repair.
+same nodes. Below 1 the angles are smaller than in Winslow's grid. *Valid* is the share of grids without a
+folded cell, before any repair.
 
 Remarks:
 
-- TFI distributes nodes differently in the interior, so its distance says little about its quality.
+- The nodes of a TFI grid are distributed differently in the interior, so its distance says little about
+  its quality.
 - Multigrid Winslow stops by default when the error of the iteration is below the discretisation error.
-- The conformal map cannot resolve the wall cells of some bodies. For such bodies `infer` uses multigrid or
-  the model `hole-o`. The largest distances in the row of `infer` occur for these bodies.
-- In the tables of distances, the nodes of a boundary are every fourth node of a finer boundary (every second
-  node for 800x800 nodes). A corner of a blunt trailing edge may not be among these nodes; the largest angle
-  there then changes by a few percent. The table of folded cells uses boundaries that are sampled directly.
-- For walls with uniform spacing the reference is accurate only to about 1e-4, because Winslow's
-  solution converges only with order 1.4 at trailing edges. The operator also differs from the reference by
-  design: the grid lines that leave the trailing edge bisect its angle.
+- The conformal map cannot resolve the wall cells of some bodies. For these bodies `infer` uses multigrid
+  or the model `hole-o`, and the distances in the row of `infer` are largest.
+- In the tables of distances, the nodes of a boundary are every fourth node of a finer boundary (every
+  second node for 800x800 nodes). A corner of a blunt trailing edge may not be among these nodes; this
+  changes the largest angle by a few percent. In the table of folded cells the boundaries are sampled
+  directly.
+- For walls with uniform spacing the reference is accurate only to about 1e-4, because Winslow's solution
+  converges only with order 1.4 at trailing edges. The network also differs from the reference by design:
+  its grid lines bisect the angle at the trailing edge.
 - The titles of tables give the number of shapes in brackets. A few of these shapes have no converged
   reference and are left out of the table.
 """
@@ -296,13 +298,14 @@ variational methods and `quad-general` is the converged variational grid."""
 FAMILIES_NOTE = """
 ## The six families of the MeshONet paper, 101x101, test members
 
-The table gives the median relative L2 distance of all nodes to Winslow's converged solution and, in brackets,
-for how many of the six test members of a row the grid has folded cells. Winslow's own grids of the wrench
-have folded cells. The operator is `quad-winslow` for the first four families, the airfoil operator for the
-airfoil and `hole-winslow` for the plate with a hole. None of them was trained on these shapes. The paper's
-models were trained on 30 members of each family; *interpolation* is inside and *extrapolation* outside the
-range of training. The values of the paper's models are from [the reproduction of the paper](paper/index.md);
-their reference is the grid of the PDE solver.
+Each row is for six test members of a family. The table gives the median relative L2 distance of all nodes
+to Winslow's converged solution and, in brackets, the number of grids with folded cells. Winslow's own
+grids of the wrench have folded cells. The operator is `quad-winslow` for the first four families,
+`airfoil-o` for the airfoil and `hole-winslow` for the plate with a hole. None of these networks was
+trained on these shapes. The paper's models, MeshONet and MeshONet-hard, were trained on 30 members of each
+family; *interpolation* is inside and *extrapolation* outside the range of training. The values of the
+paper's models are from [the reproduction of the paper](paper/index.md); their reference is the grid of the
+PDE solver.
 """
 TIMES_HEAD = """
 ## CPU time to generate the grid in milliseconds, float64, best of 3
@@ -311,16 +314,17 @@ WHICH = """
 ## Consequences for the defaults of `infer`
 
 - **O grids around airfoils**: the default is the conformal map with Picard iteration, without the network.
-  Its grids are as close to the solution and have as good angles as with the network, in less time. `--model
-  airfoil-o` or `--polish off` selects the network.
-- **Four-sided domains**: the default is the variational method. If fewer nodes resolve all sides, it solves
-  on fewer nodes and interpolates. For a single grid the solver is better than any network. For batches,
-  `--model quad-general` is many times faster than any solver ([measurements](quad-operator.md)).
+  It takes less time than with the network, and its grids are as close to the solution, with equally good
+  angles. `--model airfoil-o` or `--polish off` selects the network.
+- **Four-sided domains**: the default is the variational method. If fewer nodes resolve all sides, the
+  method solves on fewer nodes and interpolates. For a single grid this solver is better than any network.
+  For batches, `--model quad-general` is many times faster than any solver
+  ([measurements](quad-operator.md)).
 - **C grids**: the default is hyperbolic marching from the wall and the wake, or the variational method if
   marching fails. The network for four-sided domains generates worse C grids than TFI
   ([measurements](body-operator.md#c-grids-no-model)).
-- **Batches of airfoils** gain little from the network. The network is evaluated for 64 airfoils at once, but
-  the map, the iteration and the computation of nodes treat one body after the other.
+- **Batches of airfoils** gain little from the network. The network is evaluated for 64 airfoils at once,
+  but the other steps treat one airfoil after the other.
 """
 
 if __name__ == "__main__":

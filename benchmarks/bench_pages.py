@@ -27,10 +27,10 @@ HEAD = """# Interactive pages: size and time
 
 <!-- made by python benchmarks/bench_pages.py --page docs/benchmarks/pages.md -->
 
-Use this page to find, for `meshonet plot -o grid.html`, the size of the HTML page, the time to write it, and
-the time until the browser has drawn the grid for the first time. The browser is Chromium without a
-graphics card, on a shared machine with two cores; with a graphics card it draws sooner. Times are medians
-of three runs. For the use of the pages see [pictures](../guide/pictures.md).
+`meshonet plot -o grid.html` writes an interactive HTML page. Use the tables to find the size of this page,
+the time to write it, and the time until the browser has drawn the grid for the first time. The browser is
+Chromium without a graphics card, on a shared machine with two cores; with a graphics card it draws sooner.
+Times are medians of three runs. For the use of the pages see [pictures](../guide/pictures.md).
 
 ## Size and time by number of cells
 
@@ -43,8 +43,8 @@ OTHERS = """
 ## Comparison with other libraries
 
 Each library writes a page of the same O grid of 100,000 cells, with grid lines and coloured by one metric.
-The scripts use the usual calls of the library. None of the other libraries provides lists of cells to visit,
-or switches for blocks, without further programming.
+The scripts use the usual calls of the library. Only meshonet's page has a list of the worst cells and
+switches that hide blocks; with the other libraries these need further programming.
 
 | library | size, MB | time to write, s | time to first drawing, s | metrics in the page |
 | --- | --- | --- | --- | --- |

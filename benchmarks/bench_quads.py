@@ -230,10 +230,11 @@ def families(twin: str) -> str:
 FAMILIES = """
 ## The families of the MeshONet paper, 101 x 101, test members
 
-The table gives the median relative L2 distance to Winslow's solution and, in brackets, how many of the six
-grids have folded cells. Winslow's own grids of the wrench have folded cells. `quad-winslow` was not trained
-on these shapes. The paper's models were trained on 30 members of each family ([the
-reproduction](paper/index.md)).
+Each row is for six test members of a family, inside (*interpolation*) or outside (*extrapolation*) the
+range of training of the paper's models. The table gives the median relative L2 distance to Winslow's
+solution and, in brackets, the number of grids with folded cells. Winslow's own grids of the wrench have
+folded cells. `quad-winslow` was not trained on these shapes. The paper's models, MeshONet and
+MeshONet-hard, were trained on 30 members of each family ([the reproduction](paper/index.md)).
 
 | family | quad-winslow | 1 cycle | MeshONet | MeshONet-hard |
 | --- | --- | --- | --- | --- |"""
@@ -241,7 +242,7 @@ HEAD = """# The neural operator for four-sided domains: accuracy and time
 
 <!-- made by python benchmarks/bench_quads.py --page docs/benchmarks/quad-operator.md -->
 
-Read this page to decide whether the accuracy of `infer --model quad-general` suffices for batches of
+Use this page to decide whether the accuracy of `infer --model quad-general` suffices for batches of
 four-sided domains. For the method see [neural operators](../theory/operators.md).
 
 - `quad-general` predicts the variational grid, `quad-winslow` Winslow's grid. *n steps* and *n cycles* are
@@ -252,24 +253,24 @@ four-sided domains. For the method see [neural operators](../theory/operators.md
   is larger than in Winslow's grid.
 - *angle*: largest included angle of each cell, in degrees. The tables give the maximum and the mean over
   the cells, averaged over the domains.
-- *gain*: two reductions of the angle relative to Winslow's grid are compared. The reduction in this grid is
-  divided by the reduction in the full variational grid. *all*: both reductions are summed over the domains
-  before the division. *median*: the ratio is computed for each domain, and the median of the ratios is given.
+- *gain*: by how much the angle is smaller than in Winslow's grid, in percent of the reduction that the
+  full variational grid reaches. *all*: both reductions are summed over the domains before the division.
+  *median*: median over the domains of the ratio for each domain.
 - *CPU ms*: CPU time of one thread, while other programs used the machine.
 """
 TAIL = """
 ## Conclusions
 
-- **One domain**: the variational method on fewer nodes reaches 99 to 100 % of the gain in mean angle. This
-  method is the default of `infer`.
-- **Batches**: use `--model quad-general`. The network evaluates all domains together, in a fraction of
-  the time of any solver. `--polish 2` to `5` removes folded and kinked cells.
+- **One domain**: the variational method on fewer nodes (`--coarse`), the default of `infer`, reaches 99 to
+  100 % of the gain in mean angle.
+- **Batches**: use `--model quad-general`. The network evaluates all domains together, in a fraction of the
+  time of any solver. `--polish 2` to `5` removes folded cells.
 - **Winslow's grid**: the network has no advantage. On 65 x 65 nodes, multigrid solves the equations in less
   time than `quad-winslow` needs for its prediction. On more nodes, `solve-pde --coarse 65` takes about the
   same time as `quad-winslow`, and its grids are about as close to the solution.
 - **Python**: the fastest call is `load("quad-general").solve(boundaries, "off", dtype="float32",
-  threads=2)`. The network runs in single precision, with one core per thread. The grids do not depend on
-  the number of threads.
+  threads=2)`. The network then runs in single precision on two cores. The grids do not depend on the
+  number of threads.
 """
 
 if __name__ == "__main__":

@@ -36,12 +36,12 @@ HEAD = """# Blade rows
 
 <!-- made by python benchmarks/bench_rows.py --row TOML --airfoils FOLDER --page docs/benchmarks/rows.md -->
 
-Use this page to find the quality of grids of blade rows and the CPU time.
-[Blade rows](../guide/blade-rows.md) explains how to make such grids.
+Use this page to find the quality of grids of blade rows, and the CPU time to generate them. [Blade
+rows](../guide/blade-rows.md) explains how to make such grids.
 
-Rotor 37 is NASA's transonic compressor rotor, with its tip gap of 0.356 mm. Its grids have first cells of
-1e-4 chords and a growth ratio of 1.2. The blade of a random row is interpolated between two real airfoils,
-one at the hub and one at the casing. Random properties of these rows:
+Rotor 37 is NASA's transonic compressor rotor, with its tip gap of 0.356 mm. Its grids have first-cell
+heights of 1e-4 chords and a growth ratio of 1.2. The blade of a random row is interpolated between two
+real airfoils, one at the hub and one at the casing. These properties are random:
 
 | property | range |
 | --- | --- |
@@ -51,23 +51,25 @@ one at the hub and one at the casing. Random properties of these rows:
 | channel | cylindrical, conical or curved |
 | gap | 0 to 3 % of the span, in two of three rows; the others have no gap |
 
-Random rows have {cells} cells, or more if their layers need more, and first cells of {first:g} chords. Radial
-rows are of four kinds: centrifugal impellers, radial turbines, mixed-flow pumps and vaned diffusers
-(`tests/radial_rows.py`). About half of the rows of the first three kinds have a tip gap. The numbers of cells
-of radial rows are chosen as for random rows. In the rows of the table for several grids, *nodes* and *CPU s*
-are medians.
+Grids of random rows have about {cells} cells, or more if their layers need more, and first-cell heights of
+{first:g} chords. Radial rows are of four kinds: centrifugal impellers, radial turbines, mixed-flow pumps
+and vaned diffusers (`tests/radial_rows.py`). About half of the rows of the first three kinds have a tip
+gap. The last two lines of the table are for groups of rows; there, *nodes* and *CPU s* are medians.
 
-- *folded*: number of cells with a corner Jacobian of zero or less / number of cells with a Bezier coefficient
-  of the Jacobian of zero or less.
-- *SJ*: scaled Jacobian of cells: minimum / 0.1th percentile / mean. For groups of rows: median / worst of the
-  minima of all rows.
-- *angle*: largest angle of the faces of a cell in degrees: maximum / 99.9th percentile. For groups of rows:
-  median / worst of the maxima of all rows.
+- *folded*: number of cells with a corner Jacobian of zero or less / number of cells in which a Bezier
+  coefficient of the Jacobian is zero or less.
+- *SJ*: scaled Jacobian of cells: minimum / 0.1th percentile / mean. For groups of rows: median / smallest
+  of the minima of the rows.
+- *angle*: largest angle of the faces of a cell in degrees: maximum / 99.9th percentile. For groups of
+  rows: median / largest of the maxima of the rows.
 - *first cells*: largest relative error of a first-cell height, over all walls.
-- *growth*: ratio of consecutive edges along all grid lines, across blocks too: 99th / 99.9th percentile /
-  maximum. For groups of rows: median of the 99.9th percentiles of all rows / largest ratio in all rows.
-- *periodic*: largest distance between corresponding periodic nodes after the rotation, divided by the radius.
-- *blade*: largest distance of a node from the surface through the profiles, in chords.
+- *growth*: ratio of consecutive edges along all grid lines, also across block interfaces: 99th percentile
+  / 99.9th percentile / maximum. For groups of rows: median of the 99.9th percentiles of the rows / largest
+  ratio in all rows.
+- *periodic*: largest distance between a node of `periodic2` and the rotated node of `periodic1`, divided
+  by the radius.
+- *blade*: largest distance of a blade node from the surface through the given profiles, in chords; not
+  measured for groups.
 - *CPU s*: one thread of {machine}, while other programs used the machine.
 
 | grid | nodes | folded | SJ | angle | first cells | growth | periodic | blade | CPU s |

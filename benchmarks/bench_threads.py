@@ -49,22 +49,23 @@ HEAD = """# Threads
 
 <!-- made by python benchmarks/bench_threads.py --page docs/benchmarks/threads.md -->
 
-Use this page to find the speed-up of a second thread on one large grid. [Threads and
-GPUs](../guide/threads-and-gpu.md) explains how to set the number of threads. Times are wall-clock seconds.
-Runs with one and with two threads alternate; the table gives the minimum of several runs, and the speed-up is
-the ratio of the minima. CPU times (one thread / two threads) are summed over all threads; they include the
-time in which a thread waits for another one. The last column says whether the two results are bitwise
-identical.
+Use this page to find how much a second thread speeds up one large grid. [Threads and
+GPUs](../guide/threads-and-gpu.md) explains how to set the number of threads. Times are wall-clock seconds,
+unless the table says *CPU*. Runs with one and with two threads alternate; the table gives the minimum of
+several runs, and the speed-up is the ratio of the minima. CPU times (one thread / two threads) are summed
+over all threads; they include the time in which a thread waits for another one. The last column says
+whether the two results are bitwise identical.
 
-The speed-up is meaningful only if at least as many cores were idle as there were threads. On a loaded
-machine compare the CPU times: if they do not rise with the number of threads, no time is lost to
-synchronisation, and n idle cores would give a speed-up of about n.
+On a machine that runs other programs, the speed-up says little. Compare the CPU times instead: if they do
+not rise with the number of threads, no time is lost to synchronisation, and n idle cores would give a
+speed-up of about n.
 """
 
 WHY = """
-Speed-ups below 2 come from parts that one thread executes alone: the computation of percentiles, and in
-hyperbolic marching the middle of each row of nodes, where the eliminations from both ends of the row
-meet. Memory-bound kernels gain less because the cores share the memory bandwidth.
+Speed-ups are below 2 because one thread executes some parts alone: the computation of percentiles, and in
+hyperbolic marching the middle of each row of nodes, where the eliminations from both ends of the row meet.
+Where the memory limits the speed, a second thread gains less, because the cores share the memory
+bandwidth.
 """
 
 Work = Callable[[], Callable[[], object]]

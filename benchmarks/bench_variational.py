@@ -216,37 +216,39 @@ HEAD = """# Four-sided domains: TFI, Winslow and variational grids
 
 <!-- made by python benchmarks/bench_variational.py --page docs/benchmarks/variational.md -->
 
-Read this page to choose between `tfi`, `solve-pde --method winslow` and `solve-pde --method variational`, and
-to see what `--coarse N` saves and costs. The methods are described in [elliptic](../theory/elliptic.md) and
-[variational grids](../theory/variational.md). The neural operator has [its own page](quad-operator.md).
+Use this page to choose between `tfi`, `solve-pde --method winslow` and `solve-pde --method variational`.
+It also shows how much time `--coarse N` saves, which solves on N x N nodes and interpolates, and how much
+the angles change. [Elliptic grids](../theory/elliptic.md) and [variational
+grids](../theory/variational.md) describe the methods. The neural operator has [its own
+page](quad-operator.md).
 
-- *angle*: largest included angle of each cell, in degrees. The maximum cannot be below the angle of a
-  corner of the boundary (arch 147.5, hexagon 135).
+- *angle*: largest included angle of each cell, in degrees: maximum, 99th percentile and mean over the
+  cells. The maximum cannot be below the largest corner angle of the boundary (arch 147.5, hexagon 135).
 - *deviation at walls*: mean deviation from 90 degrees of the angle between the four sides and the grid
   lines that leave them.
-- *distance to full solve*: relative L2 distance to the full solution of the same method, which is its first
-  row in the table. The neural operator is compared with the full solution of the variational method. On 3200
-  x 3200 nodes there is no such solution; there, variational grids are compared with `variational --coarse
-  33`.
+- *distance to full solve*: relative L2 distance to the grid that the same method solves on all nodes, the
+  first row of the method in the table. The neural operator is compared with the variational grid. On 3200
+  x 3200 nodes the variational method does not solve on all nodes; there, `variational --coarse 33` takes
+  its place.
 - *folded*: number of folded cells in the solution, before repair.
-- *worse than Winslow's*: number of grids whose maximum or mean angle is larger than that of Winslow's grid of
-  the same domain.
+- *worse than Winslow's*: number of domains for which the maximum or the mean angle is larger than in
+  Winslow's grid.
 - *CPU ms*: CPU time of one thread, best of several runs, while other programs used the machine.
 
-Around a notch the full variational solve takes many iterations on fine grids; `--coarse auto` solves on fewer
-nodes if the grid is fine. The distance between a solution on 33 x 33 nodes and the full solution is not an
-error of the iteration: it does not change if both solutions are converged to 1e-6. It is the discretisation
-error of the coarse solution, which is of second order.
+Around a notch the variational method on all nodes takes many iterations on fine grids; `--coarse auto`
+solves on fewer nodes if the grid is fine. The distance between a solution on 33 x 33 nodes and the
+solution on all nodes is the discretisation error of the coarse solution, which is of second order. It is
+not an iteration error: it does not change if both solutions are converged to 1e-6.
 
 ![Grids by five methods, coloured by the largest included angle](../img/quad-grids.png)
 """
 PAPER = """
 ## What the MeshONet paper reports
 
-Xiao et al., arXiv 2501.11937, compare methods by colour maps of the largest included angle, without numbers.
-They report that MeshONet is better than their PDE solver and TFI on arches and hexagons, equal to TFI on
-wrenches, and not always better on moved semicircles. The table gives their times in seconds. The programs are
-in Python and ran on another machine, MeshONet on a GPU.
+Xiao et al., arXiv 2501.11937, compare methods by colour maps of the largest included angle, without
+numbers. They report that the angles of MeshONet are better than those of their PDE solver and of TFI on
+arches and hexagons, equal to those of TFI on wrenches, and not always better on semicircles. The table
+gives their times in seconds. Their programs are in Python and ran on another machine, MeshONet on a GPU.
 
 | nodes | PDE | TFI | MeshONet |
 | --- | --- | --- | --- |

@@ -36,11 +36,12 @@ HEAD = """# Volumes inside six faces
 
 <!-- made by python benchmarks/bench_volumes.py --page docs/benchmarks/volumes.md -->
 
-Use this page to find the CPU time and the quality of volume grids inside six faces. For their use see
-[volumes](../guide/volumes.md). Times are CPU times of one thread, the minimum of several runs. *Relative to
-copy*: this time divided by the time of copying the nodes into memory that is already allocated. *Deviation*:
-for each cell corner, the largest deviation of its three angles from 90 degrees; the tables give the mean and
-the 99th percentile over all corners. *SJ*: scaled Jacobian at the corners.
+Use this page to find the CPU time and the quality of volume grids inside six faces.
+[Volumes](../guide/volumes.md) explains how to make such grids. Times are CPU times of one thread, the
+minimum of several runs. *Relative to copy*: this time divided by the time to copy the nodes into memory
+that is already allocated. *Deviation*: for each cell corner, the largest deviation of its three angles
+from 90 degrees; the tables give the mean and the 99th percentile over all corners. *SJ*: scaled Jacobian
+at the corners.
 """
 
 NETWORKS = """## A network: 3DMeshNet

@@ -46,20 +46,23 @@ HEAD = """# Volumes from sections: wings, blades, pipes
 
 <!-- made by python benchmarks/bench_wings.py --airfoils FOLDER --page docs/benchmarks/wings.md -->
 
-Use this page to find the number of random wings for which a valid volume grid is generated, the quality of
-these grids and the CPU time. For their use see [wings](../guide/wings.md) and [pipes](../guide/pipes.md).
+Use this page to find for how many random wings meshonet generates a valid volume grid, the quality of
+these grids, and the CPU time. [Wings](../guide/wings.md) and [pipes](../guide/pipes.md) explain how to
+make such grids.
 
 Each of the {count} wings has two sections, drawn at random from {files} airfoil files with sharp and blunt
 trailing edges. The taper is 0.25 to 1 and the twist -8 to 4 degrees. The tip is displaced by -0.2 to 0.8
-spans downstream (sweep) and by -0.1 to 0.25 spans upwards (dihedral). The far field is at 15 chords; in the
-first row of the table it is at 12 chords.
+spans downstream (sweep) and by -0.1 to 0.25 spans upwards (dihedral). The far field is at 15 chords, in
+the first row of the table at 12 chords.
 
 - *valid*: grids without a folded cell, tested by the Jacobians at the eight corners of every cell and by
-  the Bezier coefficients of the Jacobian. The other grids end in an error that names the place.
+  the Bezier coefficients of the Jacobian. If no valid grid were found, the command would end with an error
+  that names the place.
 - *first cell error*: largest relative error of the first-cell height over all wall nodes.
-- *minimum scaled Jacobian* (*SJ*), *largest angle* (of cell faces, degrees): median / worst over the grids.
-- *CPU s*: CPU time from the sections to the grid and its quality report, median / maximum, one thread of
-  {machine}, while other programs used the machine.
+- *minimum scaled Jacobian* (*SJ*), *largest angle* (of cell faces, degrees): median / worst over the
+  grids.
+- *CPU s*: CPU time to compute the grid and its quality report, median / maximum, one thread of {machine},
+  while other programs used the machine.
 
 | grids | valid | nodes | first cell error | minimum scaled Jacobian | largest angle | CPU s | µs per node |
 | --- | --- | --- | --- | --- | --- | --- | --- |

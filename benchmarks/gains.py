@@ -62,8 +62,8 @@ def gains(title: str, boundaries: Sequence[Boundary], ways: Mapping[str, Way]) -
         )
     count = int(valid.sum())
     lines.append(
-        f"\nWinslow's grid is valid in {count} of these {len(boundaries)} cases; the gains are computed from "
-        "the valid ones only."
+        f"\nWinslow's grid is valid for {count} of these {len(boundaries)} domains; the gains are for these "
+        f"{count} domains."
     )
     return "\n".join(lines)
 

@@ -35,12 +35,12 @@ training parameters and the held-out errors. `make train` repeats the training.
 | training parameter | meaning |
 | --- | --- |
 | `datasets` | files with the training grids, which a solver made |
-| `strips`, `domains` | number of samples in the datasets, including the held-out samples |
+| `strips`, `domains` | number of samples (airfoils or domains) in the datasets, with the held-out samples |
 | `held_out` | number of samples that are used only to measure errors, not for training |
 | `epochs`, `batch`, `seed` | passes over the training samples, samples per step, seed of the random numbers |
-| `rate`, `warm_up` | largest learning rate, reached after `warm_up` steps and reduced to zero by a cosine |
+| `rate`, `warm_up` | largest learning rate, reached after `warm_up` steps; then the rate falls as a cosine |
 | `weight_decay`, `clip` | weight decay of AdamW, and the largest norm of the gradient |
-| `initial` | model with the initial weights; `quad-first` is from an earlier training and not shipped |
+| `initial` | model whose weights the training starts from; `quad-first`, an earlier model, is not shipped |
 | `weights` | coefficients of the terms of the loss ([training](../theory/operators.md#training)) |
 | `widths` | U-Net: channels on each level, in units of eight, the finest level first |
 | `blocks` | U-Net: residual blocks on each level, on the way down and again on the way up |
@@ -59,13 +59,13 @@ of `quad-general`.
 """
 C_GRIDS = """## C grids: no model
 
-meshonet has no model for C grids, because hyperbolic marching gives better C grids than every network that
-was tested. For C grids the predictions of `quad-general` are worse than transfinite interpolation. Five
-further iterations of the variational method improve the predictions, but the mean angle is still farther from
-90 degrees than in the variational grid ([measurements](../benchmarks/body-operator.md#c-grids-no-model)).
-`airfoil-o` assumes that the grid is periodic in ξ; a C grid is not periodic, because of the wake.
+meshonet has no model for C grids, because marching gives better C grids than every network that was tested.
+The C grids that `quad-general` predicts are worse than those of transfinite interpolation. Five iterations of
+the variational method improve the predicted grids, but their mean angle is still farther from 90 degrees than
+that of the variational grid ([measurements](../benchmarks/body-operator.md#c-grids-no-model)). `airfoil-o`
+assumes that the grid is periodic in ξ, which a C grid is not.
 
-`infer` therefore generates C grids by [marching](../theory/marching.md) from the wall and the wake, or by the
+`infer` generates C grids by [marching](../theory/marching.md) from the wall and the wake, or by the
 variational method if marching fails. The report names the method. For C grids the options `--model`,
 `--polish` and `--device` are errors.
 """
@@ -79,14 +79,15 @@ by the file extensions. If an extension belongs to several formats, name the for
 `meshonet convert --list-formats` prints this table.
 
 - *names*: whether the format stores names of boundary patches.
-- *3D*: the kinds of three-dimensional grids that the format stores. If *volumes* are among them,
-  `--extrude H` (`--planes K`) writes a two-dimensional grid as a volume.
+- *3D*: the kinds of three-dimensional grids that the format stores. If the format stores *volumes*,
+  `--extrude H` writes a two-dimensional grid as a volume of thickness H, with K planes of nodes if you add
+  `--planes K`.
 - *blocks*: whether the blocks of a multi-block grid are *kept* in the file or *merged* into one unstructured
   mesh. A format without an entry cannot store a multi-block grid.
 - *many*: whether one file can contain several grids or boundaries.
-- *options*: variants of the format. Write them after a colon, for example `--to gmsh:4.1,ascii`. Slashes
-  separate the alternatives of a group: choose at most one of each group. The first one is the default, unless
-  the extension implies another one.
+- *options*: variants of the format. Write them after a colon, for example `--to gmsh:4.1,ascii`. Choose at
+  most one of the words that slashes separate. The first word is the default, unless the extension implies
+  another one.
 
 """
 FORMATS_REST = """
@@ -98,7 +99,7 @@ and the variants of Plot3D, [files in three dimensions](format-volumes.md) for v
 
 - CGNS files in ADF containers: convert them with `adf2hdf`.
 - `.vts` files compressed with LZ4: write them with zlib or LZMA.
-- `.msh` files of Fluent, which have another format than those of Gmsh. meshonet cannot write them either.
+- `.msh` files of Fluent, which are not Gmsh files. meshonet cannot write them either.
 - Gmsh meshes of other versions than 2.2 and 4.1, and binary DXF files.
 
 These folders contain complete examples with flow solvers: `examples/naca0012-openfoam`,
@@ -110,9 +111,9 @@ BLOCKING_HEAD = """# Files of blocking
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for a file in `solvers/blocking` or `solvers/cascade`. Each row is the first paragraph of the file's
-docstring.
-[Stages](stages.md) describes the order in which the functions are called.
+Look here to find a file in `solvers/blocking` or `solvers/cascade`. Each row is the first paragraph of the
+file's docstring. [Theory](../theory/blocks.md) explains the terms, and [stages](stages.md) the order in which
+the functions are called.
 """
 
 FAMILIES_HEAD = """# The six test families
@@ -145,7 +146,7 @@ def blocking_page() -> str:
         lines += [f"## `{name}/`\n", f"{said_of(folder / '__init__.py')}\n"]
         files = sorted(path for path in folder.glob("*.py") if path.name != "__init__.py")
         if files:
-            lines += ["| file | is |", "| --- | --- |"]
+            lines += ["| file | purpose |", "| --- | --- |"]
             lines += [*(f"| `{path.name}` | {said_of(path)} |" for path in files), ""]
     return "\n".join(lines)
 
