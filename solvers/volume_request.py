@@ -1,0 +1,37 @@
+"""Options that the grids of stacks, aircraft and blade rows share."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.first_cell import FirstCell
+from meshonet.geometry.spacing.growth import check_growth
+
+DEFAULT_FIRST_CELL = 1e-3  # chords
+MOST_CELLS = 200_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class VolumeRequest(FirstCell):
+    """Fields of `StackRequest` and `RowRequest`; lengths are in chords."""
+
+    fewest_cells: ClassVar[int]
+    growth: float | None = None
+    cells: int | None = None
+    threads: int | None = None
+    percentiles: bool = False
+    allow_invalid: bool = False
+
+    def check_volume(self) -> None:
+        """Raise InputError for a growth ratio, number of cells or of threads out of range."""
+        check_growth(self.growth)
+        if self.cells is not None and not self.fewest_cells <= self.cells <= MOST_CELLS:
+            remedy = f"use {self.fewest_cells} to {MOST_CELLS}"
+            raise InputError(f"{self.cells} cells", remedy, parameter="cells")
+        if self.threads is not None and self.threads < 1:
+            raise InputError(f"{self.threads} threads", "use 1 or more", parameter="threads")
+
+    def height(self, unit: float = 1.0) -> float:
+        """Return the first-cell height in chords; `unit` is the reference length for y+, in chords."""
+        height = super().height(unit)
+        return DEFAULT_FIRST_CELL if height is None else height
