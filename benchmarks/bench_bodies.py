@@ -164,10 +164,10 @@ transfinite interpolation (TFI). meshonet has no model for C grids; `infer` marc
 HOLES = """
 ## The moving hole of the MeshONet paper, 101 x 101
 
-This family of shapes is a square far field with a hole whose position varies. The columns `hole-winslow`
+The shapes are square plates with a round hole at different heights. The columns `hole-winslow`
 to MeshONet-hard give the median relative L2 distance to Winslow's solution and, in brackets, how many grids
 have folded cells. The last three columns give the maximum / mean angle, averaged over the grids. The network
-was not trained on this family; the paper's models were trained on 30 shapes of it
+was not trained on such plates; the paper's models were trained on 30 of them
 ([the reproduction](paper/index.md)).
 
 | split | hole-winslow | 2 cycles | MeshONet | MeshONet-hard | hole-o | hole-o, 5 steps | Winslow |
