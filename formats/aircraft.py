@@ -1,40 +1,4 @@
-"""Aircraft in TOML, an input of ``meshonet stack`` with ``kind = "aircraft"``.
-
-::
-
-    kind = "aircraft"
-    half = true                     # or false: with its mirror image in z = 0
-
-    [[bodies]]                      # a body of revolution about a line parallel to x
-    name = "fuselage"
-    meridian = "fuselage.csv"       # x, r from nose to tail: a file, or a list [[0, 0], [0.1, 0.04], ...]
-    y = 0.0                         # height of its axis
-
-    [[bodies.sections]]             # or, in place of meridian and y, sections from nose to tail
-    x = 1.0
-    y = 0.1                         # height of its middle
-    width = 1.4                     # of an ellipse; neither: the point of nose or tail
-    height = 1.2
-    exponent = 2.5                  # of a superellipse
-    points = "frame.csv"            # in place of these: y, z of the half z >= 0, a file or a list
-
-    [[wings]]                       # half of it, z >= 0, from the inside of the body
-    on = "fuselage"
-    file = "wing.toml"              # or [[wings.sections]], as in the file of a wing
-
-    [[wings]]                       # or patches of a surface, as [[bodies]] may be too
-    surface = "jet.cgns"            # Plot3D, CGNS or VTK, half of it
-    patches = [1, 2]                # numbers or names; without: those with no side in the plane of symmetry
-
-    [[wings]]                       # others before or behind it
-    name = "tail"                   # of its patch
-    file = "tail.toml"
-
-    [[wings]]                       # a fin: half of it, z >= 0, in the plane of symmetry
-    plane = "symmetry"
-    name = "fin"
-    [[wings.sections]]              # symmetric ones, upwards: airfoil, chord, y, x or sweep
-"""
+"""Aircraft in TOML, an input of ``meshonet stack`` with ``kind = "aircraft"`` (docs/guide/aircraft.md)."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -58,10 +22,9 @@ from meshonet.geometry.sections.stack import Stack
 
 
 def read_aircraft(data: Table, source: Source) -> Aircraft:
-    """Return the aircraft that a table of TOML describes; paths are relative to the folder of `source`.
+    """Return the aircraft in a table of TOML; paths are relative to the folder of `source`.
 
-    Raises InputError, with the place: a key is unknown; a value is invalid; a file cannot be read; there is
-    no body, or more than one.
+    Raises InputError: an unknown key; an invalid value; an unreadable file; not exactly one body.
     """
     data.only("kind", "name", "bodies", "wings", "half")
     folder = source.path.parent if source.path else Path()

@@ -32,7 +32,7 @@ class _Patches:
     names: tuple[str, ...]
 
     def numbers(self, row: Table) -> list[int]:
-        """Return the indices of the patches that the table `row` selects by number or name; default: all."""
+        """Return the indices of the patches that `row` selects; default: all."""
         chosen = row.data.get("patches")
         if chosen is None:
             return list(range(len(self.nodes)))
@@ -51,12 +51,10 @@ class _Patches:
 
 
 def surface_body(row: Table, folder: Path) -> tuple[Body, AircraftAxes, tuple[str, ...]]:
-    """Return the body that the table `row` describes, the axes of its file, and notes.
+    """Return the body in the table `row`, the axes of its file, and notes.
 
-    The body consists of the patches that the key ``patches`` names. Without this key, it consists of all
-    patches of the file that have a side in the plane of symmetry. Paths are relative to `folder`.
-
-    Raises InputError: the file has no surface; the body is not that of half an aircraft, or has holes.
+    By default the body has the patches with a side in the plane of symmetry. Paths are relative to `folder`.
+    Raises InputError: a file without a surface; a body with holes, or not of half an aircraft.
     """
     row.only("name", *KEYS)
     file = _read(row, folder)
@@ -91,12 +89,10 @@ def _lofted(cuts: BodyCuts, name: str) -> LoftedBody:
 
 
 def surface_wing(row: Table, folder: Path, axes: AircraftAxes) -> SurfaceWing:
-    """Return the wing that the table `row` describes, in the axes of the aircraft.
+    """Return the wing in the table `row`, in the axes of the aircraft.
 
-    The wing consists of the patches that the key ``patches`` names. Without this key, it consists of all
-    patches of the file that have no side in the plane of symmetry. Paths are relative to `folder`.
-
-    Raises InputError: a file without a surface; patches that do not enclose a wing.
+    By default the wing has the patches without a side in the plane of symmetry. Paths are relative to
+    `folder`. Raises InputError: a file without a surface; patches that do not enclose a wing.
     """
     row.only("on", "name", *KEYS)
     file = _read(row, folder)

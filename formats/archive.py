@@ -1,7 +1,5 @@
-"""Zip archives, whose members are read one by one without unpacking them.
+"""Members of zip archives, read one by one; nothing is unpacked to disk.
 
-No file is written under a name in an archive. A member that claims too large a size is refused before it is
-unpacked, and at most the claimed size is unpacked. Errors do not name the archive; callers do.
 https://pkware.cachefly.net/webdocs/casestudies/APPNOTE.TXT
 """
 
@@ -25,9 +23,9 @@ _IN_ARCHIVE = re.compile(r"\.zip/", re.IGNORECASE)
 
 
 def member_names(path: str) -> Iterator[str]:
-    """Return an iterator over the names of an archive's files, in order.
+    """Return an iterator over the names of an archive's files, sorted.
 
-    Raises InputError: the file is not a zip archive, or cannot be read.
+    Raises InputError: not a zip archive; unreadable.
     """
     return iter(sorted(name for name in _archive(path).NameToInfo if not name.endswith("/")))
 
@@ -43,8 +41,7 @@ def split_member(text: str) -> tuple[str, str] | None:
 def read_member(path: str, name: str) -> bytes:
     """Return the uncompressed bytes of a member of an archive.
 
-    Raises InputError: there is no such member; it is encrypted, damaged, too large or compressed by an
-    unknown method.
+    Raises InputError: no such member; it is encrypted, damaged, too large or packed by an unknown method.
     """
     archive = _archive(path)
     info = archive.NameToInfo.get(name)

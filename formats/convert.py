@@ -25,13 +25,12 @@ class Conversion:
 
     Parameters
     ----------
-    extrude : height in z to which planar grids are extruded; None leaves them planar.
-    planes : number of planes of nodes along z, or around the axis. None: two planes along z, or the default
-        of `Revolution` around the axis.
+    extrude : height in z to which planar grids are extruded; None: not extruded.
+    planes : number of planes of nodes along z (default 2) or around the axis (default of `Revolution`).
     swap : exchange xi and eta.
     normalise : scale to unit chord or unit length.
     coarsen : keep every `coarsen`-th node.
-    revolve : angle in degrees by which planar grids are revolved about `axis`; None leaves them planar.
+    revolve : angle in degrees by which planar grids are revolved about `axis`; None: not revolved.
     axis : axis of `revolve`, a line in the plane of the grid; None is the x axis.
     copies : number of copies of a periodic grid beside each other, along each of its periods.
     scale : factor on all lengths.
@@ -55,7 +54,7 @@ class Conversion:
         return turn
 
     def heights(self) -> tuple[float, ...]:
-        """Return z of each plane, () without extrusion. Raises InputError: a height that is not positive."""
+        """Return z of each plane, () without extrusion. Raises InputError: the height is not positive."""
         if self.extrude is None:
             if self.planes is not None and self.revolve is None:
                 remedy = "give {extrude} or {revolve} as well"
@@ -67,10 +66,7 @@ class Conversion:
         return tuple(self.extrude * k / (planes - 1) for k in range(planes))
 
     def __call__(self, grid: Grid | Boundary) -> Grid | Boundary:
-        """Return a grid with the changes that keep its dimension.
-
-        A boundary is returned unchanged, see `read`.
-        """
+        """Return a grid with the changes that keep its dimension; boundaries stay unchanged."""
         if isinstance(grid, Boundary):
             return grid
         if replace(self, planes=None, axis=None) != Conversion():
@@ -90,7 +86,7 @@ class Conversion:
     def of_boundaries(self, source: str, output: str, from_format: str | None, to_format: str | None) -> bool:
         """Return whether boundaries are written instead of grids.
 
-        This is so if no change needs grids, and the format of the input or of the output has no grids.
+        They are if no change needs grids, and the format of the input or of the output has none.
         """
         changed = self.swap or self.coarsen > 1 or self.copies != 1 or self.scale != 1.0
         if changed or self.heights() or self.turn():
@@ -104,10 +100,9 @@ class Conversion:
         return source != "-" and format_of(open_source(source), from_format).read_grids is None
 
     def extruder(self, output: str, to_format: str | None) -> Callable[[Path, Iterable[Grid]], None] | None:
-        """Return a function that extrudes or revolves planar grids and writes them to a file.
+        """Return the function that writes extruded or revolved grids to a file; None if grids stay planar.
 
-        The result is None if grids are neither extruded nor revolved. Raises InputError: the format stores
-        only planar grids.
+        Raises InputError: the format stores only planar grids.
         """
         heights, turn = self.heights(), self.turn()
         if not heights and turn is None:
@@ -126,8 +121,7 @@ def plot3d_variant(
 ) -> tuple[str | None, str | None]:
     """Return the formats to read and to write, one of them with the Plot3D options `words`.
 
-    The options are added to the format of `output` if it is a Plot3D file, otherwise to the format of the
-    input. Raises InputError: an unknown option.
+    They belong to the output if it is Plot3D, else to the input. Raises InputError: an unknown option.
     """
     if words is None:
         return from_format, to_format
@@ -138,7 +132,7 @@ def plot3d_variant(
 
 
 def unused_iblank(grid: Grid | Boundary) -> str | None:
-    """Return a note on nodes marked by an iblank array (marks are lost); None if no nodes are marked."""
+    """Return a note on nodes that an iblank array marks; None without marks."""
     counts = grid.provenance.get("iblank") if isinstance(grid, Grid) else None
     marked = [f"{count} with {value}" for value, count in (counts or {}).items() if value != "1"]
     if not marked:

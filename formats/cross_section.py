@@ -9,11 +9,10 @@ from meshonet.geometry.shapes.shape import Shape
 
 
 def read_sections(text: str, fmt: str | None = None) -> Iterator[Grid | Shape]:
-    """Yield the planar grids of a file if its format contains grids, otherwise the shapes that it describes.
+    """Yield the planar grids of a file, or the shapes of a file or designation without grids.
 
-    `text` is a path or a designation such as ``naca:0012`` or ``circle:0.5``; designations and layouts yield
-    shapes. `fmt` is the name of the file's format; None: it is recognised by the file's name and content.
-    Raises InputError: a file that cannot be read.
+    `text` is a path or designation, ``naca:0012``. Layouts yield shapes. `fmt` is the format's name; None: it
+    is recognised by name and content. Raises InputError: the file cannot be read.
     """
     if not is_designation(text):
         record = format_of(open_source(text), fmt)

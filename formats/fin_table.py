@@ -14,7 +14,7 @@ from meshonet.geometry.sections.stack import Stack
 def fin_table(data: Table, folder: Path, more: tuple[str, ...]) -> Fin:
     """Return the fin of a table, which may also have the keys `more`; paths are relative to `folder`.
 
-    Raises InputError: a section that is not symmetric; see also `meshonet.formats.stack_table.stack_table`.
+    Raises InputError: a section that is not symmetric; see also `stack_table`.
     """
     options = stack_options(data, "fin", more)
     sections: list[Section] = []

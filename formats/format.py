@@ -33,20 +33,16 @@ class Format:
     name : name of the format for users.
     suffixes : extensions in lower case, with the dot.
     description : short description for users.
-    read_shapes : function that yields shapes, which can be sampled into boundaries. None if the format cannot
-        be read, or contains grids, whose outer edges then serve as shapes.
-    read_grids, write_grids, write_boundaries, write_layouts : functions that do what their names say; None if
-        the format does not support it.
+    read_shapes : function that yields shapes; None for formats of grids, and those that are not read.
+    read_grids, write_grids, write_boundaries, write_layouts : functions; None if not supported.
     sniff : function that recognises a file by its first `HEAD_BYTES` bytes.
     names_patches : whether the format stores names of patches and the topology.
-    blocks : how a planar multi-block grid is written: blocks ``kept``, or ``merged`` into one unstructured
-        mesh; empty if it cannot be written.
-    space : kinds of three-dimensional grids that `write_grids` accepts and `read_grids` returns.
+    blocks : how planar blocks are written: ``kept``, or ``merged`` into one unstructured mesh; empty: not.
+    space : kinds of three-dimensional grids that are read and written.
     many : whether one file can contain several grids or boundaries.
     one_size : whether all samples of a file must have the same node counts and topology.
-    beside : whether other files are written next to the file, so that it cannot be written to a stream.
-    fills_folder : whether the file stands for the folder in which it is written. Such a folder contains one
-        grid, and the file cannot be written to a stream.
+    beside : whether more files are written next to the file; it cannot be written to a stream then.
+    fills_folder : whether the file stands for its folder, which has one grid.
     choices : groups of options; the name may be followed by one word of each group.
     reads_options : whether `read_grids` takes ``options`` as `write_grids` does.
     suffix_options : by extension, the option that it implies when a file is written.
@@ -73,7 +69,7 @@ class Format:
     suffix_options: Mapping[str, str] = field(default_factory=dict)
 
     def file_at(self, path: str) -> str:
-        """Return the file to write for a user's `path`; if the format fills a folder, the file is inside one.
+        """Return the file to write for a user's `path`; a format that fills folders gets one inside it.
 
         >>> case = Format("openfoam", (".foam",), "", fills_folder=True)
         >>> case.file_at("runs/first"), case.file_at("runs/first/case.foam")
@@ -85,7 +81,7 @@ class Format:
         return str(place / f"{place.resolve().name}{self.suffixes[0]}")
 
     def with_options(self, text: str) -> Format:
-        """Return the format with the options in `text`, words separated by commas; earlier ones are dropped.
+        """Return the format with options, words separated by commas; later ones replace earlier ones.
 
         Raises InputError: an unknown word, or two that exclude each other.
         """
@@ -121,16 +117,13 @@ class Format:
 
 
 def later(function: str, /, *args: Any, **settings: Any) -> Any:
-    """Import `function`, ``package.module:name``, and call it.
-
-    A `functools.partial` of this function loads no module until it is called.
-    """
+    """Import `function`, ``package.module:name``, and call it; a `partial` of this loads no module."""
     module, _, name = function.partition(":")
     return getattr(importlib.import_module(module), name)(*args, **settings)
 
 
 def only_one(grids: Iterable[Grid], what: str) -> Grid:
-    """Return the only grid of `grids`. Raises InputError: there are none, or several; `what` names them."""
+    """Return the only grid of `grids`. Raises InputError: none or several; `what` names the file."""
     several = iter(grids)
     first = at_least_one(several)
     if next(several, None) is not None:
@@ -166,7 +159,7 @@ def size_of(sample: Boundary | Grid) -> str:
 
 
 def size_remedy(own: str, first: str) -> str:
-    """Return the options that give a sample of size `own` the size `first`; sizes are texts of `size_of`."""
+    """Return the options that give a sample of size `own` the size `first` (`size_of`)."""
     kinds = {size.partition(" of ")[0].rpartition(" ")[2] for size in (own, first)}
     if "blocks" not in kinds:
         return "set {res} and {topology}"

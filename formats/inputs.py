@@ -22,11 +22,10 @@ _IS_DATASET = re.compile(r"\.(?:h5|hdf5)(?:#[a-z0-9,:]+)?$", re.IGNORECASE)
 
 
 class Numbered(NamedTuple):
-    """An input, and which numbers its members have among the members of all inputs.
+    """An input, and the numbers of its members (shapes or grids) among the members of all inputs.
 
-    Members are the shapes or grids that an input contains. `first` is the number of its first member; if
-    None, members are numbered as they are read. `step` is the difference between the numbers of successive
-    members; 0 means that there is a single member.
+    `first` is the number of its first member; None: numbered as they are read. `step` is the difference of
+    successive numbers, 0 for a single member.
     """
 
     text: str | InputError
@@ -41,15 +40,14 @@ class Inputs:
     Parameters
     ----------
     words : the inputs.
-    suffixes : endings of files that are taken from folders and archives; none for all that can be read.
-    pick : patterns (``naca*``). Files in folders, archives and lists are used only if their name, with or
-        without extension, matches one of them; a pattern with a ``/`` is compared with the path. Case is
-        ignored.
-    shard : (k, n): `own` and `parts` yield only every n-th input, starting with input number k (from 1).
+    suffixes : endings of files taken from folders and archives; none: all that can be read.
+    pick : patterns (``naca*``) for file names in folders, archives and lists, with or without extension,
+        regardless of case; a pattern with a ``/`` is compared with the path.
+    shard : (k, n): `own` and `parts` yield every n-th input from input number k on (from 1).
     grids_only : whether only files with grids are taken from folders and archives.
 
-    Raises InputError: standard input is named twice, or is a terminal; the shard is invalid; there are
-    patterns, but no folder, archive or list.
+    Raises InputError: standard input is named twice, or a terminal; an invalid shard; patterns without a
+    folder, archive or list.
     """
 
     words: tuple[str, ...]
@@ -97,9 +95,9 @@ class Inputs:
             number += count
 
     def parts(self, size: int) -> Iterator[tuple[int, tuple[str | InputError, ...]]]:
-        """Yield number and inputs of each part of the shard; a part has `size` inputs or samples of datasets.
+        """Yield number and inputs of each part of the shard; a part has `size` inputs or samples.
 
-        The division into parts does not depend on the shard: shard k of n has every n-th part.
+        Shard k of n has every n-th part, so that parts do not depend on the shard.
         """
         number, left = 0, size
         entries: list[str | InputError] = []
@@ -128,10 +126,7 @@ class Inputs:
         return len(list(islice(self, _BEGINNING)))
 
     def count(self) -> int | None:
-        """Return the number of members of the shard; None if an input is a pipe.
-
-        A dataset counts as its number of samples, any other file as one.
-        """
+        """Return the number of members of the shard, one per file or sample; None if an input is a pipe."""
         if any(word in ("-", "@-") for word in self.words):
             return None
         return -(-sum(count for _, _, count in self._counted()) // self.shard[1])

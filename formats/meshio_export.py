@@ -1,7 +1,6 @@
-"""Unstructured meshes written by meshio: VTK, surfaces for viewers, input files of structural solvers.
+"""Meshes that meshio writes and that are not read here, with merged seams.
 
-These formats are not read. Seams are merged, and cells are counter-clockwise. For formats that only have
-triangles, every quadrilateral is divided along its shorter diagonal. https://github.com/nschloe/meshio
+Triangles come from quadrilaterals by their shorter diagonal. https://github.com/nschloe/meshio
 """
 
 from collections.abc import Iterable
@@ -35,10 +34,9 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
 
 
 def write_vtu(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the only grid of `grids`: quadrilaterals and lines, or for a volume hexahedra and quadrilaterals.
+    """Write the only grid of `grids`: its cells and boundary cells.
 
-    The cell array ``part`` is 0 for inner cells. For boundary cells it is the number of the patch, from 1, in
-    the order of the sides south, east, north, west.
+    The cell array ``part`` is 0 inside; at the boundary it is the number of the patch, from 1.
     """
     import meshio
 

@@ -27,15 +27,13 @@ _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
 
 @contextlib.contextmanager
 def whole_file(destination: str, *, make_folder: bool = False, beside: bool = False) -> Iterator[Path]:
-    """Return a context with a temporary path, which becomes `destination` if the block ends without an error.
+    """Return a context with a temporary path, which becomes `destination` if the block succeeds.
 
-    The path is in the folder of the destination, so that the last step is one atomic rename. For ``-``
-    (standard output), devices and pipes it is in the system's temporary folder, and its bytes are copied at
-    the end. On any exception, including KeyboardInterrupt and SystemExit, it is removed and the destination
-    stays unchanged. `make_folder` creates a missing folder of the destination. `beside` says that further
-    files are written next to the path, which is impossible on standard output.
-
-    Raises InputError: the destination is a folder; its folder is missing or not writable; the disk is full.
+    It is in the folder of the destination, and renamed in one step; for ``-`` (standard output), devices and
+    pipes it is copied at the end. On any exception it is removed, and the destination unchanged.
+    `make_folder` makes a missing folder. `beside`: more files are written next to the path, impossible on
+    streams. Raises InputError: the destination is a folder; its folder is missing or not writable; the disk
+    is full.
 
     Examples
     --------
@@ -78,10 +76,9 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
 
 @contextlib.contextmanager
 def whole_folder(target: Path) -> Iterator[Path]:
-    """Return a context with an empty folder that replaces `target` if the block ends without an error.
+    """Return a context with an empty folder, which replaces `target` if the block succeeds.
 
-    An existing folder is exchanged with the new one in one step, where the system supports it, and then
-    removed. On any exception the new folder is removed and `target` stays unchanged.
+    On any exception the new folder is removed and `target` unchanged.
     """
     _sweep(target.parent)
     part = _part_name(target)
@@ -119,7 +116,7 @@ def _remove(path: Path) -> None:
 
 @contextlib.contextmanager
 def _naming(name: str, only: set[int] | None = None) -> Iterator[None]:
-    """Return a context in which operating-system errors (those in `only`) become errors with the `name`."""
+    """Return a context in which errors of the system (those in `only`) become errors of `name`."""
     try:
         yield
     except OSError as error:
@@ -132,10 +129,7 @@ def _naming(name: str, only: set[int] | None = None) -> Iterator[None]:
 
 
 def final_name(part: Path) -> str:
-    """Return the name that the file at the temporary path `part` gets when it is finished.
-
-    The name of any other file is returned unchanged.
-    """
+    """Return the name that the file at the temporary path `part` gets; any other name is unchanged."""
     match = _PART.fullmatch(part.name)
     return match["final"] if match else part.name
 
@@ -157,10 +151,10 @@ def _part_name(target: Path) -> Path:
 
 @functools.cache
 def _machine() -> str:
-    """Return an identifier of the boot and the process namespace, within which process numbers are unique.
+    """Return an identifier of boot and process namespace; process numbers are unique within it.
 
-    Host names are not sufficient, because machines that share a disk, and containers, may have equal names.
-    The result is empty if the system does not provide the identifier; Linux does.
+    Host names do not suffice: containers, and machines with a common disk, may share them. Empty except on
+    Linux.
     """
     try:
         boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip().replace("-", "")
@@ -170,10 +164,7 @@ def _machine() -> str:
 
 
 def _sweep(folder: Path) -> None:
-    """Remove unfinished files of killed processes of this machine in `folder`, once per process and folder.
-
-    Files of other machines and of earlier boots are kept, because their writers may still be running.
-    """
+    """Remove, once, the unfinished files in `folder` of killed processes of this machine."""
     if folder in _swept or _machine() == "-":
         return
     _swept.add(folder)

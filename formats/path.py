@@ -1,20 +1,4 @@
-"""Paths in space for sweeping: points x, y, z, one per line, or lines and arcs in TOML.
-
-::
-
-    start = [0, 0, 0]          # first point of the path; optional
-    direction = [1, 0, 0]      # direction at the first point; optional
-
-    [[pieces]]
-    line = 2.0                 # length
-
-    [[pieces]]
-    arc = 90                   # degrees
-    radius = 1.5
-    towards = [0, 1, 0]        # direction in which the arc bends
-
-A path through points is a smooth curve; it is closed if its last point equals the first.
-"""
+"""Paths in space for sweeping: points x, y, z, one per line, or pieces in TOML (docs/guide/pipes.md)."""
 
 import math
 
@@ -32,10 +16,10 @@ MOST_POINTS = 100_000
 
 
 def path_of(text: str) -> Path:
-    """Return the path of a file, or of standard input for ``-``; the extension determines whether it is TOML.
+    """Return the path of a file, TOML by its extension, or of standard input for ``-``.
 
-    Raises InputError, with the place: the file cannot be read; a line does not have three numbers; a key is
-    unknown; a value is invalid.
+    Points give a smooth curve, closed if the last equals the first. Raises InputError, with the place: an
+    unreadable file; a line without three numbers; an unknown key; an invalid value.
     """
     source = open_source(text)
     with in_source(source.name):

@@ -32,9 +32,9 @@ _LIKE_DESIGNATION = re.compile(r"([a-z]+)[\s:_-]*(\d[\w.-]*)", re.IGNORECASE)
 
 
 def format_named(name: str) -> Format:
-    """Return the format with the given name, which may have options (``gmsh:4.1,ascii``) or be an extension.
+    """Return the format called `name`, also with options (``gmsh:4.1,ascii``) or an extension.
 
-    Raises InputError: there is no such format or option; the message lists those that exist.
+    Raises InputError: no such format or option.
     """
     word, _, options = name.lower().lstrip(".").partition(":")
     if word in _OLD_NAMES:
@@ -54,10 +54,7 @@ def format_named(name: str) -> Format:
 
 
 def format_of(source: Source, fmt: str | None = None) -> Format:
-    """Return the format of a source to be read.
-
-    Raises InputError: neither extension nor content determines the format.
-    """
+    """Return the format of a source to be read. Raises InputError: unknown extension and content."""
     if fmt:
         return format_named(fmt)
     claimed = BY_SUFFIX.get(source.suffix, [])
@@ -76,7 +73,7 @@ def format_of(source: Source, fmt: str | None = None) -> Format:
 
 
 def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grids") -> Format:
-    """Return the format in which to write `path_text`; standard output is HDF5 unless `fmt` is given.
+    """Return the format in which to write `path_text`; ``-`` is HDF5 unless `fmt` is given.
 
     Raises InputError: an unknown extension, or a format that cannot store this `kind`.
     """
@@ -103,10 +100,7 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
 
 
 def picture_format(output: str, to_format: str | None = None) -> Format:
-    """Return the format of a picture, by the extension of `output`; standard output (``-``) gets ``png``.
-
-    Raises InputError: `output` is not a picture.
-    """
+    """Return the format of a picture `output`; ``-`` is ``png``. Raises InputError: not a picture."""
     record = format_for_output(output, to_format or ("png" if output == "-" else None))
     if record.name not in ("png", "svg", "pdf", "html"):
         raise InputError(f"{record.name} is no picture", "use .png, .svg, .pdf or .html", source=output)
@@ -114,13 +108,11 @@ def picture_format(output: str, to_format: str | None = None) -> Format:
 
 
 def read_shapes(text: str, fmt: str | None = None, *, surfaces: bool = False) -> Iterator[Shape]:
-    """Return an iterator over the shapes of a path, of ``-``, or of a designation such as ``naca:2412``.
+    """Return an iterator over the shapes of a path, of ``-``, or of a designation, ``naca:2412``.
 
-    Shapes can be sampled into boundaries; from a file of grids they are the outer edges. If a record cannot
-    be read, the iterator raises InputError and continues with the next record that can still be found. With
-    `surfaces`, flat patches of grids in space are surfaces, not planar grids.
-
-    Raises InputError, with the place: a source that cannot be opened, has an unknown format or is invalid.
+    Grids give their outer edges. After a record that raises InputError, the iterator continues if it can.
+    `surfaces`: flat patches in space stay surfaces.
+    Raises InputError, with the place: a source that cannot be opened, is invalid or of unknown format.
     """
     if is_designation(text):
         if fmt:
@@ -150,14 +142,14 @@ def _surfaces(read: Callable[[Source], Iterator[Grid]], source: Source) -> Itera
 
 
 def is_cad(text: str, fmt: str | None = None) -> bool:
-    """Return whether a path is a CAD file, whose faces become patches; for ``-`` only `fmt` decides."""
+    """Return whether a path is a CAD file, whose faces become patches; for ``-`` by `fmt` alone."""
     if is_designation(text) or (text == "-" and fmt is None):  # a stream is read once
         return False
     return (format_named(fmt) if fmt else format_of(source_of(text))).name in ("step", "brep")
 
 
 def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
-    """Return an iterator over the grids of a path or of ``-``; like `read_shapes` it continues after errors.
+    """Return an iterator over the grids of a path or of ``-``, as `read_shapes` over shapes.
 
     Raises InputError: a file that contains only boundaries; see also `read_shapes`.
     """
@@ -181,7 +173,7 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
 
 
 def is_designation(text: str) -> bool:
-    """Return whether `text` is the designation of a shape, ``naca:2412`` or ``circle:0.5``, not a file."""
+    """Return whether `text` is a designation, ``naca:2412`` or ``circle:0.5``, not a file."""
     return text.lower().startswith(tuple(_DESIGNATIONS)) and not Path(text).exists()
 
 
@@ -194,7 +186,7 @@ def names_many(text: str) -> bool:
 
 @dataclass
 class _Records(Iterator[T]):
-    """Iterates over the records of a source; adds its name to errors, and converts errors of the system."""
+    """Iterator over the records of a source; errors get the name of the source."""
 
     source: Source
     read: Callable[[], Iterator[T]]
@@ -234,10 +226,9 @@ def _known() -> str:
 
 
 def source_of(text: str) -> Source:
-    """Return the source with the given name (see `open_source`).
+    """Return the source with the given name (`open_source`).
 
-    Raises InputError: see `open_source`; designations without a colon, and formats that can only be written,
-    have messages of their own.
+    Raises InputError: also for designations without a colon, and formats that can only be written.
     """
     try:
         return open_source(text)

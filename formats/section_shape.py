@@ -10,9 +10,9 @@ from meshonet.geometry.shapes.outline import Outline
 
 
 def section_shape(row: Table, folder: Path) -> Airfoil | Outline:
-    """Return the shape of the file or designation in the table of a section; paths are relative to `folder`.
+    """Return the shape in the table of a section; paths are relative to `folder`.
 
-    Raises InputError: not exactly one of the keys is given; a file without an airfoil or closed curve.
+    Raises InputError: not exactly one of the keys; a file without one airfoil or closed curve.
     """
     keys = [key for key in ("airfoil", "outline") if key in row.data]
     remedy = "name one file, or a designation such as naca:2412"

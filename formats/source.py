@@ -41,7 +41,7 @@ class Source:
     name : printable name for messages.
     path : a regular file.
     data : the bytes themselves, for standard input, pipes and tests.
-    split : split of a dataset from which samples are taken, ``train`` or ``test``; empty for all samples.
+    split : split of a dataset, ``train`` or ``test``; empty for all samples.
     rows : selection among these samples; None for all.
     """
 
@@ -65,7 +65,7 @@ class Source:
 
     @property
     def size(self) -> int:
-        """Length in bytes; counts in a header are compared with it before memory is allocated."""
+        """Length in bytes."""
         with self.open() as stream:
             return stream.seek(0, io.SEEK_END)
 
@@ -97,20 +97,17 @@ class Source:
         return self.path.open("rb")
 
     def head(self, count: int = HEAD_BYTES) -> bytes:
-        """Return the first `count` bytes, or all if there are fewer or if it is negative."""
+        """Return the first `count` bytes; all if it is negative."""
         with self.open() as stream:
             return stream.read(count)
 
 
 def open_source(text: str) -> Source:
-    """Return the source with the given name: a path, ``-`` for standard input, or ``FILE.zip/MEMBER``.
+    """Return the source called `text`: a path, ``-`` for standard input, or ``FILE.zip/MEMBER``.
 
-    ``FILE#test`` and ``FILE#train`` select a split of a dataset, ``FILE#7`` the sample with index 7, counted
-    from 0, ``FILE#5:9`` and ``FILE#5::2`` a range, ``FILE#test,0:9`` a range of a split. A file whose name
-    contains the ``#`` takes precedence. Standard input and pipes are read to their end, because formats need
-    random access.
-
-    Raises InputError: no such file, a folder, a file that may not be read, an empty file.
+    ``FILE#test`` and ``FILE#train`` select a split of a dataset, ``FILE#7`` a sample, counted from 0,
+    ``FILE#5:9`` and ``FILE#5::2`` a range, ``FILE#test,0:9`` a range of a split. A file with the ``#`` in its
+    name comes first. Raises InputError: no such file, a folder, a file that may not be read, an empty file.
     """
     split, rows = "", None
     if "#" in text:
@@ -130,9 +127,7 @@ def open_source(text: str) -> Source:
 
 
 def printable(text: str) -> str:
-    r"""Return `text` with control characters and undecodable bytes written as escapes.
-
-    Names from files are printed on terminals, where an escape sequence must not take effect.
+    r"""Return `text` with control characters and undecodable bytes as escapes, safe for terminals.
 
     Examples
     --------
@@ -166,7 +161,7 @@ def _missing(text: str) -> InputError:
 
 
 def nearest(path: Path) -> str:
-    """Return ``did you mean ...?`` with the most similar file name in the folder, or an empty text."""
+    """Return ``did you mean ...?`` with the most similar file name in the folder, or nothing."""
     try:
         names = [entry.name for entry in itertools.islice(path.parent.iterdir(), _MOST_NAMES)]
     except (OSError, ValueError):

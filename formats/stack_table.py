@@ -1,4 +1,4 @@
-"""The sections of a wing, fin, blade or duct in a table of TOML (see `meshonet.formats.stack`)."""
+"""The sections of a wing, fin, blade or duct in a table of TOML (docs/guide/wings.md)."""
 
 import math
 from pathlib import Path
@@ -15,7 +15,7 @@ _STEEPEST = 85.0
 
 
 def stack_table(data: Table, folder: Path, name: str, more: tuple[str, ...] = ()) -> Stack:
-    """Return the stack of a table, which may also have the keys `more`; paths are relative to `folder`.
+    """Return the stack of a table with perhaps the keys `more`; paths are relative to `folder`.
 
     Raises InputError: see `meshonet.formats.stack.stack_of`.
     """
@@ -28,9 +28,9 @@ def stack_table(data: Table, folder: Path, name: str, more: tuple[str, ...] = ()
 
 
 def stack_options(data: Table, name: str, more: tuple[str, ...]) -> dict[str, Any]:
-    """Return all arguments of `Stack` that a table states, without sections; keys `more` are also allowed.
+    """Return the arguments of `Stack` in a table, without sections; keys `more` are also allowed.
 
-    Raises InputError: there is another key; a word is unknown; a value is not a number.
+    Raises InputError: another key; an unknown word; a value that is not a number.
     """
     data.only("kind", "tip", "between", *_SPACINGS, "name", "sections", *more)
     words = (("kind", KINDS, "wing"), ("tip", TIPS, "round"), ("between", BETWEEN, "linear"))
@@ -42,7 +42,7 @@ def stack_options(data: Table, name: str, more: tuple[str, ...]) -> dict[str, An
 
 
 def _nodes(row: Table) -> int | None:
-    """Return the number of nodes of the panel before a section. Raises InputError: no whole number from 2."""
+    """Return the number of nodes of the panel before a section, at least 2."""
     if "nodes" not in row.data:
         return None
     count = row.number("nodes")
@@ -52,7 +52,7 @@ def _nodes(row: Table) -> int | None:
 
 
 def cant(data: Table, default: Cant) -> Cant:
-    """Return the cant in a table: an angle in degrees, or ``panel``. Raises InputError: another value."""
+    """Return the cant in a table, degrees or ``panel``. Raises InputError: another value."""
     if "cant" not in data.data or data.data["cant"] == "panel":
         return "panel" if "cant" in data.data else default
     degrees = data.number("cant")
@@ -85,13 +85,11 @@ def _section(
 
 
 def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) -> float:
-    """Return x or y of the section in `row`, an entry of ``sections``.
+    """Return x or y of the section in `row` at this `z`, after the sections `before`.
 
-    `z` is the section's z, and `before` are the sections that precede it. The value is given by the key
-    `direct` (``x`` or ``y``; default: as in the previous section, 0 in the first) or by the key `angle`
-    (``sweep`` or ``dihedral``), the angle in degrees between the z axis and the line from the previous
-    section. Raises InputError: both keys are given; the first section has an angle; an angle exceeds 85
-    degrees.
+    The key `direct` (``x`` or ``y``) has it, default as before; or `angle` (``sweep`` or ``dihedral``) has
+    the angle in degrees between the z axis and the line from the previous section. Raises InputError: both
+    keys; an angle of the first section, or above 85 degrees.
     """
     if angle not in row.data:
         return row.number(direct, getattr(before[-1], direct) if before else 0.0)

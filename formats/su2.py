@@ -1,9 +1,6 @@
-"""SU2 meshes, ``.su2``: merged seams, counter-clockwise cells, one marker per patch.
+"""SU2 meshes, ``.su2``: text with 17 digits, merged seams, one marker per patch, nodes from 0.
 
-Files are text with 17 significant digits; nodes are counted from 0. Marker names are single words
-(`meshonet.formats.mesh.names`), because configuration files list them by name. The transformation between
-periodic markers belongs into the configuration file; a mesh with periodic sides therefore starts with
-comments to copy there. Meshes that are read give boundaries, from points, cells and the edges of the markers.
+Periodic motions belong into the configuration file; the mesh has them as comments to copy there.
 https://su2code.github.io/docs_v7/Mesh-File/
 """
 
@@ -38,10 +35,7 @@ _CUT = "the file is cut short: write it again"
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the only grid of `grids`: quadrilaterals, and edges with the names of the patches as markers.
-
-    A volume is written as hexahedra and quadrilaterals.
-    """
+    """Write the only grid of `grids`; markers have the names of patches."""
     grid = only_one(grids, "a .su2 file")
     refuse_collapsed(grid, "a .su2 file")
     mesh = unstructured(grid)
@@ -60,10 +54,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def _periodic(mesh: Unstructured, word: Mapping[str, str]) -> str:
-    """Return, as comments, the lines of a configuration file that couple periodic markers.
-
-    Each has two markers, centre and angles of the rotation in degrees, and the translation.
-    """
+    """Return as comments the lines that couple periodic markers: names, centre, degrees, shift."""
     if not mesh.periodic:
         return ""
     pairs = []
@@ -76,7 +67,7 @@ def _periodic(mesh: Unstructured, word: Mapping[str, str]) -> str:
 
 
 def _degrees(angle: float) -> float:
-    """Return an angle in degrees; one that is a whole part of the turn, to rounding, is so exactly."""
+    """Return an angle in degrees, exact if it is a whole part of the turn to rounding."""
     value = math.degrees(angle)
     parts = round(360.0 / value) if abs(value) > _ROUNDING else 0
     return 360.0 / parts if parts and abs(360.0 / parts - value) <= _ROUNDING * abs(value) else value
@@ -90,7 +81,7 @@ def _write_cells(stream: BinaryIO, nodes: Indices) -> None:
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Yield the shapes that the markers of a mesh enclose.
 
-    Raises InputError: no SU2 mesh; a three-dimensional mesh; markers that do not form closed curves.
+    Raises InputError: not an SU2 mesh; three dimensions; markers that are not closed curves.
     """
     yield from shapes_of(_Reader(source.read_bytes().split(b"\n")).surface(), source.stem)
 

@@ -50,7 +50,7 @@ def _write(write: Any, name: str, path: Path, grids: Iterable[Grid], *rest: Any,
 
 
 def check_space(record: Format, kind: Space, output: str = "") -> None:
-    """Raise InputError if a format cannot store a `kind` of blocks in space; `output` is its file, if any."""
+    """Raise InputError if a format cannot store a `kind` of blocks in space in the file `output`."""
     if kind not in record.space:
         able = ", ".join(other.name for other in _FORMATS if kind in other.space and other.write_grids)
         held = ", ".join(("grids in the plane", *record.space))
@@ -192,10 +192,8 @@ _FORMATS: tuple[Format, ...] = (
 TABLE: dict[str, Format] = {}
 """Formats by name."""
 BY_SUFFIX: dict[str, list[Format]] = {}
-"""Formats by extension.
-
-If several formats share an extension, the first one that can write is used for output. For input, each format
-checks the content, strict formats first; the last one is used if none recognises it.
+"""Formats by extension: the first that can write is used, and the first that recognises the content, else the
+last.
 """
 for _record in _FORMATS:
     TABLE[_record.name] = _record

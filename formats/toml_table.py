@@ -30,10 +30,7 @@ class Table:
 
     @contextmanager
     def located(self) -> Iterator[None]:
-        """Within the ``with`` block, prepend the place of this table to the places of errors.
-
-        An error whose place already begins with this place is not changed.
-        """
+        """Within the ``with`` block, prepend this table's place to places of errors that lack it."""
         try:
             yield
         except InputError as error:
@@ -44,10 +41,7 @@ class Table:
 
     @contextmanager
     def in_file_of(self, key: str) -> Iterator[None]:
-        """Within the ``with`` block, add `key` to error messages.
-
-        The block reads the file that is the value of this key.
-        """
+        """Within the ``with`` block, add `key`, whose value is the file that is read, to errors."""
         try:
             yield
         except InputError as error:
@@ -79,7 +73,7 @@ class Table:
         return self._number(key, self.data.get(key))
 
     def positive(self, key: str) -> float:
-        """Return a positive number that is large enough for products with it not to underflow."""
+        """Return a number of at least 1e-12."""
         value = self.number(key)
         if not value > 0:
             raise self.error(key, f"{value:g} is not positive", "use more than 0")
@@ -128,7 +122,7 @@ class Table:
         return x, y
 
     def pairs(self, key: str, least: int, columns: str = "x, r") -> list[list[float]]:
-        """Return a list of at least `least` pairs of numbers; `columns` names the two numbers in messages."""
+        """Return at least `least` pairs of numbers, called `columns` in messages."""
         rows = self.data.get(key)
         if not isinstance(rows, list) or len(rows) < least:
             raise self.error(

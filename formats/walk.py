@@ -1,17 +1,4 @@
-"""Lazy expansion of inputs to files: those in folders, members of zip archives, lines of lists.
-
-=============  =====================================================================================
-input          stands for
-=============  =====================================================================================
-``@FILE``      the inputs in its lines, each as on the command line; ``@-`` reads standard input
-a folder       all files with a recognised extension in it and its subfolders, sorted by name
-``FILE.zip``   its files with a recognised extension, sorted by name: ``FILE.zip/wing/naca0012.dat``
-anything else  itself
-=============  =====================================================================================
-
-Skipped are empty lines of lists and those that start with ``#``; in folders and archives, names that start
-with a dot or ``__``, and folders that belong to a file next to them, as ``out/`` to ``out.h5``.
-"""
+"""Inputs expanded one by one: folders, zip archives, lists ``@FILE`` (docs/guide/datasets.md)."""
 
 from __future__ import annotations
 
@@ -49,9 +36,10 @@ def _readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:
 
 
 class Walk:
-    """One walk through inputs.
+    """One walk through inputs, which counts files found and files picked.
 
-    It counts the files that are found in folders, archives and lists, and how many of them are picked.
+    Left out are empty lines of lists and those with ``#``; names with a leading dot or ``__``, and folders of
+    a file beside them, ``out/`` of ``out.h5``.
     """
 
     def __init__(self, inputs: Inputs) -> None:
@@ -61,10 +49,7 @@ class Walk:
         self._example = ""
 
     def files(self) -> Iterator[str | InputError]:
-        """Yield the files that the inputs stand for, or errors.
-
-        If no file is picked, the last error says so.
-        """
+        """Yield the files that the inputs stand for, or errors; the last says if none is picked."""
         yield from self._of(self._inputs.words)
         if self._patterns and not self._taken:
             pattern = " or ".join(map(printable, self._inputs.pick))

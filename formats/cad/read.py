@@ -27,7 +27,7 @@ _SEWN = 1e-6
 def read_step(source: Source) -> Iterator[CadModel]:
     """Yield the model of all faces of a STEP file.
 
-    Raises InputError: Open Cascade is not installed; the file is not a STEP file; it has no faces.
+    Raises InputError: Open Cascade is not installed; not a STEP file; no faces.
     """
     yield _model(source, _step_shape, "STEP")
 
@@ -64,10 +64,7 @@ def _model(source: Source, read: Callable[[str], tuple[Any, ...]], kind: str) ->
 
 
 def _is_readable(path: Path, kind: str) -> bool:
-    """Return whether Open Cascade can read a file. The file is read in a process of its own.
-
-    With a damaged file, Open Cascade may never return, or may end the process.
-    """
+    """Return whether Open Cascade can read a file; with a damaged file it may hang or end the process."""
     command = [sys.executable, "-m", __name__, kind, str(path)]
     seconds = SECONDS + path.stat().st_size / _BYTES_PER_SECOND
     try:
@@ -77,7 +74,7 @@ def _is_readable(path: Path, kind: str) -> bool:
 
 
 def _step_shape(path: str) -> tuple[Any, ...]:
-    """Return the shape of a STEP file in the unit of the file, None if there is none, and a note or none."""
+    """Return the shape in the unit of the file, or None, and at most one note."""
     from OCP.IFSelect import IFSelect_RetDone
     from OCP.STEPControl import STEPControl_Reader
 

@@ -1,8 +1,6 @@
 """Boundary conditions and one-to-one interfaces of CGNS zones that other programs wrote.
 
-Ranges may ascend or descend, and count nodes or, depending on the location, faces. A condition may list
-points instead; it then covers the rectangles that these points fill. Signs of a transform follow from the
-ranges.
+Ranges may ascend or descend, and count nodes or faces. A condition may list points instead of a range.
 """
 
 from collections.abc import Iterator
@@ -33,9 +31,9 @@ _FACES = ("FaceCenter", "IFaceCenter", "JFaceCenter", "KFaceCenter", "EdgeCenter
 
 
 def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[Face]:
-    """Yield the faces of block number `block` that have a boundary condition; their names are its family's.
+    """Yield the faces of block number `block` with a boundary condition, named after the condition's family.
 
-    `counts` are the numbers of nodes of the zone along its three indices; the third is 1 in a planar zone.
+    `counts` are the zone's node counts along its three indices; the third is 1 in a planar zone.
     """
     for _, group in children(zone, "ZoneBC_t"):
         for title, condition in children(group, "BC_t"):
@@ -73,10 +71,7 @@ def interfaces(
 
 
 def window_of(block: int, points: Points, counts: Triple) -> FaceWindow | None:
-    """Return the window between two `points` (2, 3) of a block of `counts` nodes.
-
-    The result is None if a point is outside the block.
-    """
+    """Return the window between `points` (2, 3) of a block of `counts` nodes; None for a point outside."""
     return _window(block, points) if _inside(points, counts) else None
 
 

@@ -27,11 +27,10 @@ def range_of(side: Side, span: Range, counts: tuple[int, ...]) -> Integers:
 
 
 def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid) -> None:
-    """Write each connection of `grid` as an interface in both of the zones that it joins.
+    """Write each connection of `grid` as an interface in both of its `zones`, which have these `names`.
 
-    `zones` have the given `names`. Ranges count nodes from 1. The transform gives, for each index direction
-    of the zone, the corresponding direction of the donor zone; across the interface, a step out of the zone
-    is a step into the donor. https://cgns.github.io/standard/SIDS/multizone_interface.html
+    A transform has the donor's direction for each direction of the zone; across the interface, a step out of
+    the zone is a step into the donor. https://cgns.github.io/standard/SIDS/multizone_interface.html
     """
     groups: dict[int, Node] = {}
     taken: dict[int, set[str]] = {}
@@ -69,10 +68,7 @@ def _transform(each: Connection) -> Integers:
 
 
 def _write_motion(joint: Node, motion: Motion, dimension: int) -> None:
-    """Add the rotation (radians) and the translation from the nodes of an interface to those of the donor.
-
-    In two dimensions, which have no axis of rotation, the angle is written as the last number.
-    """
+    """Add the rotation (radians) and translation to the donor; planar zones have one angle."""
     screw = screw_of(motion)
     outer = child(joint, "GridConnectivityProperty", "GridConnectivityProperty_t")
     node = child(outer, "Periodic", "Periodic_t")

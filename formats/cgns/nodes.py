@@ -1,8 +1,6 @@
-"""CGNS's tree of nodes in an HDF5 file: labels, types and data as the CGNS library expects them.
+"""CGNS's nodes in an HDF5 file: a group with texts of fixed length, and the dataset ``" data"``.
 
-A node is a group with the attributes name, label and type, texts of fixed length, and flags; its data is
-the dataset ``" data"``, whose axes run the other way round than in Fortran's terms of the standard.
-https://cgns.org/standard/FMM/hdf5_impl.html
+Axes run in the opposite order to the Fortran terms of https://cgns.org/standard/FMM/hdf5_impl.html
 """
 
 from collections.abc import Iterator
@@ -42,9 +40,9 @@ def root(file: h5py.File) -> Node:
 
 
 def child(parent: Node, name: str, label: str, value: str | NDArray[Any] | None = None) -> Node:
-    """Add a node to `parent` and return it; arrays have the axis order of HDF5, texts become characters.
+    """Add a node to `parent` and return it; arrays have the axis order of HDF5.
 
-    The node is copied from a template, because copying takes half the time of creating a node.
+    Copying a template takes half the time of creating a node.
     """
     data = _codes(value, len(value.encode())) if isinstance(value, str) else value
     blank = _blank(label, "MT" if data is None else _TYPES[data.dtype.name])
@@ -62,7 +60,7 @@ def child(parent: Node, name: str, label: str, value: str | NDArray[Any] | None 
 
 
 def children(node: Node, label: str) -> Iterator[tuple[str, Node]]:
-    """Yield the names and nodes with `label` below `node`, without links to other places."""
+    """Yield names and nodes with `label` below `node`; links to other places are skipped."""
     links = node.id.links
     for name in node.id:  # without h5py's objects, which take most of the time of files of many zones
         if links.get_info(name).type == h5l.TYPE_HARD:
@@ -106,7 +104,7 @@ def _set(node: Node, name: bytes, value: NDArray[Any]) -> None:
 
 @cache
 def _blank(label: str, kind: str) -> Node:
-    """Return a template of nodes, without name and data, in a file in memory, from which nodes are copied."""
+    """Return the template of nodes with this label and type."""
     node = _blanks().create_group(f"{label} {kind}", track_order=True)
     _label(node, "", label, kind)
     return node

@@ -1,7 +1,6 @@
-"""Reading CGNS: structured zones as planar blocks, blocks of volumes, or patches of surfaces.
+"""Structured zones of CGNS files as planar blocks, blocks of volumes, or patches of surfaces.
 
-Zones that this package wrote name the grid that they belong to. Other zones form one grid if they are
-connected, by one-to-one interfaces in the file or by coincident nodes, whatever bases they are in.
+Zones of this package name their grid. Other zones form one grid if interfaces or equal nodes connect them.
 """
 
 from collections.abc import Iterator, Sequence
@@ -50,11 +49,10 @@ class _Zone:
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grids of the structured zones, each named by its zone when the file has several.
+    """Yield the grids of the structured zones; if there are several, each is named after its zone.
 
-    Patches are those that this package wrote, or else the boundary conditions, named by their families.
-
-    Raises InputError: an ADF file, no HDF5, no structured zone, an invalid zone.
+    Patches without the metadata of this package are boundary conditions, named after their families.
+    Raises InputError: an ADF file; not HDF5; no structured zone; an invalid zone.
     """
     if b"ADF Database Version" in source.head(32):
         raise InputError("is CGNS in an ADF container", "turn it into HDF5: adf2hdf OLD.cgns NEW.cgns")

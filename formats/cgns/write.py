@@ -1,8 +1,6 @@
-"""CGNS structured zones in HDF5, ``.cgns``, with boundary conditions, families and one-to-one interfaces.
+"""CGNS structured zones in HDF5, ``.cgns``, for CGNS libraries from 3.4 on; one zone per block.
 
-CGNS libraries from 3.4 on read these files, with a two- or three-dimensional zone for every block. Planar
-grids, surfaces and volumes are in bases of their own. Topology, name, patches and provenance are Descriptor_t
-nodes of the zone, which other programs ignore. https://cgns.org/standard/SIDS/SIDS.html
+Metadata are Descriptor_t nodes of the zone. https://cgns.org/standard/SIDS/SIDS.html
 """
 
 from collections.abc import Iterable
@@ -28,9 +26,7 @@ _CONDITIONS: dict[Kind, str] = {
 }  # fmt: skip
 """CGNS's names of boundary conditions; other kinds become BCGeneral."""
 _IN_MEMORY = 1 << 24
-"""Largest number of coordinates of a multi-block grid whose file is built in memory, since it consists of
-thousands of small HDF5 objects.
-"""
+"""Most coordinates of multi-block grids whose file, of thousands of objects, is built in memory."""
 _METRE = np.array([0, 1, 0, 0, 0], np.float64)
 """Exponents of mass, length, time, temperature and angle in a coordinate."""
 

@@ -26,9 +26,9 @@ Lines = tuple[tuple[int, int], tuple[bool, bool]]
 def lines_of_blocks(
     grid: Grid, singles: Sequence[Grid], parts: Sequence[CellsInView | None], pixels: float, every: int | None
 ) -> list[Lines]:
-    """Return the grid lines to draw in each block, chosen so that lines continue from block to block.
+    """Return the grid lines to draw in each block, chosen so that they continue between blocks.
 
-    `singles` are the blocks as grids of one block, `parts` the cells of each block that are in view.
+    `singles` are the blocks as grids, `parts` the cells of each block in view.
     """
     steps = [[every or 1, every or 1] for _ in singles]
     flips = [[False, False] for _ in singles]

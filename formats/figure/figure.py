@@ -1,7 +1,6 @@
-"""Pictures of planar grids. Only `formats.figure` imports matplotlib.
+"""Pictures of planar grids; only `formats.figure` imports matplotlib.
 
-A fine grid has far more cells than a picture has pixels. Cells are therefore coloured in groups of about one
-pixel, each with the worst value in the group, and only every k-th grid line is drawn.
+Cells are coloured in groups of about a pixel, each by its worst value; only every k-th line is drawn.
 """
 
 from __future__ import annotations
@@ -47,10 +46,10 @@ _NAME = 48
 def draw(
     grid: Grid, colouring: Colouring | None = None, zoom: Box | None = None, every: int | None = None
 ) -> Figure:
-    """Return a figure of `grid`, or of its part in `zoom`; without `colouring` only grid lines are drawn.
+    """Return a figure of `grid`, or of its part in `zoom`; without `colouring`, of its lines only.
 
-    A grid around a small body gets two views: one near the body and one of the whole grid. Every `every`-th
-    grid line is drawn; None selects the step by the resolution. Raises InputError: a `zoom` without cells.
+    A grid around a small body also gets a view near the body. Every `every`-th line is drawn; None chooses
+    the step by the resolution. Raises InputError: a `zoom` without cells.
     """
     if grid.topology == "blocks":
         planar(grid)
@@ -101,7 +100,7 @@ def _visible(grid: Grid, singles: list[Grid], view: Box) -> list[CellsInView | N
 
 
 def _views(grid: Grid) -> list[Box]:
-    """Return the boxes to show: the whole grid, and before it the surroundings of a relatively small body."""
+    """Return the boxes to show: the surroundings of a small body, if any, and the whole grid."""
     whole = _whole(grid)
     pad = 0.02 * max(whole[1] - whole[0], whole[3] - whole[2])
     whole = (whole[0] - pad, whole[1] + pad, whole[2] - pad, whole[3] + pad)
@@ -171,7 +170,7 @@ def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | N
 
 
 def step_words(steps: list[int]) -> str:
-    """Return a text on the ascending `steps` between drawn lines; it is empty if all lines are drawn.
+    """Return a text on the ascending `steps` between drawn lines; empty if all are drawn.
 
     >>> step_words([1, 5]), step_words([2]), step_words([1])
     ('not all lines are drawn', 'every 2nd line', '')

@@ -39,8 +39,7 @@ class Colouring:
     ----------
     values : cell values (ni-1, nj-1); for several blocks a tuple with one array per block.
     label : quantity and unit, for the colour bar.
-    limits : values at the two ends of the colour scale; None selects the 1st and 99th percentile of the cells
-        in view.
+    limits : values at the ends of the colour scale; None: 1st and 99th percentile of the cells in view.
     worst_is_low : whether small values are the bad ones, which get strong colours.
     """
 
@@ -66,9 +65,7 @@ class Colouring:
 
 
 _EVEN = 5e-3
-"""Smallest half width of the colour scale relative to its middle, so that its labels differ in the first
-digits.
-"""
+"""Smallest half width of the colour scale relative to its middle, so that labels differ."""
 
 
 def limits_of(colouring: Colouring | None, shown: Sequence[NDArray[Any]]) -> tuple[float, float]:
@@ -88,7 +85,7 @@ def limits_of(colouring: Colouring | None, shown: Sequence[NDArray[Any]]) -> tup
 
 
 class CellsInView(NamedTuple):
-    """Index ranges that contain the cells in view, and a mask (i1-i0, j1-j0) of the cells in view."""
+    """Index ranges around the cells in view, and the mask (i1-i0, j1-j0) of these cells."""
 
     i0: int
     i1: int
@@ -116,9 +113,7 @@ def paint(
     limits: tuple[float, float],
     colouring: Colouring,
 ) -> QuadMesh:
-    """Colour the cells of `part`.
-
-    Cells smaller than a pixel are grouped and get the worst value of their group.
+    """Colour the cells of `part`; groups of cells in a pixel get their worst value.
 
     `values` (ni-1, nj-1) are the values of all cells of the block.
     """
@@ -142,9 +137,9 @@ def rule(
     faint: bool,
     flipped: tuple[bool, bool] = (False, False),
 ) -> None:
-    """Draw every k-th grid line and the last; `steps` are k for lines i = const, and for j = const.
+    """Draw the last grid line and every k-th; `steps` are k for i = const and for j = const.
 
-    In directions that are `flipped`, lines are counted from the last one.
+    In `flipped` directions, lines are counted from the last one.
     """
     from matplotlib.collections import LineCollection
 
@@ -210,10 +205,7 @@ def _blocks(sizes: Floats) -> NDArray[np.intp]:
 
 
 def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
-    """Return lengths (n,) of cells along i and along j, each with the areas (n,) of these cells.
-
-    The cells are a sample of those in view.
-    """
+    """Return lengths and areas (n,) of sampled cells in view: along i, then along j."""
     i, j = np.nonzero(part.mask)
     stride = max(1, len(i) // _SAMPLE)
     i, j = i[::stride] + part.i0, j[::stride] + part.j0
@@ -224,10 +216,9 @@ def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tup
 
 
 def line_step(length: Floats, area: Floats, pixels: float) -> int:
-    """Return the step k between drawn lines, such that in half of the area they are 6 or more pixels apart.
+    """Return the step 1, 2, 5, 10, ... between lines that are 6 pixels apart in half of the area.
 
-    k is one of 1, 2, 5, 10, 20, 50 ...; `length` and `area` are those of `line_gaps`; `pixels` is the number
-    of pixels in a unit of length.
+    `length` and `area` are those of `line_gaps`; `pixels` is the number of pixels per unit of length.
     """
     length = length * pixels
     order = np.argsort(length)

@@ -21,13 +21,11 @@ _GAP = 5.0
 _LIGHT = np.array([-0.36, 0.48, 0.8])
 """Direction towards the light in the axes of the picture: right, up, towards the viewer."""
 _FORWARD = 0.004
-"""Shift of outlines towards the viewer, relative to the size of the picture, so that blocks do not hide
-them.
-"""
+"""Shift of outlines towards the viewer, relative to the size of the picture."""
 
 
 def steps_of(sheet: CellSheet, axes: Floats, pixels: float, every: int | None) -> tuple[int, int]:
-    """Return how many cells along each of the two directions of a sheet are drawn as one quadrilateral."""
+    """Return how many cells along each direction of a sheet are drawn as one quadrilateral."""
     if every:
         return every, every
     flat = sheet.nodes @ axes[:2].T * pixels
@@ -54,7 +52,7 @@ def painted(
     sheet: CellSheet, mask: Bools, steps: tuple[int, int], axes: Floats, colouring: Colouring | None,
     limits: tuple[float, float],
 ) -> Painted:  # fmt: skip
-    """Return the cells in `mask` (n-1, m-1) of a sheet, in groups of `steps` cells, projected onto `axes`."""
+    """Return the cells in `mask` (n-1, m-1) of a sheet, in groups of `steps`, projected onto `axes`."""
     import matplotlib as mpl
 
     marks = [

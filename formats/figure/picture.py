@@ -34,7 +34,7 @@ _RELATED = {
 
 @dataclass(frozen=True)
 class Picture(View):
-    """Settings of a picture: the view, and the `metric` that colours the cells; None draws lines only.
+    """A view, and the `metric` that colours the cells; None draws lines only.
 
     Raises InputError: an unknown metric; see also `View`.
     """
@@ -51,10 +51,9 @@ class Picture(View):
         super().__post_init__()
 
     def draw(self, kind: str, path: Path | BinaryIO, grids: Iterable[Grid], dots: int = DOTS) -> None:
-        """Draw the only grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``, or as an ``html`` page.
+        """Draw the only grid of `grids` to `path`, as ``png``, ``svg``, ``pdf`` or ``html`` page.
 
-        Pages need a path, pictures may also be written to an open file. `dots` are dots per inch of a
-        ``png``.
+        Pages need a path, pictures may be written to an open file; `dots` are dots per inch of a ``png``.
         """
         from meshonet.formats.figure.page.page import write_page
 

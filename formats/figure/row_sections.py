@@ -1,15 +1,6 @@
-r"""Sections of the passage of a blade row, between its patches `hub` and `shroud`: at a span, and meridional.
+"""Sections of a blade row between its patches `hub` and `shroud`: at a span, and meridional.
 
-::
-
-    at a span        r theta ^    /\  /\       the surface at this part of the way from hub to shroud,
-                             |   /  \/  \      unrolled to m' and theta, both times its mean radius, so that
-                             +------------> m'   angles are true
-
-    meridional             r ^ --shroud--      cells that a half-plane through the axis and the blade cuts;
-                             |   |blade|       beyond the passage, the same cells of the next one
-                             | ---hub----
-                             +------------> x
+At a span, the surface is unrolled to m' and theta times its mean radius, so that angles are true.
 """
 
 import math
@@ -32,9 +23,7 @@ _STEP = 8
 """Number of points of a curve between two of its first, coarse points."""
 _NEWTON = 8
 _BALANCED = 1e-6
-"""Largest relative difference of the two moments of inertia, about axes normal to the axis, of the nodes of a
-full ring.
-"""
+"""Largest relative difference of the moments of inertia about the two axes across a full ring."""
 _ALONG = 1.0 - 1e-9
 """Smallest component, along a coordinate axis, of the direction of an axis that counts as parallel to it."""
 _AT_ONCE = 1 << 13
@@ -45,10 +34,8 @@ _AT_ONCE = 1 << 13
 class RowSections:
     """Sections of the grid of a blade row, a volume around an axis.
 
-    The axis is that of the rotation between periodic sides. Without periodic sides, it is the axis of the
-    full ring, or x if the grid is no full ring.
-
-    Raises InputError: the grid is not a volume with patches `hub` and `shroud`.
+    The axis is that of the rotation between periodic sides, else that of a full ring, else x.
+    Raises InputError: not a volume with patches `hub` and `shroud`.
     """
 
     grid: Grid
@@ -82,7 +69,7 @@ class RowSections:
         return "xyz"[k] if direction[k] > _ALONG else "axis"
 
     def _axis_of_ring(self) -> tuple[Floats, Floats]:
-        """Return a point of the axis and its direction: around it a ring's shroud is balanced, else x."""
+        """Return a point and the direction of a full ring's axis, by its inertia; else of the x axis."""
         parts = [self.grid.at(p).reshape(-1, 3) for p in self.grid.patches if p.name == "shroud"]
         points = np.concatenate(parts)
         centre = points.mean(axis=0)
@@ -117,7 +104,7 @@ class RowSections:
         return self._curve("hub"), self._curve("shroud")
 
     def _curve(self, name: str) -> Floats:
-        """Order the nodes of a wall from its end at the inlet, each the nearest to the one before."""
+        """Return hub or shroud: nodes ordered from the inlet, each the nearest to the one before."""
         cloud = self._nodes(name)
         size = float(np.ptp(cloud, axis=0).max())
         _, first = np.unique(np.round(cloud * (_POINTS / size)), axis=0, return_index=True)
@@ -153,7 +140,7 @@ class RowSections:
     def at(self, span: float, values: list[Floats] | None) -> Cut:
         """Return the section at the fraction `span` of the distance from hub to shroud.
 
-        `values` are the cell values of each block. Raises InputError: the section contains no cell.
+        `values` are the cell values of each block. Raises InputError: no cell is there.
         """
         hub, shroud = self._curves
         line = hub + span * (shroud - hub)
@@ -175,7 +162,7 @@ class RowSections:
         return made
 
     def meridional(self, values: list[Floats] | None) -> Cut:
-        """Return the section, in x and r, by a half-plane that starts at the axis and cuts the blade."""
+        """Return the section in x and r by a half-plane through the axis and the blade."""
         blades = {patch.block for patch in self.grid.patches if patch.name == "blade"}
         theta = [nodes[..., 2] for nodes in self.places]
         middle = float(np.mean([theta[k].mean() for k in sorted(blades) or range(len(theta))]))
@@ -195,11 +182,9 @@ def _together(cuts: list[Cut]) -> Cut:
 
 
 def _between_lines(distance: Floats, plane: Floats, values: Floats | None) -> Cut | None:
-    """Return the quadrilaterals between the points where the lines along k of a block cross a surface.
+    """Return quadrilaterals between the points where lines along k cross a surface, if each does once.
 
-    The result is None if a line does not cross the surface, or crosses it more than once. Cells that are cut
-    to polygons, in contrast, would have another edge wherever the surface passes from one layer of cells to
-    the next.
+    Polygons of cut cells would have another edge wherever the surface passes to the next layer of cells.
     """
     if distance[..., 0].mean() > distance[..., -1].mean():
         distance = -distance
@@ -222,11 +207,7 @@ def _nearest(points: Floats, cloud: Floats) -> Floats:
 
 
 def _ruled(points: Floats, hub: Floats, shroud: Floats) -> tuple[Floats, Floats]:
-    """Return where points (n, 2) are on the straight lines between equal parts of hub and shroud.
-
-    The results (n,) are the fraction of the way along the line, and the fraction of the lengths of hub and
-    shroud at which the line begins and ends.
-    """
+    """Return, for points (n, 2), the parts of the way from hub to shroud (n,) and along them (n,)."""
     lines = np.concatenate([hub, shroud - hub], axis=1)
     slopes = (len(lines) - 1) * np.diff(lines, axis=0)
     rough = [curve[::_STEP] for curve in (hub, shroud)]

@@ -1,10 +1,4 @@
-"""Slices of volumes: grid surfaces of constant index, and sections by a plane of constant coordinate.
-
-::
-
-    k=0   the nodes with k = 0 of every block, a surface     x=.5   the polygons in which the plane
-          of quadrilaterals; k=-1 is the last surface               intersects cells, 3 to 6 corners each
-"""
+"""Slices of volumes: grid surfaces of constant index, ``k=0``, and sections by a plane, ``x=.5``."""
 
 import math
 import re
@@ -40,10 +34,7 @@ class Slice:
 
 
 def parse_slice(text: str) -> Slice:
-    """Return the slice described by a text such as ``i=10``, ``k=-1`` or ``x=.5``.
-
-    Raises InputError: other texts.
-    """
+    """Return the slice of a text such as ``i=10``, ``k=-1`` or ``x=.5``. Raises InputError: another text."""
     match = _SPEC.fullmatch(text)
     try:
         if match and match[1] in "ijk":
@@ -61,8 +52,8 @@ def parse_slice(text: str) -> Slice:
 class CellSheet:
     """A lattice of nodes (n, m, 3) in space, and optional values (n-1, m-1) of its cells.
 
-    `outside` is 1 if the cells of a wall have the flow on the side of the cross product of their edges along
-    the first and the second index, -1 if on the other side, and 0 if this is not known.
+    `outside` is 1 if the flow is on the side of the first times the second direction, -1 if opposite, 0 if
+    unknown.
     """
 
     nodes: Floats
@@ -73,7 +64,7 @@ class CellSheet:
 def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet]:
     """Return the grid surface of constant index `at`, for every block that has this index.
 
-    The values of a surface are those of the adjacent cells. Raises InputError: no block has the index.
+    Values are those of the adjacent cells. Raises InputError: no block has the index.
     """
     index = at.index or 0
     sheets = []
@@ -94,17 +85,14 @@ def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """Polygons (n, 12, 2), in which a plane intersects cells, and the values (n,) of the cells.
-
-    Polygons with fewer than twelve corners repeat their last corner.
-    """
+    """Polygons (n, 12, 2) in which a plane intersects cells, the last corner repeated; cell values (n,)."""
 
     polygons: Floats
     values: Floats | None
 
 
 def cut(grid: Grid, at: Slice, values: list[Floats] | None) -> Cut:
-    """Return the intersection of a plane of constant coordinate with the cells of all blocks of a grid.
+    """Return the intersection of a plane of constant coordinate with the cells of a grid.
 
     Raises InputError: the plane intersects no cell.
     """
@@ -123,13 +111,13 @@ def cut(grid: Grid, at: Slice, values: list[Floats] | None) -> Cut:
 
 
 def cut_where(distances: Sequence[Floats], flat: Sequence[Floats], values: list[Floats] | None) -> Cut:
-    """Return the polygons in which a surface intersects cells.
+    """Return the polygons in which a surface intersects cells; all arguments have an entry per block.
 
     Parameters
     ----------
-    distances : for each block the signed distances (ni, nj, nk) of its nodes from the surface.
-    flat : for each block the coordinates (ni, nj, nk, 2) in which polygons are drawn.
-    values : for each block the values of its cells.
+    distances : signed distances (ni, nj, nk) of nodes from the surface.
+    flat : coordinates (ni, nj, nk, 2) in which polygons are drawn.
+    values : values of cells.
     """
     polygons, shown = [], []
     for number, (distance, plane) in enumerate(zip(distances, flat, strict=True)):
@@ -149,10 +137,7 @@ _EDGES = np.array([(a, b) for a in range(8) for b in range(a) if bin(a ^ b).coun
 
 
 def _crossed(distance: Floats) -> NDArray[np.intp]:
-    """Return indices (n, 3) of cells with nodes on both sides of a plane.
-
-    `distance` (ni, nj, nk) is signed.
-    """
+    """Return indices (n, 3) of cells with signed distances (ni, nj, nk) of both signs."""
     low = high = distance >= 0
     for axis in range(3):
         first, last = (slice(None),) * axis + (slice(-1),), (slice(None),) * axis + (slice(1, None),)
@@ -161,10 +146,7 @@ def _crossed(distance: Floats) -> NDArray[np.intp]:
 
 
 def _polygons(distance: Floats, plane: Floats) -> Floats:
-    """Return the polygons (n, 12, 2) in which a surface intersects cells.
-
-    `distance` (n, 8) of their corners from it, `plane` (n, 8, 2) the coordinates of corners in the picture.
-    """
+    """Return polygons (n, 12, 2) from distances (n, 8) and picture coordinates (n, 8, 2) of corners."""
     a, b = _EDGES.T
     part = np.divide(
         distance[:, a], distance[:, a] - distance[:, b],

@@ -1,7 +1,6 @@
-"""Pictures of volumes and surfaces: walls and patches from a direction, grid surfaces, and plane sections.
+"""Pictures of volumes and surfaces in parallel projection, painted from back to front.
 
-Surfaces are drawn in parallel projection, from back to front. Cells smaller than a few pixels are drawn in
-groups, each with the worst value in the group. Plane grid surfaces are drawn like planar grids.
+Groups of cells of a few pixels have their worst value; plane grid surfaces are drawn like planar grids.
 """
 
 from __future__ import annotations
@@ -33,10 +32,10 @@ _FLAT = 1e-9
 
 
 def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure:
-    """Return a figure of a volume or surface; `colouring`, if given, has the values of its cells.
+    """Return a figure of a volume or surface; `colouring` has the values of its cells.
 
-    Raises InputError: the grid is a surface and a slice is requested, or the slice does not exist; the zoom
-    contains no cells, or has another dimension.
+    Raises InputError: a slice of a surface, or one that does not exist; a zoom without cells, or of another
+    dimension.
     """
     values = [np.asarray(part) for part in colouring.parts] if colouring else None
     where = view.part
@@ -62,7 +61,7 @@ def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure
 
 
 def _surface(grid: Grid, values: list[Floats] | None) -> list[CellSheet]:
-    """Return the patches of a surface, or the walls of a volume; its whole boundary if it has no walls."""
+    """Return the patches of a surface, or the walls of a volume, else its whole boundary."""
     if grid.form == "surface":
         return [CellSheet(block.nodes, values[k] if values else None) for k, block in enumerate(grid.blocks)]
     sheets, walls = [], grid.walls()
@@ -77,10 +76,7 @@ def _surface(grid: Grid, values: list[Floats] | None) -> list[CellSheet]:
 
 
 def _flattened(sheets: Sequence[CellSheet]) -> tuple[list[Floats] | None, int]:
-    """Return the nodes (n, m, 2) of sheets in one plane normal to an axis, and this axis.
-
-    The nodes are None if the sheets are not in one such plane.
-    """
+    """Return nodes (n, m, 2) of sheets in a plane normal to an axis, else None; and the axis."""
     every = np.concatenate([sheet.nodes.reshape(-1, 3) for sheet in sheets])
     extent = np.ptp(every, axis=0)
     across = int(extent.argmin())
@@ -223,7 +219,7 @@ def _finish(
 
 
 def _emptiest(points: Floats, box: Box) -> tuple[float, float]:
-    """Return the corner of the picture with the fewest `points` (n, 2), excluding the lower right one."""
+    """Return the corner of the picture with the fewest `points` (n, 2), but not the lower right one."""
     part = np.stack([(points[:, k] - box[2 * k]) / (box[2 * k + 1] - box[2 * k]) for k in (0, 1)], axis=1)
     corners = (0.0, 0.0), (0.0, 1.0), (1.0, 1.0)
     return min(corners, key=lambda corner: int((np.abs(part - corner) < 0.2).all(axis=1).sum()))

@@ -20,17 +20,15 @@ class View:
 
     Parameters
     ----------
-    zoom : x0, x1, y0, y1 for planar pictures, with z0, z1 for pictures in space; cells outside are not drawn.
-    every : step between drawn lines; None selects it by the resolution of the picture.
-    slice : slice of a volume: ``i=10``, ``k=-1`` or ``x=.5``; None draws the walls, or the whole boundary of
-        a volume without walls.
+    zoom : x0, x1, y0, y1, in space also z0, z1; cells outside are not drawn.
+    every : step between drawn lines; None: by the resolution of the picture.
+    slice : slice of a volume, ``i=10``, ``k=-1`` or ``x=.5``; None: the walls, or the whole boundary.
     seen_from : azimuth and elevation in degrees, for pictures in space; None is `SEEN_FROM`.
-    up : axis that points upwards in pictures in space, ``x``, ``y`` or ``z``; the elevation is measured from
-        the plane normal to it.
-    span : fractions of the span of a blade row (0 at the hub, 1 at the shroud) at which sections are drawn.
+    up : axis that points upwards in pictures in space; elevations are measured from the plane normal to it.
+    span : fractions of a blade row's span for sections, 0 at the hub, 1 at the shroud.
     meridional : draw the meridional section of a blade row.
 
-    Raises InputError: an unknown form of slice, a box without extent, `every` below 1.
+    Raises InputError: an unknown form of slice; a box without extent; `every` below 1.
     """
 
     zoom: tuple[float, ...] | None = None
@@ -94,7 +92,7 @@ class View:
 
 
 def check_flat(view: View) -> None:
-    """Raise InputError for settings that only grids in space have: a slice, a direction of view, an axis."""
+    """Raise InputError for settings that only grids in space have."""
     settings = {"span": view.span or None, "meridional": view.meridional or None, "slice": view.slice}
     for name, value in (settings | {"seen_from": view.seen_from, "up": view.up}).items():
         if value is not None:
@@ -102,9 +100,7 @@ def check_flat(view: View) -> None:
 
 
 def flat_box(zoom: tuple[float, ...] | None, across: int | None = None) -> Box | None:
-    """Return the box of a planar picture.
-
-    A box in space is reduced to its extents along all axes except the one with the index `across`.
+    """Return the box of a planar picture; a box in space loses its extent along the axis `across`.
 
     Raises InputError: a box in space for a planar grid.
     """

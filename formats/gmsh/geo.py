@@ -1,8 +1,6 @@
-"""Gmsh's ``.geo``: the outer edges of a grid as transfinite curves, for meshing or changes in Gmsh.
+"""Gmsh's ``.geo``: outer edges as transfinite curves, each block a transfinite surface.
 
-The boundary nodes are kept; Gmsh interpolates the others. Each block is a transfinite surface; O and C grids
-become two, split at the middle of i, since such a surface cannot be connected to itself.
-https://gmsh.info/doc/texinfo/gmsh.html#Structured-grids
+O and C grids become two surfaces. https://gmsh.info/doc/texinfo/gmsh.html#Structured-grids
 """
 
 from collections.abc import Iterable
@@ -46,7 +44,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def _loops(grid: Grid, block: int, number: Indices) -> list[tuple[Indices, Indices]]:
-    """Return boundary nodes and corners of the surfaces of a block: two if it is connected to itself."""
+    """Return boundary nodes and corners of the surfaces of a block; two if it joins itself."""
     last = len(number) - 1
     itself = any(each.block == each.donor == block for each in grid.connections if not each.transform)
     ends = (0, last // 2, last) if itself else (0, last)

@@ -1,7 +1,6 @@
-"""Writing Gmsh's ``.msh`` 2.2 and 4.1: quadrilaterals with merged seams, patches as physical groups.
+"""Writing Gmsh's ``.msh`` 2.2 (by meshio) and 4.1: merged seams, patches as physical groups.
 
-2.2 is written by meshio; in 4.1 every patch is an entity, which meshio does not support. Converters such as
-OpenFOAM's require text. https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format
+https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format
 """
 
 import struct
@@ -27,7 +26,7 @@ _KINDS = {2: 1, 4: 3, 8: 5}
 
 
 class Link(NamedTuple):
-    """A periodic patch: its tag, the tag of its master, the affine map from the master, node pairs (n, 2)."""
+    """A periodic patch: its tag, that of its master, the affine map from the master, node pairs (n, 2)."""
 
     tag: int
     master: int
@@ -40,10 +39,7 @@ CellGroup: TypeAlias = "tuple[str, Indices]"
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the only grid of `grids`: quads and boundary lines, or hexahedra and boundary quads of a volume.
-
-    Boundary elements are in physical groups with the names of the patches.
-    """
+    """Write the only grid of `grids`: cells, and boundary elements in groups named after patches."""
     grid = only_one(grids, "a .msh file")
     refuse_collapsed(grid, "a .msh file")
     mesh = unstructured(grid)

@@ -1,7 +1,6 @@
-"""Reading the boundary of Gmsh meshes, ``.msh`` 2.2 and 4.1, text or binary.
+"""The boundary of Gmsh meshes, ``.msh`` 2.2 and 4.1: their lines, or the free edges of their cells.
 
-The lines of a mesh are its boundary, with the names of their physical groups; without lines, the boundary
-edges of its cells are. https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format
+https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format
 """
 
 import re
@@ -31,8 +30,7 @@ _AGAIN = "write the file again"
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Yield the shapes that the lines of a mesh enclose.
 
-    Raises InputError: the file is not a Gmsh mesh, has another version or is three-dimensional; lines do not
-    form closed curves.
+    Raises InputError: not a Gmsh mesh of a known version; three dimensions; lines that are not closed curves.
     """
     data = source.read_bytes()
     version, binary, order = _format(data)

@@ -1,7 +1,4 @@
-"""The sections of Gmsh meshes as arrays: nodes, elements, and the physical groups of entities.
-
-Every count is compared with the size of the rest of the file before memory is allocated.
-"""
+"""The sections of Gmsh meshes as arrays; every count is checked before memory is allocated."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple, TypeAlias
@@ -73,7 +70,7 @@ class _Stream:
         return len(self._data) - self._at
 
     def bounded(self, count: int) -> int:
-        """Return `count`, a number of blocks. Raises InputError: the section cannot hold so many."""
+        """Return `count`, a number of blocks that the section can hold."""
         if not 0 <= count <= self.left:
             raise InputError(f"should have {count} blocks and is too short", _CUT)
         return count
@@ -111,7 +108,7 @@ def elements(
 ) -> Elements:
     """Return the elements of a section ``$Elements``.
 
-    In files of version 4.1, `tags` has the physical group of each entity, by the entity's dimension and tag.
+    In version 4.1, `tags` has the physical group of each entity, by its dimension and tag.
     """
     stream = _Stream(section, binary, order)
     if version == "4.1":

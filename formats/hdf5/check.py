@@ -1,9 +1,7 @@
 """Checks of an HDF5 dataset: layout, shapes, types and sizes, before memory is allocated.
 
-For texts of variable length, h5py's default, the HDF5 library (1.14 and before) trusts two numbers of a
-damaged file: sizes in a global heap, where a free object of size 0 makes an endless loop that no signal
-interrupts, and the length of a text, for which it allocates up to 4 GiB. Both are checked first. HDF5 File
-Format Specification, III.E: https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html
+The HDF5 library (1.14 and before) trusts damaged sizes of heaps and texts: endless loops, 4 GiB of memory.
+Format Specification III.E: https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html
 """
 
 from __future__ import annotations
@@ -43,7 +41,7 @@ _TEXT = np.dtype([("length", "<u4"), ("heap", "<u8"), ("index", "<u4")])
 
 
 class Checked:
-    """An open dataset: `count` samples with the same `topology`; in version 2 with `blocks` blocks each."""
+    """An open dataset: `count` samples with one `topology`; in version 2 with `blocks` blocks each."""
 
     def __init__(self, file: h5py.File, source: Source) -> None:
         self._file, self._source = file, source
@@ -114,7 +112,7 @@ class Checked:
         return np.array(rows[k - first], dtype=np.float64)
 
     def nodes(self, name: str, k: int) -> Floats:
-        """Return row `k` of a checked dataset of nodes. Large rows are read in parts, into planar layout."""
+        """Return row `k` of a dataset of nodes in planar layout; large rows are read in parts."""
         data = self._file[name]
         if 8 * int(np.prod(data.shape[1:])) <= LARGE:
             return self.sample(name, k)
@@ -126,7 +124,7 @@ class Checked:
 
     @staticmethod
     def _rows_from(data: h5py.Dataset, k: int) -> Any:
-        """Return row `k` and those after it that are read in the time of one, about `TOGETHER` bytes."""
+        """Return row `k` and those after it, about `TOGETHER` bytes."""
         size = data.dtype.itemsize * max(int(np.prod(data.shape[1:])), 1)
         try:
             return data[k : k + max(TOGETHER // size, 1)]
@@ -215,8 +213,7 @@ def checked(source: Source) -> Iterator[Checked]:
 def opened(source: Source, *, texts: bool = True) -> Iterator[h5py.File]:
     """Open `source` for reading; errors of the HDF5 library inside the context become InputError.
 
-    If `texts` is False, the file is not searched for damaged texts, and no text of variable length may be
-    read.
+    Without `texts`, the file is not searched for damaged texts, and none of variable length may be read.
     """
     import h5py
 
@@ -254,7 +251,7 @@ def _short(error: Exception) -> str:
 
 
 def check_heaps(source: Source) -> None:
-    """Raise InputError if the sizes of objects in a heap of texts do not add up to the size of the heap."""
+    """Raise InputError if the sizes of objects in a heap of texts do not add up to that of the heap."""
     if source.size > _MOST_SEARCHED:
         return
     with source.open() as stream, contextlib.ExitStack() as stack:

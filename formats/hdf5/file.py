@@ -1,8 +1,6 @@
-"""Creation of HDF5 files on disks that may run full.
+"""HDF5 files on disks that may run full: the library crashes if it cannot write while it closes a file.
 
-After a failed write, the HDF5 library cannot close a file: it tries to write again when the program ends, and
-crashes. Errors are therefore hidden from the library and further writes are ignored; the first error is
-raised after the library has closed the file.
+Errors are therefore hidden from it, and raised after the file is closed.
 """
 
 from __future__ import annotations

@@ -37,8 +37,8 @@ class Failed(NamedTuple):
 class PartFacts:
     """Description of a part, read from its file.
 
-    `size` must be the same in all parts. `columns` has, for each dataset of the part, its length, the shape
-    of a row, and the type. `common` has, by name, digests of the facts that all grids of the part share.
+    `size` is the same in all parts. `columns` has length, row shape and type of each dataset, `common`
+    digests of the facts that all grids of the part share.
     """
 
     path: Path
@@ -110,7 +110,7 @@ class Part:
 def shown_parts(file: h5py.File, source: Source) -> list[Part] | None:
     """Return the parts of the open index `source`, in order; None if it is not an index.
 
-    Raises InputError: a part is missing, or not in a folder next to the index; its rows are not consecutive.
+    Raises InputError: a part is missing, or elsewhere than beside the index; rows that are not consecutive.
     """
     import h5py
 
@@ -150,9 +150,7 @@ def _parts(mappings: Any, index: Path, split: str) -> Iterator[Part]:
 
 
 def write_index(file: Path, index: Path, parts: Sequence[PartFacts]) -> None:
-    """Write the index of `parts` to `file`, which is later renamed to `index`.
-
-    At least one of the parts must have samples.
+    """Write to `file` the index of `parts`, some with samples; it is later renamed to `index`.
 
     Raises InputError: the parts differ in size or settings.
     """
@@ -187,7 +185,7 @@ def _check_same(facts: PartFacts, first: PartFacts) -> None:
 def _add_column(
     made: h5py.File, name: str, row: tuple[int, ...], kind: Any, parts: Sequence[PartFacts], folder: Path
 ) -> None:
-    """Add the virtual dataset `name` over all `parts`; rows of parts without it are empty or NaN."""
+    """Add the virtual dataset `name` over all `parts`; parts without it have empty or NaN rows."""
     import h5py
 
     ends = [facts.columns.get(name, (0,))[0] if name == "failed" else facts.count for facts in parts]

@@ -1,18 +1,5 @@
-"""Datasets in parts: files ``out/part-00000.h5`` and so on, each a dataset, and the index ``out.h5`` of them.
+"""Datasets in parts: files ``out/part-00000.h5`` ..., and their index ``out.h5`` (docs/reference/hdf5.md).
 
-A part is written atomically, and describes how it was made:
-
-========== ========================================================================================
-request    attribute: digest of the settings, equal in all parts
-part_size  attribute: number of inputs of each part but the last
-size       attribute: node counts and topology as text
-inputs     dataset of texts: digests of the inputs
-failed     dataset of texts: JSON lists ``[input, member, error, again]``, one for each sample that could
-           not be made; `again` says whether to try it again
-========== ========================================================================================
-
-``out.h5`` has the attributes of the first part. For each dataset of the parts it has an HDF5 virtual dataset,
-which concatenates their rows and refers to the parts by relative paths. It can be rebuilt from the parts.
 https://docs.hdfgroup.org/archive/support/HDF5/docNewFeatures/NewFeaturesVirtualDatasetDocs.html
 """
 
@@ -70,7 +57,7 @@ class PartFiles:
 
     @property
     def folder(self) -> Path:
-        """The folder of the parts, next to the index file; its name is that file's without extension."""
+        """The folder of the parts: the path of the index without extension."""
         return self.index.with_suffix("")
 
     def path(self, number: int) -> Path:
@@ -108,12 +95,10 @@ class PartFiles:
         return 0
 
     def state(self, number: int, inputs: Sequence[Input]) -> State:
-        """Return the state of a part: ``complete``, to be ``extended``, or ``missing``.
+        """Return the state of a part: ``complete``, ``missing``, or to be ``extended``.
 
-        A part is to be extended if it was made from only the first of `inputs`. It is also to be extended if
-        one of its failed inputs has changed since, or may succeed now (for example after lack of memory).
-        Raises OtherPartsError: the part was made from other inputs or with other settings; InputError: it
-        cannot be read.
+        It is to be extended if `inputs` are more than it was made from, or if a failed input has changed or
+        may succeed now. Raises OtherPartsError: it was made otherwise; InputError: it cannot be read.
         """
         if not self.path(number).exists():
             return "missing"
@@ -134,10 +119,9 @@ class PartFiles:
         self, number: int, kind: str, samples: Iterable[Boundary | Grid], inputs: Sequence[Input],
         failed: list[Failed],
     ) -> int:  # fmt: skip
-        """Write a part atomically and return its number of samples.
+        """Write a part atomically and return its number of samples; `failed` is filled meanwhile.
 
-        `failed` is filled while `samples` are iterated. Raises InputError: samples of different sizes; a path
-        that cannot be written.
+        Raises InputError: samples of different sizes; a path that cannot be written.
         """
         count = 0
         name: Kind = "meshonet-grid" if kind == "grids" else "meshonet-boundary"
@@ -154,10 +138,9 @@ class PartFiles:
         return count
 
     def build(self) -> int:
-        """Write the index of the existing parts and return its number of samples, 0 if there is none.
+        """Write the index of the existing parts and return its number of samples.
 
-        Several processes may call this concurrently: the last of them finds the parts of all. Raises
-        InputError: parts have different settings or sizes.
+        Several processes may do so at once: the last one finds all parts. Raises InputError: parts differ.
         """
         numbers, count = None, 0
         while numbers != (numbers := self.numbers()):

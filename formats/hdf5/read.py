@@ -26,10 +26,9 @@ T = TypeVar("T")
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Return an iterator over the boundaries, or over the stored outer edges of grids.
+    """Return an iterator over boundaries, outer edges of grids, or domains of multi-block grids.
 
-    For multi-block grids it returns the domains. An invalid sample raises InputError, after which the
-    iterator continues.
+    An invalid sample raises InputError, after which the iterator continues.
     """
     return map(call, samples_read(source, _boundary))
 

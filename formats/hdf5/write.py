@@ -115,7 +115,7 @@ class Writer:
     def note(self, facts: Mapping[str, str], digests: Sequence[str], failed: Sequence[str]) -> None:
         """Write how the samples were made: facts, digests of inputs, and texts about failed samples.
 
-        The texts are attributes of fixed length, so that reading them needs no search for damage.
+        Facts are attributes of fixed length, which are read without a search for damage.
         """
         size, connections = self._first or ("", "")
         joined = f", connected as {_digest(connections)}" if connections else ""
@@ -193,7 +193,7 @@ def writing(path: Path, kind: Kind) -> Iterator[Writer]:
 def write_boundaries(path: Path, boundaries: Iterable[Boundary], failed: Sequence[Failed] = ()) -> None:
     """Write boundaries of the same size and topology, one at a time.
 
-    `failed` lists samples that could not be made or are left out; it may grow while samples are made.
+    `failed` lists samples that could not be made or are left out; it may grow meanwhile.
     """
     _write(path, "meshonet-boundary", boundaries, failed)
 

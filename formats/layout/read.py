@@ -32,7 +32,7 @@ MOST_BYTES = 256 << 20
 def read_layout(source: Source) -> Layout:
     """Return the layout of a file.
 
-    Raises InputError, with the place in the file: it is not JSON or not a layout; its parts do not match.
+    Raises InputError, with the place: not JSON; not a layout; parts that do not match.
     """
     if source.size > MOST_BYTES:
         raise InputError(f"{source.size >> 20} MB are too much for a layout", "give a file below 256 MB")
@@ -55,10 +55,7 @@ def read_layout(source: Source) -> Layout:
 
 
 def layout_of(text: str) -> Layout:
-    """Return the layout of the file `text`, or of standard input for ``-``.
-
-    Raises InputError: see `read_layout`.
-    """
+    """Return the layout of the file `text`, or of standard input for ``-`` (`read_layout`)."""
     source = open_source(text)
     with in_source(source.name):
         return read_layout(source)
@@ -106,7 +103,7 @@ def _loop(values: Values) -> Loop:
 
 
 class _LayoutNodes:
-    """Table of all nodes: vertices, then nodes between the ends of edges, then interior nodes of faces."""
+    """Table of all nodes: vertices, inner nodes of edges, inner nodes of faces."""
 
     def __init__(
         self, domain: Domain, vertices: list[Values], edges: list[Values], faces: list[Values]

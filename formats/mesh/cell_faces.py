@@ -1,13 +1,6 @@
-"""Cells and faces of a lattice of node numbers, in the node order that mesh formats share.
+"""Cells and faces of a lattice of node numbers, in the node order of VTK.
 
-::
-
-      3-----2        7-----6        normals of faces point out of the block: the nodes 0 1 2 3 of
-      |     |       /|    /|        a face run counter-clockwise, seen from outside
-      0-----1      4-----5 |
-                   | 3---|-2
-                   |/    |/
-                   0-----1
+Quadrilaterals and bottoms of hexahedra run counter-clockwise; the top follows. Faces do so from outside.
 """
 
 from collections.abc import Sequence
@@ -42,7 +35,7 @@ def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
 def faces_of(side_numbers: Indices, side: Side) -> Indices:
     """Return the edges (k, 2) or quadrilaterals (k, 4) of a side part with node numbers (n,) or (n, m).
 
-    The domain is on the left of edges; normals of quadrilaterals point out of it.
+    Edges have the domain on their left; normals of quadrilaterals point out of it.
     """
     if side_numbers.ndim == 1:
         rows = np.stack([side_numbers[:-1], side_numbers[1:]], axis=-1)

@@ -1,12 +1,6 @@
-r"""Degenerate sides of volumes: they collapse to a line, as at an axis, or to a point, as at a pole.
+"""Degenerate sides of volumes, collapsed to a line (an axis) or a point (a pole).
 
-::
-
-      +---+          coincident nodes of a side get one number; cells there have six or five nodes,
-     /|    \         their faces three, and faces without area are omitted
-    + |     +
-     \|    /
-      +---+
+Coincident nodes get one number: cells there have six or five nodes, and faces without area are left out.
 """
 
 from collections.abc import Iterator
@@ -35,9 +29,9 @@ def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, Bools]]:
 
 
 def with_collapsed(grid: Grid, numbers: list[Indices]) -> list[Indices]:
-    """Return node `numbers` of all blocks, changed so that coincident neighbours on a side share a number.
+    """Return node `numbers` of all blocks, in which coincident neighbours on a side share a number.
 
-    The numbers have no gaps. Without degenerate sides the given arrays are returned.
+    Numbers have no gaps. Without degenerate sides, the same arrays are returned.
     """
     edges = list(collapsed_edges(grid))
     if not edges:

@@ -1,8 +1,4 @@
-"""Closed curves from named edges in any order and direction.
-
-Also default names for the outer edges of a multi-block grid: the outermost curve is ``outer``, the curves
-around bodies are ``body``, ``body2`` and so on.
-"""
+"""Closed curves from named edges in any order and direction, and default names of outer edges."""
 
 from __future__ import annotations
 
@@ -43,7 +39,7 @@ class EdgeLoop:
 
 
 def closed_loops(edges: Mapping[str, Indices], points: Floats) -> list[EdgeLoop]:
-    """Return the closed curves formed by named edges (k, 2), each in the direction of its first edge.
+    """Return the closed curves of named edges (k, 2), each in the direction of its first edge.
 
     Raises InputError: a point at which only one edge ends, or more than two.
     """
@@ -77,7 +73,10 @@ def _followed(flat: list[int], twin: list[int], names: list[str]) -> list[EdgeLo
 
 
 def with_loop_names(grid: Grid) -> Grid:
-    """Return a planar grid with patches on all its outer edges."""
+    """Return a planar grid with patches on all outer edges.
+
+    The outermost curve is ``outer``, those around bodies are ``body``, ``body2`` and so on.
+    """
     outer = grid.outer_patches()
     unnamed = [
         p
@@ -101,7 +100,7 @@ def with_loop_names(grid: Grid) -> Grid:
 
 
 def _titles(grid: Grid, numbers: list[Indices], outer: list[Patch]) -> dict[int, str]:
-    """Return the name of the curve of each outer node; periodic sides are parts of curves too."""
+    """Return the name of the curve of each outer node; periodic sides belong to curves."""
     ends = [(p.block, p.side, p.start, p.stop) for p in outer]
     for each in grid.connections:
         if each.transform:

@@ -14,14 +14,11 @@ Facts: TypeAlias = Mapping[str, Sequence[str]]
 
 
 def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]]:
-    """Return topology, name, patches and provenance of `grid` as a dict from keys to lists of texts.
+    """Return topology, name, patches and provenance of `grid` as texts by key, for `grid_with`.
 
-    `grid_with` restores the grid from them. A patch is ``side start stop name``; its kind is added if the
-    name does not imply it, and so is its range along the second direction of a side. Empty entries are
-    omitted. For a multi-block grid, the texts describe one `block`; only those of the first block contain the
-    connections and the provenance. The `number` of the grid in its file identifies blocks of the same grid
-    for `grid_of_blocks`. An extruded grid gets the texts of its planar grid, so that it is read as a planar
-    grid.
+    A patch is ``side start stop name``; kinds and ranges along the second direction are added where needed.
+    In a multi-block grid the texts are those of one `block`, of the grid with this `number` in its file; the
+    first block has connections and provenance. An extruded grid has the texts of its planar grid.
     """
     space = grid.form != "plane"
     if space:

@@ -24,7 +24,7 @@ from meshonet.geometry.errors import InputError
 
 
 def number_of_grid(facts: Facts) -> int | None:
-    """Return the number, in its file, of the multi-block grid to which the block with `facts` belongs."""
+    """Return the number, in its file, of the multi-block grid of a block; None without one."""
     words = facts["block"][0].split() if facts.get("block") else []
     return int(words[0]) if len(words) == 2 and all(w.isdecimal() and len(w) < 9 for w in words) else None
 
@@ -35,9 +35,9 @@ def says_in_space(facts: Facts) -> bool:
 
 
 def nodes_by_facts(coordinates: Sequence[Floats], facts: Facts) -> Floats:
-    """Return the nodes of a block from x, y[, z], each (n1, n2, n3), planar or in space as its facts say.
+    """Return the nodes of a block from x, y[, z], each (n1, n2, n3), planar or in space.
 
-    Raises InputError: the block is not planar, and its facts do not say that it is three-dimensional.
+    Raises InputError: the block is not planar, and its facts do not say that it is in space.
     """
     if not says_in_space(facts):
         return planar(coordinates)
@@ -45,7 +45,7 @@ def nodes_by_facts(coordinates: Sequence[Floats], facts: Facts) -> Floats:
 
 
 def grid_of_blocks(blocks: Sequence[tuple[Floats, Facts]], name: str = "") -> Grid:
-    """Return the grid of blocks, each given by nodes and facts; the facts determine the order of blocks.
+    """Return the grid of blocks, given by nodes and facts, in any order.
 
     Raises InputError: a block is missing or repeated; connections do not match the nodes.
     """
@@ -70,12 +70,9 @@ def _grid(blocks: Sequence[tuple[Floats, Facts]], name: str) -> Grid:
 
 
 def grid_with(nodes: Floats, facts: Facts, name: str = "") -> Grid:
-    """Return the grid of `nodes` with the facts of its file.
+    """Return the grid of `nodes` with the facts of its file, or else this `name`.
 
-    A missing topology is recovered for planar grids.
-
-    A block of a multi-block grid becomes a grid of its own, without the connections. `name` is used if the
-    facts have no name. Unknown facts are ignored.
+    A missing planar topology is recovered. A block of a multi-block grid becomes a grid without connections.
     """
     if says_in_space(facts):
         alone = number_of_grid(facts) is None

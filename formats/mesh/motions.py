@@ -1,7 +1,4 @@
-"""The rigid motion between two connected sides: none, a translation or a rotation.
-
-It is computed from the nodes, because file formats differ in the sign.
-"""
+"""The rigid motion between two connected sides, from their nodes: files differ in its sign."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -25,9 +22,9 @@ _DIGITS = range(1, 18)
 
 
 def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
-    """Return a connection of `blocks`, to which the motion between its two sides is added.
+    """Return a connection of `blocks` with the motion between its two sides.
 
-    Raises InputError: the sides have different node counts; no translation or rotation makes nodes coincide.
+    Raises InputError: sides of different node counts; no translation or rotation makes nodes coincide.
     """
     own, donor = connection.nodes(lambda block, side: blocks[block].face(side))
     if own.shape != donor.shape:
@@ -45,12 +42,9 @@ def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
 
 
 def like_others(connection: Connection, motions: list[Motion]) -> Connection:
-    """Return a periodic connection whose motion is replaced by a nearly equal one in `motions`.
+    """Return a periodic connection with the motion in `motions` that is nearly equal to its own.
 
-    If `motions` has none, the connection's motion is added to it.
-
-    In this way, all periodic sides whose motions are equal or inverse to each other get bitwise the same
-    motion, so that they agree where they meet.
+    If there is none, its own is added. Sides of equal or inverse motions thus agree bitwise where they meet.
     """
     for known in motions:
         for each in (connection, connection.reversed()):
@@ -61,7 +55,7 @@ def like_others(connection: Connection, motions: list[Motion]) -> Connection:
 
 
 def _motions(own: Floats, donor: Floats) -> Iterator[Motion]:
-    """Yield candidates for the motion from nodes `own` (n, d) to `donor`: none, a translation, a rotation."""
+    """Yield possible motions from nodes `own` (n, d) to `donor`: none, translations, a rotation."""
     yield Motion()
     shift = (donor - own).mean(axis=0).tolist()
     for digits in _DIGITS:  # one that was meant makes the very nodes
@@ -77,10 +71,7 @@ def _motions(own: Floats, donor: Floats) -> Iterator[Motion]:
 
 
 def _turn(own: Floats, donor: Floats) -> tuple[tuple[float, ...], ...]:
-    """Return the rows of the rotation matrix between sides of nodes (n, d), none for sides without extent.
-
-    In space it is the least-squares rotation.
-    """
+    """Return the rows of the (least-squares) rotation between sides (n, d); none for sides without extent."""
     if own.shape[1] == 2:
         here, there = (nodes[-1] - nodes[0] for nodes in (own, donor))
         if not here.any():

@@ -12,8 +12,7 @@ def words(
 ) -> dict[str, str]:
     """Return a different word of ASCII letters, digits and ``_.+-`` for each of `names`.
 
-    In case files a blank, a comma or a bracket ends a name. A word has at most `limit` characters, is not one
-    of `taken`, and starts with a letter if `letter` is set.
+    A word has at most `limit` characters, is not one of `taken`, and starts with a letter if `letter` is set.
 
     >>> words(["wall", "no-slip wall", "no-slip,wall", "Ω"])
     {'wall': 'wall', 'no-slip wall': 'no-slip_wall', 'no-slip,wall': 'no-slip_wall-2', 'Ω': 'part'}
@@ -41,7 +40,7 @@ def unused(stem: str, used: Container[str], limit: int = 64) -> str:
 
 
 def kind_said(name: str, word: str, known: Sequence[tuple[str, Kind]]) -> Kind:
-    """Return the kind of a patch that its `name` implies, or else the kind for the file's `word`."""
+    """Return the kind of a patch by its `name`, or else by the file's `word`."""
     by_word: Kind = next((kind for sign, kind in known if word.startswith(sign)), "other")
     by_name = kind_of(name)
     return by_word if by_name == "other" else by_name

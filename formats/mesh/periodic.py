@@ -1,12 +1,6 @@
 """The boundary of a grid as named faces, each with its cell; periodic faces in pairs, row by row.
 
-::
-
-    name      a ---> b        edges of one side, with the domain on their left
-                                  + motion
-    partner   b' <-- a'       row k corresponds to row k of the first side, in the opposite direction
-
-In space, rows are quadrilaterals a b c d whose normals point out of the domain, and a' d' c' b'.
+A row is an edge a b or quadrilateral a b c d; its partner, moved, is b' a' or a' d' c' b'.
 """
 
 from collections.abc import Iterable, Sequence
@@ -37,7 +31,7 @@ class NamedFaces(NamedTuple):
 
 
 class PeriodicPair(NamedTuple):
-    """Faces with a name, and the corresponding faces of the partner, to which `motion` maps them."""
+    """Named faces, and the corresponding faces of the partner, to which `motion` maps them."""
 
     name: str
     partner: str
@@ -61,10 +55,9 @@ class PeriodicPair(NamedTuple):
 def outer_parts(
     grid: Grid, numbers: Sequence[Indices]
 ) -> tuple[dict[str, NamedFaces], tuple[PeriodicPair, ...]]:
-    """Return the outer faces by name (those of periodic pairs come last), and the periodic pairs.
+    """Return the outer faces by name (periodic ones last), and the periodic pairs.
 
-    `numbers` are the node numbers of each block. Connected faces belong to no part. Unnamed outer faces get
-    the name of their side.
+    `numbers` are the node numbers of each block. Unnamed faces get the name of their side.
     """
     cells = cell_numbers([block.counts for block in grid.blocks])
     pieces: dict[str, list[NamedFaces]] = {}
@@ -87,12 +80,10 @@ def outer_parts(
 def periodic_pairs(
     grid: Grid, numbers: Sequence[Indices], cells: Sequence[Indices], taken: Iterable[str]
 ) -> list[PeriodicPair]:
-    """Return the pairs of periodic sides of a grid.
+    """Return the pairs of periodic sides of a grid, one for each motion and pair of names.
 
-    `numbers` are the node numbers of each block, `cells` the cell numbers of each block.
-
-    Connections with the same motion and the same names form one pair. Unnamed pairs are called periodic1 and
-    periodic2 and so on, but never by a name in `taken`.
+    `numbers` and `cells` are node and cell numbers of each block. Unnamed pairs are periodic1 and periodic2
+    and so on, except names in `taken`.
     """
     motions: list[Motion] = []
     by_motion: dict[tuple[int, str, str], list[tuple[NamedFaces, NamedFaces]]] = {}
@@ -118,7 +109,7 @@ def periodic_pairs(
 
 
 def _known(motion: Motion, motions: list[Motion]) -> tuple[int, bool]:
-    """Return the index of a motion in `motions`, appended if new, and whether it is the inverse of it."""
+    """Return the index of a motion in `motions`, perhaps new, and whether it is inverse."""
     for number, known in enumerate(motions):
         for backwards, like in ((False, motion), (True, motion.inverse())):
             if known.alike(like, _SAME):
@@ -130,23 +121,23 @@ def _known(motion: Motion, motions: list[Motion]) -> tuple[int, bool]:
 def _parts(
     connection: Connection, numbers: Sequence[Indices], cells: Sequence[Indices]
 ) -> tuple[NamedFaces, NamedFaces]:
-    """Return the faces of both sides of a connection, the donor's the other way round, and the cells."""
+    """Return faces and cells of both sides of a connection, those of the donor reversed."""
     faces = [faces_of(nodes[..., 0], connection.side) for nodes in connection.pairs(numbers)]
     behind = [rows.ravel(order="F") for rows in cells_beside(connection, cells)]
     return NamedFaces(faces[0], behind[0]), NamedFaces(faces[1][:, _OPPOSITE[faces[1].shape[1]]], behind[1])
 
 
 def cells_beside(connection: Connection, cells: Sequence[Indices]) -> tuple[Indices, Indices]:
-    """Return the numbers of the cells on both sides of a connection; `cells` are those of all blocks.
+    """Return the numbers of the cells on both sides of a connection, in one order.
 
-    Cells that touch each other have the same position in both arrays.
+    `cells` are the cell numbers of all blocks.
     """
     own, donor = cells_at(connection, lambda block, side: face_of(cells[block][..., None], side))
     return own[..., 0], donor[..., 0]
 
 
 def donor_range(each: Connection) -> Range:
-    """Return the donor's range; along reversed directions its first and last node are exchanged."""
+    """Return the donor's range, with first and last node exchanged along reversed directions."""
     span = list(each.donor_range)
     for way in each.orientation:
         if way < 0:
@@ -155,7 +146,7 @@ def donor_range(each: Connection) -> Range:
 
 
 def patch_on(grid: Grid, connection: Connection) -> str:
-    """Return the name of the patches on a connection's first side, if they share it and cover the side."""
+    """Return the name of the patches that cover a connection's first side, empty unless it is one."""
     own = [patch for patch in grid.patches if patch.block == connection.block]
     counts = grid.blocks[connection.block].counts
     owners = owners_of(own, counts, (), connection.side)

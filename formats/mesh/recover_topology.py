@@ -18,11 +18,8 @@ _SEAM = 1e-6
 def boundary_of(grid: Grid) -> Shape:
     """Return the four outer edges of `grid`, with its topology, patches and name.
 
-    For a multi-block grid, the domain is returned; its blocks can be used again if they share complete sides.
-    A three-dimensional grid is returned as a shape.
-
-    Raises InputError: the edges are not a boundary, for example because two neighbouring nodes coincide; see
-    also `layout_of`.
+    A multi-block grid gives its domain, with its blocks if they share complete sides. A three-dimensional
+    grid gives a shape. Raises InputError: edges that are not a boundary; see also `layout_of`.
     """
     if grid.form != "plane":
         return SpatialShape(grid)
@@ -40,12 +37,11 @@ def boundary_of(grid: Grid) -> Shape:
 
 
 def recovered(nodes: Floats, name: str = "") -> Grid:
-    """Return the grid of `nodes` (ni, nj, 2), which must be `usable`, without information from a file.
+    """Return the grid of usable `nodes` (ni, nj, 2), with its topology found by position.
 
-    In a left-handed grid, index i is reversed. If columns 0 and ni-1 coincide within a millionth of the first
-    edge, the grid is an O grid. It is also an O grid if rows 0 and nj-1 coincide; i and j are then exchanged.
-    The smaller of the two closed sides is the body and becomes the south side. If the last nodes of a side
-    coincide with its first nodes in reverse order, it is a C grid, and this side becomes the south side.
+    Left-handed nodes are reversed along i. An O grid has equal first and last columns, or rows, which are
+    then exchanged with columns; its smaller closed side becomes south. A C grid has a side whose last nodes
+    are its first ones reversed; this side becomes south.
     """
     nodes = right_handed(usable(nodes))
     if not _closed(nodes) and _closed(_quarter_turn(nodes)):
@@ -67,8 +63,7 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
 def usable(nodes: Floats) -> Floats:
     """Return `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3) unchanged.
 
-    Raises InputError: there is only one node along a direction; a coordinate is not finite, or so large that
-    products overflow.
+    Raises InputError: one node along a direction; a coordinate that is not finite or above `LARGEST`.
     """
     if min(nodes.shape[:-1]) < 2:
         counts = " x ".join(map(str, nodes.shape[:-1]))
@@ -82,10 +77,7 @@ def usable(nodes: Floats) -> Floats:
 
 
 def right_handed(nodes: Floats) -> Floats:
-    """Return `nodes` (ni, nj, 2), with i reversed if their signed area is negative.
-
-    The signed area is computed from the outline; it equals the sum of the areas of all cells.
-    """
+    """Return `nodes` (ni, nj, 2), with i reversed if their signed area is negative."""
     return nodes[::-1] if is_left_handed(nodes) else nodes
 
 

@@ -1,14 +1,6 @@
 """Decides whether the blocks of a three-dimensional file are a planar grid, volumes or surfaces.
 
-The rule, for all blocks of a file together:
-
-- A block of one plane of nodes in which a coordinate is constant, or of two planes that are copies of each
-  other shifted along one coordinate (a layer one cell thick), is a slice.
-- Where all blocks are slices across the same coordinate at the same places, the file holds a grid in the
-  plane: that coordinate and the index across are left out.
-- Else, and always within `surfaces_wanted`, a block with one plane of nodes is a surface patch, any other one
-  a volume.
-- Index i is reversed in the plane and in volumes where their directions are left-handed.
+Only slices across one coordinate, at the same places, are a planar grid (`lattices`).
 """
 
 from collections.abc import Iterator, Sequence
@@ -35,7 +27,7 @@ _SURFACES = ContextVar("_SURFACES", default=False)
 
 @contextmanager
 def surfaces_wanted() -> Iterator[None]:
-    """Return a context in which flat patches are read as surfaces, with all three coordinates."""
+    """Return a context in which flat patches are read as surfaces in space."""
     token = _SURFACES.set(True)
     try:
         yield
@@ -45,7 +37,7 @@ def surfaces_wanted() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class IndexedNodes:
-    """Nodes (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3) of a block, and which index of the file i, j, k are.
+    """Nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) of a block; `axes` are the file's indices for i, j, k.
 
     `reversed` says whether i runs against its index in the file.
     """
@@ -56,7 +48,7 @@ class IndexedNodes:
 
 
 class _Slice(NamedTuple):
-    """A slice: its normal index, the coordinates in it, the constant coordinate and its values, its size."""
+    """A slice: normal index, kept coordinates, constant coordinate and its values, size."""
 
     axis: int
     kept: tuple[int, ...]
@@ -66,13 +58,13 @@ class _Slice(NamedTuple):
 
 
 def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> list[IndexedNodes]:
-    """Return the nodes of all blocks of a file; `places` name the blocks in error messages.
+    """Return the nodes of all blocks of a file; `places` name the blocks in messages.
 
-    The file is a planar grid if all blocks consist of slices normal to the same coordinate, at the same
-    positions. Otherwise a block with one plane of nodes is a surface patch, and any other block a volume.
-
-    The coordinates x, y[, z] of a block are arrays (n1, n2, n3) of any number type and memory order. They are
-    copied once. Raises InputError: a block without cells.
+    A slice has one plane of nodes with a constant coordinate, or two such planes one cell apart. If all
+    blocks are slices across the same coordinate at the same places, they are planar: this coordinate is left
+    out. Otherwise, and within `surfaces_wanted`, a block of one plane is a surface patch, any other a volume.
+    Left-handed planar blocks and volumes are reversed along i. Coordinates x, y[, z] are (n1, n2, n3), of any
+    number type and order. Raises InputError: a block without cells.
     """
     with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
         slices = []
@@ -89,9 +81,9 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
 
 
 def planar(coordinates: Sequence[Floats]) -> Floats:
-    """Return the nodes (ni, nj, 2) of a block that its file calls planar; it has one or more equal planes.
+    """Return the nodes (ni, nj, 2) of a planar block of one or more equal planes.
 
-    Raises InputError: the planes of the block are not equal.
+    Raises InputError: planes that are not equal.
     """
     with np.errstate(all="ignore"):
         cut = _slice_of(coordinates, most=max(coordinates[0].shape))
@@ -135,7 +127,7 @@ def _in_one_plane(slices: Sequence[_Slice | None]) -> bool:
 
 
 def _slice_of(coordinates: Sequence[Floats], most: int = 2) -> _Slice | None:
-    """Return the slice that a block with at most `most` planes represents, None if it is not a slice."""
+    """Return the slice that a block with at most `most` planes is, or None."""
     dims = coordinates[0].shape
     if sum(count > 1 for count in dims) < 2:
         problem = f"a grid of {'x'.join(map(str, dims))} nodes has no cells"
@@ -160,10 +152,7 @@ def _at(values: NDArray[Any], axis: int, index: int) -> NDArray[Any]:
 
 
 def _flat(plane: list[Floats], axis: int) -> _Slice | None:
-    """Return the slice that a plane of nodes represents.
-
-    If several coordinates are constant, the last is dropped.
-    """
+    """Return the slice that a plane of nodes is; of several constant coordinates the last is dropped."""
     spans = [float(np.ptp(values)) for values in plane]
     size = max(spans)
     if len(plane) == 2:
@@ -176,7 +165,7 @@ def _flat(plane: list[Floats], axis: int) -> _Slice | None:
 
 
 def _copies(first: list[Floats], next_plane: list[Floats], axis: int, before: _Slice | None) -> _Slice | None:
-    """Return the slice that two planes represent: both constant in one coordinate and equal in the others."""
+    """Return the slice of two planes with one constant coordinate and equal others, or None."""
     size = max(float(np.ptp(values)) for values in first)
     for flat in (2, 1, 0):
         if flat >= len(first) or (before and before.flat != flat):

@@ -1,7 +1,6 @@
 """Grids from the structured blocks, named faces and interfaces of a file, planar or in space.
 
-Interfaces and boundaries that the file does not state are found by position. The motion of a periodic
-interface is always computed from the nodes, because file formats differ in its sign.
+Interfaces that the file does not state are found by position; motions are computed from nodes.
 """
 
 from collections import Counter
@@ -33,10 +32,9 @@ from meshonet.geometry.errors import in_place
 
 @dataclass(frozen=True)
 class FileBlock:
-    """A block of a file: coordinates x, y[, z], each (n1, n2, n3), its name, and its place for messages.
+    """A block of a file: coordinates x, y[, z], each (n1, n2, n3), name, and place for messages.
 
-    `iblank` has the number of nodes with each iblank value, if the file has such values; `facts` are made by
-    `facts_of`.
+    `iblank` has the number of nodes with each iblank value; `facts` are those of `facts_of`.
     """
 
     coordinates: Sequence[Floats]
@@ -47,10 +45,7 @@ class FileBlock:
 
 
 def described_grids(blocks: Iterable[FileBlock], name: str) -> Iterator[Grid]:
-    """Yield the grids of blocks whose facts state their topology.
-
-    The blocks of a multi-block grid must be consecutive.
-    """
+    """Yield the grids of blocks whose facts state their topology; blocks of a grid follow each other."""
     for number, group in groupby(blocks, key=lambda block: number_of_grid(block.facts)):
         read = ((block, in_place(block.place)(_described)(block)) for block in group)
         if number is not None:
@@ -68,7 +63,7 @@ def _described(block: FileBlock) -> Floats:
 def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Grid:
     """Return the grid of a file with one block, using its facts if there are any.
 
-    Raises InputError: the facts do not match the nodes; see also `grids_of_file`.
+    Raises InputError: facts that do not match the nodes; see also `grids_of_file`.
     """
     if facts.get("topology"):
         return grid_with(nodes_by_facts(coordinates, facts), facts, name)
@@ -82,14 +77,12 @@ def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Gri
 def grids_of_file(
     blocks: Sequence[FileBlock], faces: Sequence[Face], pairs: Sequence[Pair], name: str
 ) -> Iterator[Grid]:
-    """Yield the grids of the blocks of a file `name`, by the rule of `meshonet.formats.mesh.slices`.
+    """Yield the grids of the blocks of a file `name` (`meshonet.formats.mesh.slices`).
 
-    Blocks that touch form one grid, and so do all surface patches; every other block is a separate grid. If
-    there are several grids, each is named after its block, or by `name` and a number. The order is that of
-    the grids' first blocks. Unnamed outer edges of a planar multi-block grid get names
-    (`meshonet.formats.mesh.loops`).
-
-    Raises InputError: a block without cells; nodes that are not usable; interfaces that do not coincide.
+    Blocks that touch form one grid, and so do all surface patches; other blocks are separate. Several grids
+    are named after their blocks, or by `name` and a number. Unnamed edges of planar blocks get names
+    (`meshonet.formats.mesh.loops`). Raises InputError: a block without cells; unusable nodes; interfaces that
+    do not coincide.
     """
     if blocks:
         read = lattices([block.coordinates for block in blocks], [block.place for block in blocks])
@@ -133,11 +126,7 @@ def _grids(
 def _stated(
     pairs: Sequence[Pair], read: Sequence[IndexedNodes], blocks: Sequence[Block]
 ) -> tuple[list[Connection], list[Patch]]:
-    """Return the connections that a file states, each once although most files state them twice, and patches.
-
-    The patches are those of periodic sides with a name. Periodic connections with the same motion, or its
-    inverse, get bitwise the same motion, so that they agree where they meet.
-    """
+    """Return the connections that a file states, once, and patches of named periodic sides."""
     stated: dict[object, Connection] = {}
     names: dict[object, str] = {}
     motions: list[Motion] = []
@@ -164,7 +153,7 @@ def _stated(
 
 
 def _groups(blocks: Sequence[Block], connections: Sequence[Connection]) -> list[list[int]]:
-    """Return the indices of the blocks of each grid: connected blocks, and all surface patches together."""
+    """Return the indices of the blocks of each grid: connected ones, and all surface patches."""
     surface = [k for k, block in enumerate(blocks) if block.nodes.shape[2:] == (3,)]
     joined = [(each.block, each.donor) for each in connections] + [(surface[0], k) for k in surface]
     label = joined_labels(len(blocks), [(np.array(a), np.array(b)) for a, b in joined])
@@ -178,7 +167,7 @@ def _joined(
     connections: Sequence[Connection],
     patches: Sequence[Patch],
 ) -> Grid:
-    """Return the grid of the blocks of a `group`; its provenance has their names and the counts of iblank."""
+    """Return the grid of a `group` of blocks, with their names and iblank counts as provenance."""
     number = {block: k for k, block in enumerate(group)}
     own = tuple(
         replace(each, block=number[each.block], donor=number[each.donor])
@@ -196,7 +185,7 @@ def _joined(
 
 
 def _alone(grid: Grid) -> Grid:
-    """Return the grid of a block without neighbours, with recovered topology and its patches."""
+    """Return the grid of a block without neighbours, with recovered topology."""
     if any(each.transform for each in grid.connections):
         return with_loop_names(grid)
     nodes, patches = grid.blocks[0].nodes, grid.patches

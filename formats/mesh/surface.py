@@ -1,7 +1,6 @@
 """Boundaries from unstructured meshes and drawings: closed curves of named edges.
 
-A single curve is the outline of a domain or a body. Curves inside another curve are holes of a domain. Curves
-next to each other are separate shapes.
+Curves inside another curve are holes of a domain; curves next to each other are separate shapes.
 """
 
 from collections import Counter
@@ -37,13 +36,12 @@ NAMELESS = "boundary"
 
 @dataclass(frozen=True)
 class MeshBoundary:
-    """Boundary information of a mesh of points (n, 2).
+    """Boundary of a mesh of `points` (n, 2).
 
     Parameters
     ----------
-    edges : (k, 2) point numbers of edges, by name; the empty name stands for unnamed edges. If there are no
-        edges, the edges that belong to only one cell are used.
-    cells : (m, 3 or 4) point numbers, one array per kind of cell.
+    edges : point numbers (k, 2) by name, "" without one; none: those of only one cell.
+    cells : point numbers (m, 3 or 4), one array per kind of cell.
     """
 
     points: Floats
@@ -54,12 +52,10 @@ class MeshBoundary:
 def shapes_of(surface: MeshBoundary, name: str) -> Iterator[Shape]:
     """Yield the shapes that the closed curves of `surface` form.
 
-    The nodes of a four-sided domain are kept if opposite sides have equal numbers of nodes; in a file without
-    cells, each side must also have three or more. The nodes of a body and of a far field are also kept if
-    there is an O grid between them. Corners come from the cells, or from names that change four times; the
-    south side contains the first edge of the file.
-
-    Raises InputError: there are too few or too many edges; they form no closed curves; a curve is in a hole.
+    A four-sided domain keeps its nodes if opposite sides have equally many, and without cells at least three.
+    A body and a far field keep theirs if there is an O grid between them. Corners come from cells, or from
+    names that change four times; the south side has the file's first edge. Raises InputError: too few or too
+    many edges; edges that form no closed curves; a curve in a hole.
     """
     edges = surface.edges or {"": _free_edges(surface.cells)}
     count = sum(map(len, edges.values()))
@@ -97,7 +93,7 @@ def noted(shape: Shape, notes: tuple[str, ...]) -> Shape:
 
 
 def left_out(kinds: Iterable[str]) -> tuple[str, ...]:
-    """Return the note on elements of a drawing that are left out because their `kinds` are not curves."""
+    """Return the note on elements of a drawing whose `kinds` are not curves."""
     counts = Counter(kinds)
     if not counts:
         return ()
@@ -116,7 +112,7 @@ def _free_edges(cells: list[Indices]) -> Indices:
 
 
 def _with_holes(outer: EdgeLoop, holes: list[EdgeLoop], surface: MeshBoundary, name: str) -> Shape:
-    """Return the domain of closed curves; if they bound an O grid, its nodes are kept, including the seam."""
+    """Return the domain of closed curves; the nodes of an O grid are kept."""
     points = surface.points
     if len(holes) == 1 and len(outer.nodes) == len(holes[0].nodes):
         inner, around = (
@@ -132,7 +128,7 @@ def _with_holes(outer: EdgeLoop, holes: list[EdgeLoop], surface: MeshBoundary, n
 
 
 def _ring(loop: EdgeLoop, points: Floats) -> PolygonRing:
-    """Return a curve with its corners: points at which it turns, or the names of its edges change."""
+    """Return a curve with corners where it turns, or names change."""
     ring, names = points[loop.nodes], [printable(name) for name in loop.names]
     if len(set(names)) == 1:
         return PolygonRing(ring, None, names[:1] if names[0] else ())
@@ -152,8 +148,7 @@ def _cut(inner: EdgeLoop, outer: EdgeLoop, surface: MeshBoundary) -> list[int]:
 def _line_across(quads: Indices, start: int, count: int) -> list[int]:
     """Return the nodes of a grid line from boundary node `start` to the other boundary, or nothing.
 
-    At a node where four of the `quads` (m, 4) meet, the line continues along the edge that shares no cell
-    with the previous edge. `count` is the number of all nodes.
+    It goes straight on where four of the `quads` (m, 4) meet; `count` is the number of nodes.
     """
     order = np.argsort(quads.ravel(), kind="stable") // 4
     begin = np.concatenate([[0], np.cumsum(np.bincount(quads.ravel(), minlength=count))])
@@ -217,7 +212,7 @@ def _domain(loop: EdgeLoop, surface: MeshBoundary, name: str) -> Shape:
 
 
 def _corners(loop: EdgeLoop, surface: MeshBoundary) -> list[int] | None:
-    """Return the four corners of a domain as indices along `loop`, or None if there are not four."""
+    """Return the indices of the four corners of a domain along `loop`, if there are four."""
     quads = [rows for rows in surface.cells if rows.shape[1] == 4]
     if len(quads) == 1 and len(surface.cells) == 1:
         met = np.bincount(quads[0].ravel(), minlength=len(surface.points))[loop.nodes]
@@ -237,10 +232,7 @@ def _labelled(shape: Shape, loops: list[EdgeLoop], points: Floats) -> Shape:
 
 
 def flat(points: Floats) -> Floats:
-    """Return x, y (n, 2) of points (n, 2 or 3).
-
-    Raises InputError: the points are not in a plane z = constant.
-    """
+    """Return x, y (n, 2) of points (n, 2 or 3). Raises InputError: z is not constant."""
     if points.shape[1] > 2 and len(points):
         z = points[:, 2]
         if not np.ptp(z) <= 1e-6 * max(float(np.ptp(points[:, :2])), 1e-300):

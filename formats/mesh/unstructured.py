@@ -1,7 +1,6 @@
 """A structured grid as an unstructured mesh: merged seams, cells and named faces by node number.
 
-The nodes of all blocks form one table, in which connected nodes occur once. No other nodes are merged: two
-walls that touch keep their own nodes.
+Only connected nodes are merged: two walls that touch keep their own nodes.
 """
 
 from collections.abc import Sequence
@@ -29,10 +28,8 @@ class Unstructured:
     Parameters
     ----------
     points : (n, 2 or 3), in the unit of the grid.
-    cells : (m, 4) node numbers, counter-clockwise for a right-handed grid; or (m, 8), the bottom face in this
-        order, then the top face. i is fastest.
-    faces : named parts of the boundary: edges (k, 2) with the domain on their left, or quadrilaterals (k, 4)
-        whose normals point out of it; periodic parts are last.
+    cells : (m, 4) or (m, 8) node numbers in the order of `meshonet.formats.mesh.cell_faces`, i fastest.
+    faces : (k, 2) edges or (k, 4) quadrilaterals by name (`faces_of`); periodic ones are last.
     periodic : pairs of names in `faces` whose rows correspond to each other.
     """
 
@@ -43,10 +40,9 @@ class Unstructured:
 
 
 def unstructured(grid: Grid) -> Unstructured:
-    """Return `grid` with connected nodes merged; all its blocks must have the same dimension.
+    """Return `grid` with connected nodes merged; all blocks have the same dimension.
 
-    Faces inside the domain (interfaces, the seam, the wake) belong to no part. Unnamed outer faces get the
-    name of their side.
+    Faces inside the domain belong to no part. Unnamed outer faces get the name of their side.
     """
     numbers = node_numbers(grid)
     parts, pairs = outer_parts(grid, numbers)
@@ -70,7 +66,7 @@ def with_z(points: Floats) -> Floats:
 
 
 def node_numbers(grid: Grid) -> list[Indices]:
-    """Return, for each block, the numbers (ni, nj[, nk]) of its nodes; connected nodes share a number.
+    """Return, for each block, node numbers (ni, nj[, nk]); connected nodes share a number.
 
     Numbers start at 0 and have no gaps, in the order of the blocks, i fastest.
     """

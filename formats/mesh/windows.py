@@ -1,8 +1,4 @@
-"""Ranges of block faces in the indices of a file, converted to ranges of sides of the blocks that were read.
-
-A file has three indices for the nodes of a block. The block that was read may have only two, and its first
-index may be reversed (`meshonet.formats.mesh.slices`).
-"""
+"""Ranges of block faces in the three indices of a file, converted to ranges of sides of blocks."""
 
 from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
@@ -21,9 +17,9 @@ _SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.ite
 
 
 class FaceWindow(NamedTuple):
-    """A range of a block's face: the indices, from 0, of its first and last node in the file's order.
+    """A range of a block's face: the indices, from 0, of its first and last node in the file.
 
-    The last node may precede the first, as in files that describe connected ranges.
+    The last node may precede the first, as in descriptions of connected ranges.
     """
 
     block: int
@@ -42,8 +38,7 @@ class Face(NamedTuple):
 class Pair(NamedTuple):
     """Two connected ranges of faces, and the name of the connection in the file.
 
-    `own` and `donor` are ranges in two blocks. For each of the three indices of the block of `own`, `partner`
-    has the index of the donor's block that runs along the same lines.
+    `partner` has, for each index of the block of `own`, the donor's index along the same lines.
     """
 
     own: FaceWindow
@@ -53,7 +48,7 @@ class Pair(NamedTuple):
 
 
 class SidePart(NamedTuple):
-    """A range of a side; and for each of its directions the file's index along it, with the sign 1 or -1."""
+    """A range of a side; for each direction the file's index along it, and the sign 1 or -1."""
 
     side: Side
     range: Range
@@ -62,9 +57,9 @@ class SidePart(NamedTuple):
 
 
 def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | None:
-    """Return the side part that a window describes; None if it is an edge, or all of a planar block.
+    """Return the side part of a window; None if it is an edge, or all of a planar block.
 
-    Raises InputError: the block does not exist, or an index is out of range.
+    Raises InputError: no such block, or an index out of range.
     """
     if not 0 <= window.block < len(lattices):
         problem = f"a face of block {window.block + 1} is named and there are {len(lattices)}"
@@ -102,7 +97,7 @@ def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
 
 
 def connection_of(pair: Pair, lattices: Sequence[IndexedNodes]) -> Connection | None:
-    """Return the connection that a pair describes, without a motion. None and errors: see `part_of`.
+    """Return the connection of a pair, without a motion; None and errors: see `part_of`.
 
     Also raises InputError: indices that do not correspond.
     """

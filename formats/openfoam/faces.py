@@ -1,7 +1,6 @@
-"""All faces of the cells of a grid, in the order that OpenFOAM requires.
+"""All faces of the cells of a grid in OpenFOAM's upper-triangular order.
 
-Interior faces come first, ordered by owner (the cell with the lower number), then by neighbour: the
-upper-triangular order. Outer faces follow, patch by patch.
+Interior faces by owner, then neighbour; outer faces follow, patch by patch.
 https://doc.openfoam.com/2312/tools/processing/mesh/polyMesh/
 """
 
@@ -32,10 +31,9 @@ class Faces(NamedTuple):
 
     Parameters
     ----------
-    nodes : (f, 4) point numbers of each face; the normal points out of the owner. Consecutive nodes may be
-        equal.
-    owner : (f,) cell that each face belongs to; of two cells, the one with the lower number.
-    neighbour : (g,) the other cell of each of the g interior faces, which come first.
+    nodes : (f, 4) point numbers, the normal out of the owner; consecutive ones may be equal.
+    owner : (f,) cell of each face; of two cells the lower.
+    neighbour : (g,) other cells of the g interior faces, which come first.
     """
 
     nodes: Labels
@@ -73,16 +71,13 @@ def all_faces(grid: Grid, numbers: Sequence[Indices], parts: Mapping[str, NamedF
 
 
 def whole(nodes: NDArray[np.integer[Any]]) -> Bools:
-    """Return a mask (f,) of the faces (f, 4) with an area.
-
-    Such faces have at least three different nodes, and opposite nodes differ.
-    """
+    """Return a mask (f,) of faces (f, 4) with an area: three different nodes, and different diagonals."""
     several = (nodes != np.roll(nodes, -1, axis=1)).sum(axis=1) >= _LEAST
     return np.asarray(several & (nodes[:, 0] != nodes[:, 2]) & (nodes[:, 1] != nodes[:, 3]))
 
 
 def without_collapsed(faces: Faces, parts: Mapping[str, NamedFaces]) -> tuple[Faces, dict[str, NamedFaces]]:
-    """Return faces and parts without degenerate faces, and without parts that have no other faces."""
+    """Return faces and parts without degenerate faces, and without parts of no other faces."""
     keep, inner = whole(faces.nodes), len(faces.neighbour)
     kept = {name: (part, whole(part.faces)) for name, part in parts.items()}
     left = Faces(faces.nodes[keep], faces.owner[keep], faces.neighbour[keep[:inner]])
@@ -90,10 +85,7 @@ def without_collapsed(faces: Faces, parts: Mapping[str, NamedFaces]) -> tuple[Fa
 
 
 def _beyond(grid: Grid, cells: Sequence[Indices]) -> list[list[Labels]]:
-    """Return the neighbour at each face of the sides of each block, -1 at the boundary.
-
-    The first index is fastest.
-    """
+    """Return the neighbour at each face of each block's sides, -1 at the boundary, first index fastest."""
     table = [[np.full(face_of(own, side).shape, -1) for side in PLACES] for own in cells]
     sides = list(PLACES)
     for each in grid.connections:

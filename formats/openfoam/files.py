@@ -1,7 +1,6 @@
-"""The files of a ``polyMesh``: lists of points, faces and labels with OpenFOAM's headers, text or binary.
+"""The files of a ``polyMesh``: points, faces and labels, text or binary (little-endian, 32 and 64 bits).
 
-Binary files are little-endian, with labels of 32 and scalars of 64 bits, as stated in the header; every build
-of OpenFOAM reads them. https://doc.openfoam.com/2312/fundamentals/input-types/dictionaries/
+https://doc.openfoam.com/2312/fundamentals/input-types/dictionaries/
 """
 
 from collections.abc import Iterator

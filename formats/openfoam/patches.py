@@ -38,10 +38,9 @@ class CasePatch(NamedTuple):
 
 
 def with_empty_planes(grid: Grid, parts: Mapping[str, NamedFaces]) -> dict[str, NamedFaces]:
-    """Return `parts`; if the grid is planar, bottoms and tops are merged into a last part, `PLANES`.
+    """Return `parts`; bottoms and tops of a planar grid become a last part, `PLANES`.
 
-    A grid counts as planar if all blocks are one cell thick between symmetry planes. Solvers then ignore
-    direction k.
+    It is planar if all blocks are one cell thick between symmetry planes; solvers then ignore k.
     """
     outer = grid.outer_patches()
     ends = {patch.name for patch in outer if patch.side in ("bottom", "top")}
@@ -64,10 +63,7 @@ def patches_of(
 ) -> list[CasePatch]:  # fmt: skip
     """Return name, type and additional entries of the patch of each part.
 
-    `periodic` is the type of patches on periodic sides.
-
-    The nodes of two periodic sides correspond, so that ``cyclic``, which copies values from face to face, is
-    sufficient. ``cyclicAMI`` interpolates between any two sides.
+    `periodic` is the type of periodic patches: ``cyclic``, or ``cyclicAMI``, which interpolates.
     """
     kind = kinds(grid, grid.outer_patches())
     word = words((name for name in parts if name != PLANES), taken=[EMPTY], letter=True)

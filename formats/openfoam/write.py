@@ -1,8 +1,7 @@
-"""OpenFOAM meshes, ``constant/polyMesh``, of a volume grid, or of a planar grid as one layer of cells.
+"""OpenFOAM meshes, ``constant/polyMesh``, of volumes, or of planar grids one cell thick.
 
-The output file, ``case/case.foam``, is empty; ParaView uses it to open a case. The mesh is written into its
-folder. OpenFOAM's tools need three dictionaries in ``system`` to read a mesh; minimal ones are written if
-they are missing. https://doc.openfoam.com/2312/tools/processing/mesh/polyMesh/
+The output file ``case/case.foam`` is empty; ParaView opens a case by it.
+https://doc.openfoam.com/2312/tools/processing/mesh/polyMesh/
 """
 
 from collections.abc import Iterable
@@ -37,12 +36,11 @@ _ZONE = "passage"
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the only grid of `grids` into the folder of `path`; `path` itself becomes an empty file.
+    """Write the only grid of `grids` into the folder of `path`; `path` itself becomes empty.
 
-    The planes of a planar grid, or of one layer of cells between symmetry planes, become a patch of type
-    ``empty``. Cells at sides that are collapsed to a line or to a point are prisms or pyramids. An existing
-    mesh is replaced when the new one is complete. If periodic sides are connected by a rotation, all cells
-    form a zone with the name of the grid, for use with a rotating frame.
+    Planes of a planar grid, or of one layer between symmetry planes, are a patch of type ``empty``. Cells at
+    collapsed sides are prisms or pyramids. With a rotation between periodic sides, all cells form a zone with
+    the name of the grid, for a rotating frame. Missing dictionaries in ``system`` are added.
     """
     grid = only_one(grids, "a case")
     low, high = grid.box

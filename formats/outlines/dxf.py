@@ -1,8 +1,6 @@
-"""Outlines from DXF drawings, ``.dxf``, read by ezdxf (extra ``dxf``); names are those of the layers.
+"""Outlines from DXF drawings, ``.dxf``, read by ezdxf (extra ``dxf``); names are those of layers.
 
-Lines, polylines, arcs, circles, ellipses and splines of the model space, also in inserted blocks, are joined
-at coincident ends; other entities are left out, with a note. Curves are approximated by chords.
-https://ezdxf.mozman.at
+Curves of the model space are joined at equal ends, and approximated by chords. https://ezdxf.mozman.at
 """
 
 import io
@@ -24,12 +22,10 @@ _KINDS = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Yield the shapes that the curves of a drawing enclose.
+    """Yield the shapes that the curves of a drawing enclose; other entities are left out, with a note.
 
-    Raises InputError: ezdxf is not installed; the file has 64 MB or more, is binary DXF, or is no DXF
-    drawing; it has more than 400000 entities or points, or no curves; at a point, only one curve ends, or
-    more than two meet; a curve has no extent, or a coordinate that is not finite; curves cross, or lie inside
-    a hole.
+    Raises InputError: ezdxf is not installed; the file is too large, binary, or no drawing; no curves; curves
+    that are not closed, cross, or lie inside a hole; a coordinate that is not finite.
     """
     try:
         from ezdxf import path

@@ -25,9 +25,7 @@ def extent_checked(points: Floats) -> float:
 
 
 def joined(lines: list[tuple[str, Floats]]) -> MeshBoundary:
-    """Return the curves `lines`, each a name and points (n, 2), as edges between numbered points.
-
-    Coincident ends become one point.
+    """Return named curves (n, 2) as edges between numbered points; coincident ends are one point.
 
     Raises InputError: too many points.
     """

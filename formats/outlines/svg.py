@@ -1,9 +1,6 @@
-"""Outlines from SVG drawings, ``.svg``; names are the ids of elements, or of the groups that contain them.
+"""Outlines from SVG drawings, ``.svg``; names are ids of elements or of their groups.
 
-Basic shapes and paths of lines, Bezier curves and arcs are joined at coincident ends. Curves are approximated
-by chords. y points downwards in the file and upwards in the result. Clipping and visibility are ignored;
-text, images and ``use`` elements are left out, with a note. Path data are parsed by fontTools.
-https://www.w3.org/TR/SVG2/paths.html
+y points upwards in the result. Path data are parsed by fontTools. https://www.w3.org/TR/SVG2/paths.html
 """
 
 from __future__ import annotations
@@ -44,7 +41,7 @@ _MOST_NESTED = 100
 
 @dataclass(frozen=True)
 class _Curve:
-    """A piece of a path, t from 0 to 1: `hull` (k, 2), points, and a bound of the second derivative."""
+    """A piece of a path, t from 0 to 1: points `hull` (k, 2), and a bound of the second derivative."""
 
     hull: Floats
     at: Callable[[Floats], Floats]
@@ -106,10 +103,7 @@ def _bezier(points: Floats, t: Floats) -> Floats:
 
 
 def _arc(a: Floats, b: Floats, rx: float, ry: float, degrees: float, large: bool, sweep: bool) -> _Curve:
-    """Return the elliptical arc from `a` to `b` (SVG 2, appendix B.2.4).
-
-    Radii that are too small are enlarged.
-    """
+    """Return the elliptical arc from `a` to `b`; radii that are too small grow (SVG 2, B.2.4)."""
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     axes = np.array([[rx * c, rx * s], [-ry * s, ry * c]])
     half = 0.5 * (a - b)
@@ -136,9 +130,10 @@ def _arc(a: Floats, b: Floats, rx: float, ry: float, degrees: float, large: bool
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Yield the shapes that the curves of a drawing enclose.
+    """Yield the shapes that the curves of a drawing enclose, approximated by chords.
 
-    Raises InputError: the file is not an SVG drawing; curves that are not closed.
+    Text, images and ``use`` elements are left out, with a note; clipping and visibility are ignored.
+    Raises InputError: not an SVG drawing; curves that are not closed.
     """
     from xml.etree.ElementTree import ParseError, fromstring
 

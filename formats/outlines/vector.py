@@ -1,12 +1,5 @@
-"""Domains and outlines from vector geometry: WKT (one geometry per file or line) and GeoJSON.
+"""Domains and outlines from WKT and GeoJSON (docs/reference/shapes.md).
 
-A polygon is a domain, with its holes; a closed line is a body, or an outline with corners; two open lines are
-the walls of a channel, four the edges of a domain. Any other number of open lines whose ends meet are the
-sides of a domain, with closed lines among them as holes. A line ``# name`` above one of WKT names it.
-Collections hold several. A third coordinate is dropped. Properties of a GeoJSON feature besides ``name``:
-``names``, for each ring one name, or a list with one name for each stretch between corners; ``corners``, for
-each ring a list of numbers of its points, counted from 0; and ``periodic``, pairs of names of sides of the
-outer ring that are translated copies of each other.
 https://www.ogc.org/standards/sfa , https://www.rfc-editor.org/rfc/rfc7946
 """
 
@@ -47,9 +40,9 @@ class _Geometry:
 
 
 def read_wkt(source: Source) -> Iterator[Shape]:
-    """Yield the shapes of a WKT file.
+    """Yield the shapes of a WKT file, one geometry per file or line, named by a line ``# name`` above.
 
-    Raises InputError, with the line: text that is not WKT; a geometry that is not an outline.
+    Raises InputError, with the line: not WKT; a geometry that is not an outline.
     """
     geometries = _geometries(_text(source))
     drawn = [_Geometry(source.stem, place, each, {"name": called}) for place, each, called in geometries]
@@ -59,8 +52,7 @@ def read_wkt(source: Source) -> Iterator[Shape]:
 def read_geojson(source: Source) -> Iterator[Shape]:
     """Yield the shapes of a GeoJSON file, named by the property ``name`` of their features.
 
-    Raises InputError, with the number of the feature: text that is not GeoJSON; a geometry that is not an
-    outline; properties that do not match the rings.
+    Raises InputError, with the feature: not GeoJSON; no outline; properties that do not match the rings.
     """
     from shapely.errors import ShapelyError
     from shapely.geometry import shape
@@ -92,10 +84,7 @@ def read_geojson(source: Source) -> Iterator[Shape]:
 
 
 def _geometries(text: str) -> list[tuple[str, BaseGeometry, str]]:
-    """Return place, geometry and name of a text with one geometry, or of each of its lines.
-
-    A line ``# name`` gives the name of the next line.
-    """
+    """Return place, geometry and name: of the text, or of each of its lines."""
     from shapely import from_wkt
     from shapely.errors import ShapelyError
 
@@ -120,7 +109,7 @@ def _geometries(text: str) -> list[tuple[str, BaseGeometry, str]]:
 
 
 def _named(drawn: list[_Geometry], stem: str) -> Iterator[Shape]:
-    """Yield the shapes of geometries, numbered if several share a name; open lines form a single shape."""
+    """Yield the shapes of geometries, numbered if several share a name; open lines form one."""
     edges = _edges(drawn)
     if len(edges) == 4 or (len(edges) == 2 and all(edge.is_wall for edge in edges)):
         yield (four_edges if len(edges) == 4 else channel)(edges, stem)

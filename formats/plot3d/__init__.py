@@ -20,14 +20,11 @@ CHOICES = (
     ("whole", "planes"),
     ("span-k", "span-i", "span-j"),
 )
-"""Properties of a Plot3D file that it does not state itself: one word from each row.
+"""Properties that a Plot3D file does not state, one word from each row, by default the first.
 
-The first is the default.
-
-``single`` files have no count of blocks. ``iblank`` files have an integer per node after the coordinates.
-With ``planes``, x, y and z of one plane k follow each other; with ``whole``, all x, all y and all z.
-``span-i`` puts the planes of a grid that is repeated in z along the first index, as for FUN3D and NASA;
-``span-j`` along the second.
+``single`` files have no count of blocks, ``iblank`` files an integer per node after the coordinates. With
+``planes``, x, y and z of one plane k follow each other. ``span-i`` and ``span-j`` put planes of a grid
+repeated in z along the first (as for FUN3D and NASA) or the second index.
 """
 
 _INTEGER_LINE = re.compile(rb"\s*(?:\d+(?:\*\d+)?[ \t,]*)+\r?\n")
@@ -37,10 +34,7 @@ _INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether `head` starts with the node counts of a Plot3D grid.
-
-    A whole file is also checked for its size.
-    """
+    """Return whether `head` starts with node counts of a Plot3D grid; a whole file must fit them."""
     textual = is_text(head)
     if textual and not _INTEGER_FIRST.match(head):
         return False

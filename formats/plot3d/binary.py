@@ -1,7 +1,6 @@
 """Binary Plot3D files: C binary or Fortran records, either byte order, float32 or float64.
 
-Without the lengths of records, both are the same stream: integers of 4 bytes, then floating-point numbers,
-then the integers of iblank.
+Both are streams of 4-byte integers, floating-point numbers, and iblank integers.
 """
 
 import itertools
@@ -22,8 +21,8 @@ _ORDERS = {"<": "little", ">": "big"}
 def candidates(data: memoryview, wanted: Options = frozenset()) -> list[Candidate]:
     """Return all layouts with exactly the length of the file.
 
-    Layouts whose arrays are stored plane by plane are included only if they are `wanted`, or if each Fortran
-    record contains one plane. Raises InputError: no layout fits.
+    Arrays plane by plane are included if `wanted`, or if each Fortran record has one plane.
+    Raises InputError: no layout fits.
     """
     fitting: list[Candidate] = []
     tried: list[tuple[int, str]] = []
@@ -53,10 +52,7 @@ def _misfit(data: memoryview, tried: list[tuple[int, str]]) -> InputError:
 
 
 def _fitting(stream: Stream, order: str, wanted: Options, tried: list[tuple[int, str]]) -> list[Candidate]:
-    """Return the layouts with the length of a stream.
-
-    Lengths and names of all layouts are appended to `tried`.
-    """
+    """Return the layouts with the length of a stream; those tried are appended to `tried`."""
     count = min(len(stream) // 4, MOST_INTEGERS)
     integers = np.frombuffer(stream.take(0, 4 * count), np.dtype(order + "i4"))
 

@@ -1,9 +1,7 @@
 """The possible layouts of a Plot3D grid file, and the selection of the one that fits.
 
-A file has a header of integers, ``[count] ni nj [nk]`` for every block. Then for every block all x, all y,
-[all z] and [iblank] follow, i fastest. The file does not state whether it has a count, a third direction or
-an iblank array. Every layout is therefore tried, those with exactly the length of the file are kept, and the
-one with the most regular cells is used. https://www.grc.nasa.gov/WWW/wind/valid/plot3d.html
+A file does not state whether it has a block count, z or iblank: of all layouts with its length, the one
+with the most regular cells is used. https://www.grc.nasa.gov/WWW/wind/valid/plot3d.html
 """
 
 import itertools
@@ -38,7 +36,7 @@ MOST_INTEGERS = 1 + 3 * _MOST_BLOCKS
 
 @dataclass(frozen=True)
 class FileLayout:
-    """A layout of a file: whether it has a block count, 2 or 3 axes, whether it has iblank, node counts."""
+    """A layout: whether it has a block count, 2 or 3 axes, whether it has iblank, node counts."""
 
     counted: bool
     axes: int
@@ -51,19 +49,19 @@ class FileLayout:
         return int(self.counted) + self.axes * len(self.dims)
 
     def starts(self, real: int = 1, integer: int = 1) -> list[int]:
-        """Return the start of each block and the end of the last; numbers take `real`, `integer` bytes."""
+        """Return where blocks start and the last ends; numbers take `real` and `integer` bytes."""
         node = self.axes * real + integer * int(self.iblank)
         return list(
             itertools.accumulate((node * prod(dims) for dims in self.dims), initial=integer * self.header)
         )
 
     def length(self, real: int = 1, integer: int = 1) -> int:
-        """Return the length of the file, if a real number takes `real` bytes, an integer `integer`."""
+        """Return the length of the file if its numbers take `real` and `integer` bytes."""
         return self.starts(real, integer)[-1]
 
 
 def layouts(integer: Header) -> Iterator[FileLayout]:
-    """Yield the layouts with a plausible header: a reasonable block count, all node counts at least 1."""
+    """Yield the layouts with a plausible header: block count, node counts from 1."""
     for counted, axes in itertools.product((True, False), (3, 2)):
         blocks = integer(0) if counted else 1
         if blocks is None or not 1 <= blocks <= _MOST_BLOCKS:
@@ -87,7 +85,7 @@ def _dims(integer: Header, blocks: int, axes: int, start: int) -> tuple[Dims, ..
 
 @dataclass(frozen=True)
 class Candidate:
-    """A layout whose length is that of the file, and the numbers of the file in this layout.
+    """A layout whose length is that of the file, and the numbers of the file in it.
 
     Parameters
     ----------
@@ -113,7 +111,7 @@ class Candidate:
         return self.kind | {count, f"{self.layout.axes}d", iblank, "planes" if self.planes else "whole"}
 
     def arrays(self, block: int) -> list[NDArray[Any]]:
-        """Return the coordinates of a block as flat arrays, which are views if the block is stored whole."""
+        """Return the coordinates of a block as flat arrays, views of a block stored whole."""
         axes = self.layout.axes
         rows = [self._numbers(at, axes * n, self.real).reshape(axes, -1) for at, n in self._planes(block)]
         return list(rows[0] if len(rows) == 1 else np.concatenate(rows, axis=1))
@@ -125,10 +123,7 @@ class Candidate:
         return flags[0] if len(flags) == 1 else np.concatenate(flags)
 
     def _planes(self, block: int) -> list[tuple[int, int]]:
-        """Return the start of the arrays of each plane of a block, and its number of nodes.
-
-        One entry if stored whole.
-        """
+        """Return start and node count of each plane of a block; one entry if stored whole."""
         start, end = self._starts[block : block + 2]
         planes = self.layout.dims[block][2] if self.planes else 1
         nodes = prod(self.layout.dims[block]) // planes
@@ -168,10 +163,8 @@ class Candidate:
     def regularity(self) -> float:
         """Return the fraction of cells with the prevailing orientation; negative for impossible values.
 
-        In the right layout nearly all cells have the same orientation; in a wrong layout orientations are
-        random. Of two similarly regular layouts, a planar one gets the larger value, because the iblank array
-        of a planar grid can look like a third coordinate. For large volumes only the first nodes along each
-        index are used.
+        Wrong layouts have random orientations. Planar layouts are preferred, since iblank of a planar grid
+        can look like z. Only the first nodes along each index are used.
         """
         for block in self.blocks:
             if not all(_sane(values) for values in self.arrays(block)):
@@ -215,13 +208,9 @@ def _tallied(flags: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def regular_cells(nodes: Floats) -> tuple[int, int]:
-    """Return the number of cells with the prevailing orientation, and the number of all cells.
+    """Return the number of cells with the prevailing orientation, and of all cells.
 
-    `nodes` are planar or in space.
-
-    In the plane and in volumes the orientation is the sign of the area or of the volume. On a surface, pairs
-    of neighbouring cells are counted instead; the first number is that of pairs whose normals differ by less
-    than a right angle.
+    Orientation is the sign of area or volume; on surfaces, that of neighbouring normals to each other.
     """
     if nodes.shape[2:] == (3,):
         normal = np.cross(*_diagonals(nodes))

@@ -1,10 +1,6 @@
-"""NASA's neutral map file, ``.nmf``: boundary conditions and connections of the blocks of a Plot3D file.
+"""NASA's neutral map file, ``.nmf``: boundary conditions and connections of Plot3D blocks.
 
-A map belongs to a Plot3D file of the same grid, planar or in space. Faces have numbers: 1 and 2 at k = 1 and
-kmax, 3 and 4 at i = 1 and imax, 5 and 6 at j = 1 and jmax. The two ranges of a face run along the following
-indices in cyclic order: (i, j), (j, k), (k, i). The ranges of the second of two connected faces are in the
-order of the first, or exchanged. Names of patches are in comments before their rows. The format does not
-define periodic sides; they are rows of type PERIODIC, otherwise like those of interfaces.
+Patch names are comments above rows; periodic sides, which it lacks, are rows of type PERIODIC.
 https://crumsey.github.io/turbmodels/nmf_documentation.html
 """
 
@@ -25,9 +21,7 @@ from meshonet.geometry.blocks.patches import Kind, kind_of
 from meshonet.geometry.errors import InputError
 
 PART = "# part: "
-"""Start of the comment with the patch name of the next row, or with the names of both sides of a
-connection.
-"""
+"""Start of a comment with the patch name of the next row, or of both sides of a connection."""
 FACES = (3, 5, 1)
 """Number of the face where each index is 1; the next number is the face where it is largest."""
 _TYPES: dict[Kind, str] = {
@@ -43,10 +37,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def write_map(path: Path, grids: Sequence[Grid], span: int = 2) -> None:
-    """Write the map of all blocks of `grids`.
-
-    The third index of the file, if it has one, is the grid's index `span`.
-    """
+    """Write the map of all blocks; the file's third index is the grid's index `span`."""
     dims: list[list[int]] = []
     rows: list[str] = []
     for grid in grids:
@@ -96,9 +87,9 @@ class _Rows:
         return [*(f"{PART}{name}" for name in names if all(names)), f"PERIODIC {own} {donor} {swap}"]
 
     def _window(self, block: int, side: Side, part: Range) -> tuple[str, int]:
-        """Return block, face and ranges of a part of a side, and the direction of the first range.
+        """Return block, face and ranges of a side part, and the direction of the first range.
 
-        The ranges of a face are along the two indices that follow its own in cyclic order.
+        Ranges run along the two indices that follow that of the face in cyclic order.
         """
         fixed, end = PLACES[side]
         axis = self._axes[fixed]
@@ -130,9 +121,9 @@ class Map(NamedTuple):
 
 
 def read_map(path: Path, dims: Sequence[tuple[int, int, int]]) -> Map:
-    """Return the content of the map at `path`, for blocks with node counts `dims`.
+    """Return the map at `path` of blocks with node counts `dims`.
 
-    Raises InputError: the map cannot be read, or belongs to blocks of other sizes.
+    Raises InputError: it cannot be read, or belongs to blocks of other sizes.
     """
     name = printable(path.name)
     try:
@@ -198,7 +189,7 @@ def _row(known: Map, line: str, names: list[str], dims: Sequence[tuple[int, int,
 
 
 def _window(numbers: Sequence[int], dims: Sequence[tuple[int, int, int]]) -> FaceWindow:
-    """Return the window given by block, face and two ranges. Raises ValueError: there is no such face."""
+    """Return the window of block, face and two ranges. Raises ValueError: no such face."""
     number, face, *spans = numbers
     fixed = _fixed(face)
     if not 1 <= number <= len(dims) or len(spans) != 4:

@@ -16,17 +16,10 @@ _WRITTEN_ONLY = {"span-i", "span-j", "span-k"}
 
 
 def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Grid]:
-    """Yield the grids of the blocks, right-handed.
+    """Yield the grids of the blocks (`grids_of_file`) in any layout that fits the `options`.
 
-    Blocks that touch form one grid; every other block is a separate grid.
-
-    `meshonet.formats.mesh.slices` decides which files are planar grids. All surface patches of a file form
-    one grid. Connections and boundary conditions are read from a neutral map file next to the file; without
-    such a file, connections are found by position. The topology of a single planar block is recovered from
-    its nodes. If the file has an iblank array, the provenance has the number of nodes with each value.
-    `options` are known properties of the layout.
-
-    Raises InputError: no layout has the length of the file; a block without cells.
+    Connections and boundary conditions are those of a neutral map file beside, else found by position.
+    Provenance has the counts of iblank values. Raises InputError: no layout fits; a block without cells.
     """
     wanted = options - _WRITTEN_ONLY
     if is_text(source.head()):

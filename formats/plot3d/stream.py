@@ -35,10 +35,10 @@ class Stream:
 
 
 def unframed(data: memoryview, order: str) -> Stream | None:
-    """Return the content of a Fortran file's records; None if the record lengths do not lead to its end.
+    """Return the content of a Fortran file's records, or None if it has no such records.
 
-    The length of each record is stored before and after it. gfortran divides records of more than 2 GiB: a
-    negative first length means that the record continues.
+    Lengths stand before and after records; gfortran splits those above 2 GiB and marks parts by negative
+    ones.
     """
     pieces: list[memoryview] = []
     records, more, end = 0, False, 0
@@ -51,10 +51,7 @@ def unframed(data: memoryview, order: str) -> Stream | None:
 
 
 def broken_record(data: memoryview, order: str) -> str:
-    """Return a description of the first incomplete record.
-
-    It is empty if the first record has no plausible length.
-    """
+    """Return a description of the first incomplete record; empty if the first has no plausible length."""
     for count, (at, length, _, whole) in enumerate(_records(data, order), start=1):
         if count == 1 and (length % 4 or not 0 < length <= _LONGEST_HEADER or not whole):
             return ""
@@ -66,7 +63,7 @@ def broken_record(data: memoryview, order: str) -> str:
 
 
 def _records(data: memoryview, order: str) -> Iterator[tuple[int, int, bool, bool]]:
-    """Yield for each record start and length, whether it continues, and whether its lengths are equal."""
+    """Yield start and length of records, whether they continue, and whether lengths agree."""
     word, at = struct.Struct(order + "i"), 0
     while at + 4 <= len(data):
         first = word.unpack_from(data, at)[0]

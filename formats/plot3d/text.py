@@ -22,9 +22,7 @@ _MOST_REPEATED = 4
 
 
 def candidates(data: bytes, wanted: Options = frozenset()) -> list[Candidate]:
-    """Return all layouts with as many numbers as the file.
-
-    Layouts whose arrays are stored plane by plane are included only if they are `wanted`.
+    """Return all layouts with as many numbers as the file, arrays plane by plane only if `wanted`.
 
     Raises InputError: a word that is not a number; no layout fits.
     """
@@ -63,10 +61,7 @@ def _misfit(tried: list[FileLayout], numbers: int) -> InputError:
 
 
 def _numbers(data: bytes) -> Floats:
-    """Return all numbers of the file, with repeat counts expanded.
-
-    Unusual notations are read word by word.
-    """
+    """Return all numbers of the file, with repeat counts expanded."""
     values, stop = leading_numbers(data)
     if stop == len(data):
         return values
@@ -85,7 +80,7 @@ def _numbers(data: bytes) -> Floats:
 
 
 def _repeats(text: bytes) -> tuple[bytes, np.ndarray[tuple[int], np.dtype[np.int64]]]:
-    """Return `text` with every ``r*v`` replaced by ``v``, and the repeat count of each word."""
+    """Return `text` with every ``r*v`` replaced by ``v``, and the count of each word."""
     words = text.split()
     counts = np.ones(len(words), np.int64)
     for k, word in enumerate(words):
@@ -98,7 +93,7 @@ def _repeats(text: bytes) -> tuple[bytes, np.ndarray[tuple[int], np.dtype[np.int
 
 
 def _spelled(word: bytes, data: bytes) -> bytes:
-    """Return `word` with the exponent letter that Fortran omits before three digits, as in 0.1234-102."""
+    """Return `word` with the exponent letter that Fortran may omit, as in 0.1234-102."""
     match = _NUMBER.fullmatch(word)
     if match is None:
         raise _not_a_number(word, data)

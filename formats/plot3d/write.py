@@ -26,10 +26,7 @@ _LINE = 4
 
 
 class StoredBlock:
-    """A block as stored in Plot3D: node counts, then x, y[, z] with the first index fastest.
-
-    `in_space` adds z = 0 to planar nodes (ni, nj, 2).
-    """
+    """A block as stored in Plot3D: node counts, then x, y[, z], first index fastest."""
 
     def __init__(self, nodes: Floats, options: Options, *, space: bool) -> None:
         self._coordinates = list(np.moveaxis(nodes, -1, 0))
@@ -42,7 +39,7 @@ class StoredBlock:
         self._span, self.dims = _span(options), tuple(dims)
 
     def arrays(self) -> Iterator[NDArray[Any]]:
-        """Yield the flat coordinates one at a time, so that memory never holds a second grid."""
+        """Yield the flat coordinates one at a time, without a second grid in memory."""
         for values in self._coordinates:
             solid = values.ndim == 3
             yield first_fastest(np.moveaxis(values, 2, self._span) if solid else values, self._dtype)
@@ -56,14 +53,11 @@ class StoredBlock:
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the blocks of `grids`; planar blocks get z = 0 only if other blocks are three-dimensional.
+    """Write the blocks of `grids`, and a neutral map unless they are several grids of one block.
 
-    `options` select the file's index for the third direction of volumes. Connections and boundary conditions
-    are written to a neutral map file next to the file. If there are several grids, the map is written only if
-    one of them has several blocks.
-
-    Raises InputError: no grid; several grids in a file without a count; a block that is too large for a
-    Fortran record; 2D was requested for a three-dimensional grid.
+    Planar blocks get z = 0 only if others have z. `options` select the index of a volume's third direction.
+    Raises InputError: no grid; several in a file without a count; a block too large for a Fortran record; 2D
+    for a grid in space.
     """
     if "planes" in options:
         raise InputError("planes are read and not written", "leave the word out")

@@ -1,8 +1,6 @@
-"""Text files with blocks of points in space: profiles of blades, hub and shroud.
+"""Blocks of points in space as text: TurboGrid's ``.curve``, lists such as NASA's of Rotor 37, CSV.
 
-These are TurboGrid's ``.curve`` files, lists such as NASA's of Rotor 37, and CSV. A line has three numbers;
-blank lines, or lines of text such as ``# Profile 1 at 0.00%``, divide blocks. Marks of leading and trailing
-edges (``le1``, ``te2``) are ignored, since the edges are computed.
+Blank lines and text divide blocks. Marks of edges (``le1``, ``te2``) are ignored: edges are computed.
 """
 
 import re
@@ -31,20 +29,14 @@ _NAMES = {"x", "y", "z", "r", *_ANGLES}
 def point_blocks(source: Source, orders: Sequence[str]) -> list[Floats]:
     """Return the blocks (n, k) of a file; k is the same in all.
 
-    Parameters
-    ----------
-    source : the file.
-    orders : permitted orders of the columns, ``x, y, z``, ``x, r, theta`` or ``x, r``. The number of columns
-        tells which of them is meant.
-
-    Raises InputError, with the place: a line has another number of columns; there is no block; a line names
-    the columns in another order; there is the heading of a splitter.
+    `orders` are permitted columns, ``x, y, z``, ``x, r, theta`` or ``x, r``, told apart by their number.
+    Raises InputError, with the place: other numbers or names of columns; no block; the heading of a splitter.
     """
     return [points for points, _ in placed_blocks(source, orders)]
 
 
 def placed_blocks(source: Source, orders: Sequence[str]) -> list[tuple[Floats, str]]:
-    """Return the blocks of a file (see `point_blocks`), each with its place: ``lines 2 to 9 of a.curve``."""
+    """Return the blocks of `point_blocks`, each with its place: ``lines 2 to 9 of a.curve``."""
     with in_source(source.name):
         text = decode(source.text_bytes())
         lines = read_lines(_MARK.sub("", text))
@@ -78,7 +70,7 @@ def _points(block: Sequence[Line], count: int, words: str) -> Floats:
 
 
 def _check_names(lines: Sequence[Line], blocks: Sequence[Sequence[Line]], order: str) -> None:
-    """Raise InputError if the line before a block names its columns, and not in this order."""
+    """Raise InputError if the line above a block names its columns in another order."""
     for block in blocks:
         above = lines[block[0].number - 2].text if block[0].number > 1 else ""
         names = _BETWEEN.split(_UNIT.sub("", above).lower().strip(" \t#!\"',;"))

@@ -1,29 +1,4 @@
-"""Blade rows in TOML, an input of ``meshonet stack`` with ``kind = "row"``.
-
-::
-
-    kind = "row"
-    blades = 36
-    profiles = "profile.curve"   # one file with a block of points a profile, or ["hub.csv", "tip.csv"]
-    hub = "hub.curve"            # x, y, z or x, r from inlet to outlet
-    shroud = [[-5, 25], [9, 24]] # or x, r of points
-    tip_gap = 0.0356             # a length, or "1 %" of the span; likewise hub_gap
-    inlet = -3.0                 # along the axis, or [[x, r], [x, r]] on hub and shroud; likewise outlet
-    axis = "x"                   # of rotation, also "-x" and so on, or [dx, dy, dz]; from inlet to outlet
-    coordinates = "xyz"          # of profiles; or "xrt": x, r, theta in radians
-    unit = "cm"                  # of all lengths: the grid is in metres then
-
-In place of profiles, sections of airfoils on cylinders::
-
-    [[sections]]                 # from hub to shroud
-    airfoil = "naca:6508"        # or a file, looked for beside this one
-    chord = 5.0
-    radius = 20.0
-    stagger = 40                 # degrees from the axis, towards growing theta
-    about = 0.25                 # chords behind the leading edge, the point that lies at x and theta
-    x = 0.0
-    theta = 0.0                  # degrees
-"""
+"""Blade rows in TOML, an input of ``meshonet stack`` with ``kind = "row"`` (docs/guide/blade-rows.md)."""
 
 import math
 import re
@@ -58,10 +33,9 @@ _PERCENT = re.compile(r"\s*([0-9.eE+-]+)\s*%\s*")
 
 
 def read_row(data: Table, source: Source) -> Row:
-    """Return the row that a table of TOML describes; paths are relative to the folder of `source`.
+    """Return the row in a table of TOML; paths are relative to the folder of `source`.
 
-    Raises InputError, with the place: an unknown key; an invalid value; a file that cannot be read; see also
-    `Row`.
+    Raises InputError, with the place: an unknown key; an invalid value; an unreadable file; see also `Row`.
     """
     data.only(*KEYS)
     folder = source.path.parent if source.path else Path()
@@ -104,7 +78,7 @@ def read_row(data: Table, source: Source) -> Row:
 
 @contextmanager
 def _located(places: Sequence[str]) -> Iterator[None]:
-    """Within the ``with`` block, say in errors of a profile where it is given."""
+    """Add to errors of a profile where it is given."""
     try:
         yield
     except InputError as error:
@@ -125,7 +99,7 @@ def _frame(data: Table) -> Motion:
 
 
 def _profiles(data: Table, folder: Path, frame: Motion) -> tuple[list[Floats], list[str]]:
-    """Return the profiles (n, 3) of the files, x, y, z with the axis along x, and where each is given."""
+    """Return the profiles (n, 3) with the axis along x, and where each is given."""
     polar = data.word("coordinates", ("xyz", "xrt"), "xyz") == "xrt"
     order = "x, r, theta" if polar else "x, y, z"
     files = _files(data, folder)

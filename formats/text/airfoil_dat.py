@@ -1,12 +1,7 @@
-"""Airfoil coordinate files in the various published forms.
+"""Airfoil coordinate files in the various published forms (docs/reference/shapes.md).
 
-- Order of points: Selig's (trailing edge, upper side, leading edge, lower side, trailing edge) or Lednicer's
-  (a line with two counts, then both surfaces from the leading edge). Both may be reversed, lack the counts,
-  or start at another point. Both surfaces may also start at the trailing edge.
-- Header: a name, an MSES line of four numbers, prose before and after the data, or nothing.
-- Columns: x y, n x y, x y z, x upper lower, or both surfaces side by side.
-
-Unit and position are not changed. https://m-selig.ae.illinois.edu/ads/coord_database.html
+Selig's order, Lednicer's, or both surfaces from one edge; x y, n x y, x y z, or surfaces side by side.
+https://m-selig.ae.illinois.edu/ads/coord_database.html
 """
 
 import re
@@ -39,7 +34,7 @@ def read_shapes(source: Source) -> Iterator[Airfoil]:
 
 
 def parse(text: str, source: str) -> Airfoil:
-    r"""Return the airfoil that the text of the file `source` describes, which is named after it by default.
+    r"""Return the airfoil in the text of the file `source`, after which it is named by default.
 
     >>> parse("Plate\n1 0\n.5 .05\n0 0\n.5 -.05\n1 0\n", "plate.dat").name
     'Plate'
@@ -68,7 +63,7 @@ def _name(lines: list[Line], first: int) -> str:
 
 
 def _data(lines: list[Line]) -> tuple[list[Line], list[int], Line | None]:
-    """Return the rows with coordinates, the indices of the first rows of blocks, and Lednicer's counts."""
+    """Return the rows of coordinates, where blocks start, and Lednicer's counts."""
     blocks = table(lines)
     rows = list(chain.from_iterable(blocks))
     if len(rows) > MOST_POINTS:
@@ -92,10 +87,7 @@ def _data(lines: list[Line]) -> tuple[list[Line], list[int], Line | None]:
 
 
 def _of_width(blocks: list[list[Line]], usual: int) -> list[list[Line]]:
-    """Return blocks without rows that have another number of values.
-
-    A longer row within the data ends in a remark; above the data it is a heading.
-    """
+    """Return blocks of rows of this width; a longer row within the data ends in a remark."""
     third = [line.number for block in blocks for line in block if len(line.values) == usual][:3][-1]
     fits = [
         [n for n in block if len(n.values) == usual or (len(n.values) > usual and n.number > third)]
@@ -110,7 +102,7 @@ def _points(rows: list[Line]) -> Floats:
 
 
 def _is_apart(blocks: list[list[Line]], lines: list[Line]) -> bool:
-    """Return whether the last block does not belong to the data: prose precedes it, or it lies elsewhere."""
+    """Return whether the last block follows prose, or lies elsewhere."""
     before, last = blocks[-2][-1], blocks[-1][0]
     if any(line.kind not in ("blank", "gap") for line in lines[before.number : last.number - 1]):
         return sum(map(len, blocks[:-1])) >= 10
@@ -126,11 +118,9 @@ def _outside(point: Floats, points: Floats, by: float = 1.0) -> bool:
 
 
 def _without_heading(rows: list[Line], starts: list[int]) -> tuple[list[Line], list[int], Line | None]:
-    """Return rows and starts of blocks without leading rows of numbers that are not coordinates.
+    """Return rows and starts of blocks without leading numbers, and Lednicer's counts among these.
 
-    These are Lednicer's counts, which are also returned, and names or conditions that consist of numbers.
-    They are far outside of the other points; or they are integers unlike the other rows, start with 0 or are
-    far from the next points.
+    Names, conditions and counts lie far outside the other points, or are integers unlike the other rows.
     """
     counts = None
     for k in reversed(range(min(4, len(rows) - 4))):
@@ -149,14 +139,14 @@ def _without_heading(rows: list[Line], starts: list[int]) -> tuple[list[Line], l
 
 
 def _unlike(rows: list[Line], rest: Floats, point: Floats, named: bool) -> bool:
-    """Return whether a first row of integers differs from the others: it starts with 0, or is far away."""
+    """Return whether a first row of integers starts with 0, or is far away."""
     apart = float(np.hypot(*(rest[[0, -1]] - point).T).min())
     fractions = sum("." in line.text for line in rows[1:])
     return fractions > 0.8 * len(rest) and (named or apart > 0.2 * extent_of(rest))
 
 
 def _are_counts(line: Line, least: int, most: int) -> bool:
-    """Return whether `line` can be Lednicer's counts: two integers above 1 with a sum in the given range."""
+    """Return whether `line` has two integers above 1 with a sum in the given range."""
     upper, lower = line.values[:2]
     whole = upper == int(upper) and lower == int(lower)
     return whole and min(upper, lower) >= 2 and least <= upper + lower <= most
@@ -200,13 +190,12 @@ def _monotone(x: Floats) -> bool:
 
 
 def _once_around(points: Floats, index: list[int], starts: list[int]) -> tuple[Floats, list[int], int]:
-    """Return the points in one run around the section, the row of each, and the number on the first surface.
+    """Return the points in one run around the section, the row of each, and the count on the first surface.
 
-    Either they already are one run; the number is then 0. Or they are two surfaces that start at the same
-    edge, of which the first must be reversed; they are divided where a block starts or at the longest step,
-    whichever gives the shorter outline. The run starts at the edge where both surfaces end: the trailing edge
-    in Lednicer's order. If this edge is at smaller x, the run starts at the other one, because otherwise only
-    sharp edges could be recognised.
+    The count is 0 for a single run. Two surfaces from one edge are divided where a block starts or at the
+    longest step, whichever gives the shorter outline, and the first is reversed. The run starts where both
+    end; if that edge has the smaller x, at the other edge, since otherwise only sharp edges could be
+    recognised.
     """
     n = len(points)
     steps = np.hypot(*np.diff(points, axis=0).T)
@@ -228,7 +217,7 @@ def _way_round(points: Floats) -> float:
 
 
 def _check_run(points: Floats, numbers: list[int]) -> None:
-    """Raise InputError if the points go around more than once, or one is far from both its neighbours."""
+    """Raise InputError if points go around twice, or one is far from both neighbours."""
     steps = np.diff(points, axis=0, append=points[:1])
     length = np.hypot(steps[:, 0], steps[:, 1])
     extent = float(np.hypot(*np.ptp(points, axis=0)))

@@ -1,9 +1,4 @@
-"""Compiled conversion of tables of numbers to and from text.
-
-Python's own formatting would take longer than everything else. The compiled one writes an 800 x 800 grid as
-SU2 text in 0.4 s instead of 2.5 s, as Plot3D text in 0.1 s instead of 1.2 s, and reads numbers in 0.1 us
-each.
-"""
+"""Compiled conversion of tables of numbers to and from text, some ten times as fast as Python's."""
 
 import warnings
 from itertools import accumulate
@@ -23,7 +18,7 @@ _ROWS = 1 << 13
 def write_rows(stream: BinaryIO, form: str, rows: NDArray[Any]) -> None:
     r"""Write each row of `rows` (n, m) as a line of the format `form`.
 
-    The format has m fields: ``%d`` for integers, or ``%e`` for floats with 17 significant digits.
+    It has m fields: ``%d`` for integers, or ``%e`` for floats with 17 significant digits.
 
     >>> from io import BytesIO
     >>> stream = BytesIO()
@@ -60,8 +55,7 @@ def parsed(text: bytes) -> Floats | None:
 def leading_numbers(text: bytes | mmap, most: int | None = None, start: int = 0) -> tuple[Floats, int]:
     """Return at most `most` numbers of `text` from byte `start` on, and the position after them.
 
-    The numbers are in Fortran's free format. Reading ends at a word that is not a number, or that needs
-    another reader (a number that is not finite, is subnormal, or has a repeat count).
+    They are in Fortran's free format, up to a word that is no number, is not finite, subnormal or repeated.
 
     >>> values, stop = leading_numbers(b"1 2.5, -3d2 0.4-101 end")
     >>> values.tolist(), stop

@@ -1,18 +1,4 @@
-"""Lists of points: closed curves, or the edges of a domain in four or two blocks separated by blank lines.
-
-Columns are separated by commas, semicolons, blanks or tabs. A header line and lines that start with ``#`` are
-allowed. A third column is z and is ignored. An open curve is closed by a straight line.
-
-Four blocks are edges in any order and direction if their ends meet; the first is south. If opposite edges
-have equal counts of three or more points, these are used as boundary nodes; otherwise the curves are sampled.
-Two open blocks side by side are the walls of a channel, whose ends are joined by straight lines. Any other
-number of open blocks whose ends meet are the sides of a domain; closed blocks among them are holes. A line
-``# name`` above each block names sides and closed curves.
-
-A single curve that ends in one trailing edge is taken for an airfoil. Several closed curves are separated by
-blank lines, or each repeats its first point. Curves inside another curve are holes of the domain that it
-bounds.
-"""
+"""Lists of points: closed curves, or sides of a domain in blocks (docs/reference/shapes.md)."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -45,7 +31,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
 
 
 def parse(text: str, source: str, stem: str = "") -> list[Shape]:
-    r"""Return the shapes that the text of a list of points describes, with the name `stem`, or else `source`.
+    r"""Return the shapes in a list of points, with the name `stem`, or else `source`.
 
     >>> (square,) = parse("x,y\n0,0\n1,0\n1,1\n0,1\n", "square.csv")
     >>> square.name, square.topology
@@ -96,7 +82,7 @@ def _with_notes(shape: AnyOutline, notes: tuple[str, ...]) -> AnyOutline:
 
 
 def _edges(blocks: list[list[Line]], lines: list[Line]) -> list[DrawnEdge]:
-    """Return blocks as edges, with the names in the lines ``# name`` above them if all have one."""
+    """Return blocks as edges, named by lines ``# name`` above if all have one."""
     above = [lines[block[0].number - 2].text.strip() if block[0].number > 1 else "" for block in blocks]
     names = [printable(text.strip("#").strip()) if text.startswith("#") else "" for text in above]
     return [
@@ -108,10 +94,7 @@ def _edges(blocks: list[list[Line]], lines: list[Line]) -> list[DrawnEdge]:
 
 
 def _are_sides(blocks: list[list[Line]], named: bool) -> bool:
-    """Return whether some blocks are open curves, and each of their ends is at an end of another one.
-
-    Blocks that are `named` are such, too, if some are too short for closed curves.
-    """
+    """Return whether some blocks are open curves, and each of their ends meets that of another."""
     ends = [block[k].values[:2] for block in blocks if len(block) > 1 and not _closed(block) for k in (0, -1)]
     if not ends or min(map(len, blocks)) < 2:
         return False
@@ -140,10 +123,7 @@ def _rings(rows: list[Line]) -> list[list[Line]]:
 
 
 def _domains(rings: list[list[Line]], names: list[str], name: str, notes: tuple[str, ...]) -> list[Shape]:
-    """Return the domain of each ring that is not inside another one; rings inside it are its holes.
-
-    `names` are those of the rings, or empty.
-    """
+    """Return the domain of each ring that is not inside another one; rings inside it are its holes."""
     few = next((ring for ring in rings if len(ring) < 3), None)
     if few is not None:
         problem, place = f"{len(rings)} blocks of points, one of {len(few)}", f"line {few[0].number}"

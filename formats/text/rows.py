@@ -1,8 +1,6 @@
 """Lines of a text file of coordinates, classified as numbers, prose or damaged.
 
-A number may be written as ``0.5``, ``.5``, ``5e-1``, ``5.0D-01``, ``(0.5)``, ``0,5`` (if blanks, tabs or
-semicolons separate columns), or without a separator from the next one, ``0.5-0.01``. Blanks, tabs, commas and
-semicolons separate columns.
+Numbers: ``0.5``, ``.5``, ``5e-1``, ``5.0D-01``, ``(0.5)``, ``0,5`` without other commas, ``0.5-0.01``.
 """
 
 import re
@@ -41,9 +39,7 @@ _MEANT = re.compile(
     r"[+-]?(?:nan|inf(?:inity)?|\*{2,}|(?=[^.]*\.?\w*\d)[\dOolI]*\.[\w.]*(?:e[+-]?\w+)?|\d+(?:_\d+)+)",
     re.IGNORECASE,
 )
-"""A word that was probably meant as a number: a number that is not finite, Fortran's stars, or digits mixed
-with other characters.
-"""
+"""A word meant as a number: not finite, Fortran's stars, or digits among other characters."""
 _HTML = re.compile(r"</?[a-z!][^<>]*>|&#?\w+;", re.IGNORECASE)
 """A tag or an entity."""
 _REMARK = re.compile(r"\s(?:#|!|//|<-).*$|^\s*(?:#|!|//).*$")
@@ -57,9 +53,8 @@ class Line(NamedTuple):
     - ``row``: two or more numbers and nothing else;
     - ``noted``: two numbers, then words;
     - ``gap``: a number, then dots in place of the next;
-    - ``damaged``: two words that were meant as numbers, of which one is invalid (``1.0 nan``, ``1.0 ****``,
-      ``1.0 O.O0``);
-    - ``broken``: a number alone, a number followed by something else, or something else followed by a number;
+    - ``damaged``: two words meant as numbers, one of them invalid (``1.0 nan``, ``1.0 ****``, ``1.0 O.O0``);
+    - ``broken``: a number alone, or beside something else;
     - ``text``: all other lines.
     """
 
@@ -70,7 +65,7 @@ class Line(NamedTuple):
 
 
 def decode(data: bytes) -> str:
-    r"""Return the text of bytes: UTF-8 or UTF-16 with a byte-order mark, UTF-8, or else Latin-1.
+    r"""Return the text of bytes: UTF-8, UTF-16 with a byte-order mark, or else Latin-1.
 
     Raises InputError: more than `MOST_BYTES`, or bytes that occur in no text.
 
@@ -116,10 +111,7 @@ def _lines(text: str) -> tuple[Line, ...]:
 
 
 def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
-    """Return whether most rows of `head` have one of the `counts` of numbers.
-
-    Most means at least four fifths of the rows, and at least `least` rows.
-    """
+    """Return whether `least` rows, and four fifths of all, have one of the `counts` of numbers."""
     try:
         lines = read_lines(decode(head))
     except InputError:
@@ -132,13 +124,11 @@ def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
 
 
 def table(lines: list[Line]) -> list[list[Line]]:
-    """Return the rows of a text in blocks, which are separated by blank lines and prose.
+    """Return the rows of a text in blocks, which blank lines and prose separate.
 
-    A line with two numbers followed by words counts as a row if a row precedes or follows it. `left_out`
-    reports ignored lines next to rows.
-
-    Raises InputError: there is a damaged line with no prose between it and the next row; there is a broken
-    line between two rows.
+    Two numbers with words are a row beside another row. `left_out` reports ignored lines beside rows.
+    Raises InputError: a damaged line before or after a row, without prose between; a broken line between
+    rows.
     """
     kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
     blocks: list[list[Line]] = [[]]
@@ -165,10 +155,7 @@ def _next_kind(kinds: list[Kind], k: int, step: int) -> Kind:
 
 
 def left_out(lines: list[Line]) -> tuple[str, ...]:
-    """Return a note for each line next to a row that starts with a number but has no second number.
-
-    HTML between rows also gets a note, because rows may be missing in a saved web page.
-    """
+    """Return notes on ignored lines next to rows, and on HTML between rows."""
     kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
     notes, first, last = [], 0, 0
     if "row" in kinds:
@@ -203,7 +190,7 @@ def _line(number: int, text: str) -> Line:
 
 
 def _words(text: str) -> list[str]:
-    """Return the words between separators; a comma inside a number without a point is a decimal comma."""
+    """Return the words between separators; decimal commas become points."""
     blank = re.split(r"[\s;]+", text.strip(" \t,;"))
     if len(blank) > 1 and "," in text and "." not in text and all(map(_COMMA.fullmatch, blank)):
         return [word.replace(",", ".") for word in blank]

@@ -15,7 +15,7 @@ _BLOCK_NODES = 1 << 15
 
 
 def points_of(nodes: Floats, dtype: str) -> Iterator[NDArray[Any]]:
-    """Yield nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) as points (n, 3), i fastest, several rows at a time.
+    """Yield nodes (ni, nj[, nk], 2 or 3) as points (n, 3), i fastest, several rows at a time.
 
     Planar nodes get z = 0.
     """

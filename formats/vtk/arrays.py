@@ -51,7 +51,7 @@ class Encoded:
 def decode(array: Encoded, encoding: Encoding) -> NDArray[Any]:
     """Return the values of `array` (count,), as a view of the file's bytes if possible.
 
-    Raises InputError: an unknown type or form; another number of values than expected; LZ4 compression.
+    Raises InputError: unknown type or form; another number of values; LZ4 compression.
     """
     if array.kind not in _KINDS:
         raise InputError(f"number type {array.kind[:40]!r} is not known", "write Float64 or Float32")
@@ -85,7 +85,7 @@ def _ascii(array: Encoded, dtype: np.dtype[Any]) -> NDArray[Any]:
 
 
 def _unbase64(text: bytes) -> bytes:
-    """Decode base64 text that may consist of several pieces (length words, data), each with its padding."""
+    """Decode base64 text of perhaps several pieces, each with its padding."""
     text = b"".join(text.split())
     try:
         return b"".join(base64.b64decode(piece, validate=True) for piece in re.findall(rb"[^=]+=*", text))
@@ -111,10 +111,7 @@ def _sized(raw: memoryview, size: int | None, encoding: Encoding) -> memoryview:
 
 
 def _decompressed(raw: memoryview, size: int | None, encoding: Encoding) -> bytearray:
-    """Return `size` decompressed bytes.
-
-    The header has block count, block size, last block size, compressed sizes.
-    """
+    """Return `size` decompressed bytes; header: block count, sizes of block and last, compressed sizes."""
     inflate = _inflater(encoding.compressor)
     count, block, last = _words(raw, 0, 3, encoding)
     claimed = (count - 1 if last else count) * block + last

@@ -1,6 +1,5 @@
 """Legacy VTK structured grids, ``.vtk``, binary (big endian) or text, with or without field data.
 
-Topology, name, patches and provenance are written as a FIELD of bytes, which VTK and meshio skip.
 https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
 """
 
@@ -57,10 +56,7 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
 
 
 def _write_facts(stream: BinaryIO, grid: Grid, *, text: bool) -> None:
-    """Write topology, name and patches as a FIELD of UTF-8 bytes, one text per line.
-
-    VTK also has string fields, but meshio cannot read files with them.
-    """
+    """Write topology, name and patches as a FIELD of bytes; meshio cannot read string fields."""
     facts = {name: "\n".join(texts).encode() for name, texts in facts_of(grid).items()}
     stream.write(f"FIELD FieldData {len(facts)}\n".encode())
     for name, codes in facts.items():
@@ -114,7 +110,7 @@ class _Cursor:
 def read_grids(source: Source) -> Iterator[Grid]:
     """Yield the grid of a legacy ``.vtk`` file.
 
-    Raises InputError: another format; a dataset other than STRUCTURED_GRID; a damaged file.
+    Raises InputError: another format; another dataset than STRUCTURED_GRID; a damaged file.
     """
     cursor = _Cursor(source.buffer())
     try:
@@ -155,7 +151,7 @@ def _read(cursor: _Cursor) -> tuple[list[Floats], dict[str, list[str]]]:
 
 
 def _field(cursor: _Cursor, count: int, *, text: bool) -> dict[str, list[str]]:
-    """Return the texts of a FIELD, stored as strings or UTF-8 bytes; its numbers are skipped."""
+    """Return the texts of a FIELD, strings or UTF-8 bytes; numbers are skipped."""
     facts: dict[str, list[str]] = {}
     for _ in range(count):
         name, components, tuples, kind = cursor.line().split()
@@ -191,7 +187,7 @@ def _raw_line(cursor: _Cursor) -> str:
 
 
 def _counted(cursor: _Cursor) -> memoryview:
-    """Return a string stored after its length in 1, 2, 4 or 8 bytes; the first two bits give their number."""
+    """Return a string after its length, of 1, 2, 4 or 8 bytes as the first two bits say."""
     first = cursor.bytes(1)
     width = {3: 1, 2: 2, 1: 4, 0: 8}[first[0] >> 6]
     length = int.from_bytes(bytes(first) + cursor.bytes(width - 1), "big") & ((1 << (8 * width - 2)) - 1)

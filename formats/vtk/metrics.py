@@ -17,7 +17,7 @@ from meshonet.geometry.quality.metrics import metrics_of as metrics_of_cells
 
 
 def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> None:
-    """Write the only grid of `grids` to `path`, a ``.vts`` file, or with `many` a ``.vtm`` file.
+    """Write the only grid of `grids` to a ``.vts`` file, or with `many` to a ``.vtm`` file.
 
     Raises InputError: a grid of several blocks for a ``.vts`` file.
     """

@@ -1,8 +1,7 @@
 """VTK multi-block files, ``.vtm``: an index, and a folder ``NAME_blocks`` with one ``.vts`` file per block.
 
-A multi-block grid is a ``Block`` in the index, and its files state the grid to which they belong. A grid of
-one block is listed without a ``Block``. Files of other programs do not state this; blocks of theirs that
-touch form one grid. https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
+A ``Block`` of the index is a multi-block grid. Blocks of other programs form one grid if they touch.
+https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
 
 import re
@@ -34,7 +33,7 @@ _OURS = re.compile(r"block-\d+\.vts")
 def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = None) -> None:
     """Write all `grids`, with optional cell data.
 
-    Raises InputError: there is no grid; the folder of the blocks contains other files, which would be lost.
+    Raises InputError: no grid; the folder of the blocks contains other files.
     """
     folder = path.with_name(f"{Path(final_name(path)).stem}_blocks")
     if folder.is_dir() and not all(_OURS.fullmatch(entry.name) for entry in folder.iterdir()):
@@ -73,9 +72,9 @@ _MOST_BYTES = 16 << 20
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grids in the ``.vts`` files of the index, which must be in its folder or below.
+    """Yield the grids in the ``.vts`` files of the index, in its folder or below.
 
-    Raises InputError: no such index; a file outside of its folder, a missing file, or not a ``.vts`` file.
+    Raises InputError: no such index; a file elsewhere, missing, or not ``.vts``.
     """
     from xml.etree import ElementTree
 

@@ -1,7 +1,5 @@
-"""Writes VTK XML structured grids, ``.vts``.
+"""VTK XML structured grids, ``.vts``, with raw appended little-endian float64 arrays.
 
-Arrays are raw appended, little endian, float64, with 64-bit lengths: the form that is fastest to write and
-that all VTK versions read. Topology, name, patches and provenance are FieldData, which VTK displays.
 https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
 
@@ -46,8 +44,7 @@ def write(
 ) -> None:
     """Write one block of a grid.
 
-    `cell_data` has values (ni-1, nj-1) or (ni-1, nj-1, nk-1) by name. For a block of a multi-block grid,
-    `facts` are its texts (`meshonet.formats.mesh.metadata.facts_of`).
+    `cell_data` has values (ni-1, nj-1[, nk-1]) by name; `facts` are the block's texts (`facts_of`).
     """
     nodes = grid.blocks[block].nodes
     cells = dict(cell_data or {})

@@ -26,7 +26,7 @@ _MOST_NODES = 1 << 40
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grid of a ``.vts`` file, planar or three-dimensional (`meshonet.formats.mesh.slices`).
+    """Yield the grid of a ``.vts`` file, planar or in space (`meshonet.formats.mesh.slices`).
 
     Raises InputError: another format; a damaged file; LZ4 compression.
     """
@@ -35,7 +35,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
 
 def read_block(source: Source) -> tuple[list[Floats], Facts]:
-    """Return x, y, z, each (ni, nj, nk), and the texts of the file. Raises InputError: see `read_grids`."""
+    """Return x, y, z, each (ni, nj, nk), and the file's texts. Raises InputError: see `read_grids`."""
     raw = source.buffer()
     root, start, end = _parsed(raw)
     dataset = _child(root, "StructuredGrid")
@@ -53,7 +53,7 @@ def read_block(source: Source) -> tuple[list[Floats], Facts]:
 
 
 def _parsed(raw: bytes | mmap) -> tuple[Element, int, int]:
-    """Return the XML, and the start and end of the appended bytes, which are not XML."""
+    """Return the XML, and start and end of the appended bytes."""
     from xml.etree.ElementTree import ParseError, fromstring
 
     tag = raw.find(b"<AppendedData")
@@ -156,7 +156,7 @@ def _child(element: Element, name: str) -> Element:
 
 
 def _texts(array: Element, encoding: Encoding) -> list[str]:
-    """Return the strings of an array, each ended by 0; empty for a damaged array, which is not essential."""
+    """Return the strings of an array, each ended by 0; empty for a damaged array."""
     try:
         if array.get("format") == "ascii":
             codes = bytes(int(word) % 256 for word in (array.text or "").split())

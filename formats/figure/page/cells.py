@@ -27,10 +27,7 @@ _NEAR_PART = 0.06
 
 @dataclass(frozen=True)
 class Scale:
-    """A colour scale from `low` to `high`, logarithmic if `log`.
-
-    98 % of the values are between `start` and `stop`.
-    """
+    """A colour scale from `low` to `high`; 98 % of the values are between `start` and `stop`."""
 
     low: float
     high: float
@@ -55,9 +52,9 @@ def scale_of(values: Floats) -> Scale:
 
 
 def histogram(values: Floats, scale: Scale) -> list[int]:
-    """Return the number of values (n,) in each of `BARS` equal intervals of the visible part of `scale`.
+    """Return the number of values (n,) in each of `BARS` equal intervals from `start` to `stop`.
 
-    The first and the last bar include the values beyond the ends.
+    The outer bars include the values beyond the ends.
     """
     first, last = scale.parts(np.array([scale.start, scale.stop]))
     part = (scale.parts(values) - first) / max(last - first, 1e-300)
@@ -68,9 +65,9 @@ def histogram(values: Floats, scale: Scale) -> list[int]:
 def worst_places(
     values: Sequence[Floats], metric: Metric, most: int = 10
 ) -> Iterator[tuple[int, tuple[int, ...], float]]:
-    """Yield block, cell indices and value of the worst cells, beginning with the worst.
+    """Yield block, cell indices and value of the worst cells, without neighbours of earlier ones.
 
-    Neighbours of a cell that has been yielded are left out. `values` are the cell values of each block.
+    `values` are the cell values of each block.
     """
     every = np.concatenate([cells.ravel() for cells in values])
     badness = every if metric.worst == "min" else -every

@@ -26,13 +26,10 @@ class Packed:
 
 
 def packed(numbers: NDArray[np.integer]) -> Packed:
-    """Return integers (n,) in packed form; their magnitude must be below 2^50.
+    """Return integers (n,) below 2^50 in magnitude as compressed text for ``unpack.js``.
 
-    Because neighbouring values of a grid differ little, differences are stored; ``unpack.js`` restores the
-    integers::
-
-        numbers -> differences -> unsigned (0, -1, 1, -2 ... as 0, 1, 2, 3 ...) -> bytes of equal significance
-        together -> deflate -> base64
+    Packing: differences -> unsigned (0, -1, 1, -2 ... as 0, 1, 2, 3 ...) -> bytes by significance -> deflate
+    -> base64.
 
     >>> packed(np.array([5, 6, 7])).width
     1
@@ -53,10 +50,7 @@ def rounding_step(shortest: float, extent: float) -> float:
 
 
 def shortest_edge(nodes: Floats, extent: float) -> float:
-    """Return the length of the shortest edge of `nodes` (..., d).
-
-    Edges of zero length, as at a pole, are ignored.
-    """
+    """Return the length of the shortest edge of `nodes` (..., d), except edges of zero length."""
     least = extent
     for axis in range(nodes.ndim - 1):
         step = np.diff(nodes, axis=axis)

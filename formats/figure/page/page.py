@@ -39,10 +39,9 @@ _BODY = """{body}
 
 
 def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: View | None = None) -> None:
-    """Write the page of `grid`, which opens with the cells coloured by `metric` and with the given `view`.
+    """Write the page of `grid`, which opens with this `metric` and `view`.
 
-    Raises InputError: the metric is not defined for these cells; the view contains no cells, or has another
-    dimension than the grid.
+    Raises InputError: a metric that the cells lack; a view without cells, or of another dimension.
     """
     start = _start(grid, metric, view or View())
     chosen = start["slice"]
@@ -93,10 +92,7 @@ def _start(grid: Grid, metric: str | None, view: View) -> dict[str, Any]:
 
 
 def _zoom(grid: Grid, zoom: tuple[float, ...], at: Slice | None) -> list[float]:
-    """Return a box in space; a planar box is extended normal to the plane of the slice `at`.
-
-    Raises InputError: a box of another dimension, or one without cells.
-    """
+    """Return a box in space; a planar box is extended normal to the slice `at`."""
     if len(zoom) == 4 and at is not None and at.index is None:
         zoom = (*zoom[: 2 * at.direction], at.coordinate, at.coordinate, *zoom[2 * at.direction :])
     (low, high), box_low, box_high = grid.box, np.array(zoom[::2]), np.array(zoom[1::2])
@@ -110,10 +106,7 @@ def _zoom(grid: Grid, zoom: tuple[float, ...], at: Slice | None) -> list[float]:
 
 
 def _slice(grid: Grid, at: Slice) -> dict[str, Any]:
-    """Return the description of the slice that is shown first.
-
-    Raises InputError: the grid has no such slice.
-    """
+    """Return the description of the slice that is shown first."""
     if grid.form != "volume":
         raise InputError("a surface has no slices", "slice volumes", parameter="slice")
     if at.index is None:

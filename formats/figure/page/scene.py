@@ -1,9 +1,6 @@
 """Data of a grid in an interactive page: lattices of nodes, sheets of cells, metrics, worst cells.
 
-::
-
-    lattice   the nodes of a block; if a volume is too large for a page, the nodes of a patch
-    sheet     a layer of cells of a lattice that is drawn: a planar block, or a patch of a volume
+A lattice is a block, or a patch of a volume too large for a page; a sheet is a drawn layer of its cells.
 """
 
 import math
@@ -30,19 +27,16 @@ from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import Metric, metric_of, metrics_of
 
 MOST_NODES = 1_500_000
-"""Largest number of nodes of a volume that a page contains completely; of a larger volume it contains the
-boundary and some layers.
-"""
+"""Most nodes of a volume that is on the page as a whole, not by boundary and layers."""
 _AROUND = 5  # cells to each side of a bad one whose lines a page of such a volume has
 _LAYERS = 3  # fewest layers across each direction of such a volume
 
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """Nodes (ni, nj, d) or (ni, nj, nk, 3) of a block, or of a patch of a block.
+    """Nodes (ni, nj, d) or (ni, nj, nk, 3) of a block, or of a patch normal to the direction `fixed`.
 
-    `start` are the indices, in the block, of the first cell of the lattice. For a patch, `fixed` is the
-    direction normal to the patch.
+    `start` are the indices, in the block, of the first cell of the lattice.
     """
 
     block: int
@@ -65,9 +59,9 @@ class Lattice:
 class SceneSheet:
     """A layer of cells of a lattice.
 
-    `axis` is the direction normal to the layer, None if the lattice itself is a layer. `node` is the index of
-    the layer along `axis`, `ranges` are the first and last node along the other directions. For a large
-    volume, `across` (i, j or k) and `at` say which layer of constant index it is.
+    `axis` is the direction normal to the layer (None: the lattice is a layer), `node` its index along `axis`,
+    `ranges` its first and last nodes along the other directions. In a large volume it is the layer `at` of
+    constant `across`, i, j or k.
     """
 
     lattice: int
@@ -95,8 +89,7 @@ class Scene:
 def scene_of(grid: Grid, layer: tuple[str, int] | None = None, shown: str | None = None) -> Scene:
     """Return the scene of a grid with all its metrics; the metric `shown` comes first.
 
-    `layer` is a direction (``i``, ``j`` or ``k``) and an index; the scene of a large volume contains only
-    this layer of its interior.
+    `layer`, direction (i, j or k) and index, adds a layer to the scene of a large volume.
     """
     lattices, sheets = _whole(grid) if _fits(grid) else _in_part(grid, layer)
     low = np.min([lattice.nodes.reshape(-1, lattice.nodes.shape[-1]).min(axis=0) for lattice in lattices], 0)
@@ -177,7 +170,7 @@ def _whole(grid: Grid) -> tuple[list[Lattice], list[SceneSheet]]:
 
 
 def _in_part(grid: Grid, layer: tuple[str, int] | None) -> tuple[list[Lattice], list[SceneSheet]]:
-    """Return the patches of a volume, and layers at equal steps of i, j and k, as many as have room."""
+    """Return the patches of a volume, and layers at equal steps of i, j and k."""
     lattices, sheets = _shell(grid)
     room = (MOST_NODES - sum(math.prod(each.counts) for each in lattices)) // 3
     counts = np.array([block.counts for block in grid.blocks])
@@ -234,7 +227,7 @@ def _whole_numbers(planes: Sequence[Floats]) -> Any:
 
 
 def _around(grid: Grid, block: int, cell: tuple[int, ...]) -> Any:
-    """Return the nodes (n, m, 3), as lists, of the layer of constant k around a cell of a volume."""
+    """Return the nodes (n, m, 3), as lists, of the layer of constant k around a cell."""
     i, j, k = cell
     near = grid.blocks[block].nodes[
         max(i - _AROUND, 0) : i + _AROUND + 2, max(j - _AROUND, 0) : j + _AROUND + 2, k

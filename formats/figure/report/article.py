@@ -29,7 +29,7 @@ _TINY = 1e-300
 
 
 def article(label: str, report: QualityReport, gates: Sequence[Gate], number: int) -> str:
-    """Return the section of a page about one grid with the name `label`; `number` is its anchor for links."""
+    """Return the section of a page about the grid `label`; `number` is its anchor for links."""
     grid = report.grid
     verdicts = _gates(report, gates) + _profile(report)
     values = {m.name: [np.asarray(v) for v in per_cell_of_blocks(grid, m.name)] for m in metrics_of(grid)}
@@ -175,9 +175,9 @@ def _table(head: Iterable[str], rows: Iterable[Sequence[str]], words: int | None
 
 
 def histogram_svg(values: Floats, scale: Scale, limits: Sequence[float] = ()) -> str:
-    """Return a histogram of values (n,) as SVG; `limits` are marked if they are within the scale.
+    """Return a histogram of values (n,) as SVG, with marks at the `limits` within the scale.
 
-    Heights are proportional to the square root of the count, so that a few bad cells are visible.
+    Heights follow the square root of the count, so that a few bad cells are visible.
     """
     counts = np.array(histogram(values, scale), dtype=float)
     heights = np.sqrt(counts / max(counts.max(), 1.0)) * _HEIGHT
@@ -202,10 +202,7 @@ def histogram_svg(values: Floats, scale: Scale, limits: Sequence[float] = ()) ->
 
 
 def _shown_part(value: float, scale: Scale) -> float:
-    """Return the position of a value on the scale, 0 to 1.
-
-    For values beyond the ends of the scale the position is outside of this range.
-    """
+    """Return the position of a value on the scale, 0 to 1 between its ends."""
     if scale.log and value <= 0:
         return -1.0
     part, first, last = scale.parts(np.array([value, scale.start, scale.stop]))

@@ -16,10 +16,9 @@ SHOWN = 20
 
 
 class QualityPage:
-    """Collects quality reports of grids and keeps only the `SHOWN` worst grids in memory.
+    """Quality reports of grids; keeps only the `SHOWN` worst grids, by gates, then largest angle.
 
-    Grids with failed gates are the worst, followed by those with the largest angles. `software` is named as
-    the author.
+    `software` is named as the author of the page.
     """
 
     def __init__(self, gates: Sequence[Gate] = (), software: str = "meshonet") -> None:
@@ -29,10 +28,7 @@ class QualityPage:
         self._numbers = itertools.count()
 
     def add(self, label: str, report: QualityReport) -> None:
-        """Add the report of a grid with the name `label`.
-
-        Raises InputError: the report does not contain the figure of a gate.
-        """
+        """Add the report of the grid `label`. Raises InputError: it lacks the figure of a gate."""
         report = report.under(self._gates)
         good, angle = passed(report, self._gates), report.quality["max_angle"].max
         number = next(self._numbers)
