@@ -10,9 +10,9 @@ from meshonet.geometry.blocks.grid import Grid
 
 @dataclass(frozen=True)
 class BadCell:
-    """A folded cell: the indices of its lower-left node, its centre and, in a multi-block grid, its block.
+    """A folded cell: indices of its lower-left node, its centre and, in a multi-block grid, its block.
 
-    k is None for grids of surfaces and of the plane, z is None for grids of the plane.
+    k is None except in volumes, z in the plane.
     """
 
     i: int
@@ -42,7 +42,7 @@ class BadCell:
 def centre_of(grid: Grid, at: tuple[int, ...]) -> Floats:
     """Return the centre (2,) or (3,) of the cell `at`: (i, j), (block, i, j) or (block, i, j, k).
 
-    An index of the last node along a direction counts as that of the last cell.
+    The index of a last node counts as that of the last cell.
     """
     block, *place = at if len(at) > 2 else (0, *at)
     nodes = grid.blocks[block].nodes

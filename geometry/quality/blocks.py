@@ -1,4 +1,4 @@
-"""Figures of a multi-block grid other than cell metrics, among them the deviation of corner angles."""
+"""Figures of a multi-block grid other than cell metrics."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -19,9 +19,8 @@ from meshonet.geometry.summary import Quality
 class Deviation:
     """Deviation of corner angles from 90 degrees, in degrees: mean, 99th percentile and maximum.
 
-    The mean is over all corners, the percentile over the largest deviations of all cells; `p99` is None if
-    percentiles were not computed. The maximum `max` occurs in the cell `at`, (block, i, j) or (block, i, j,
-    k). The deviation at a corner of a volume is the largest of its three angles' deviations.
+    The mean is over all corners, the percentile over cells (None: not computed); the maximum is in the cell
+    `at`, (block, i, j[, k]). At a corner of a volume the largest of three deviations counts.
     """
 
     mean: float
@@ -34,8 +33,8 @@ class Deviation:
 class BlockCounts:
     """Blocks and irregular vertices of a grid.
 
-    `sizes` are, for each block, the numbers of nodes along its directions. `irregular` lists the inner nodes
-    (block, i, j) at which other than four cells meet, each with the number of its cells; None for volumes.
+    `sizes` are the node counts of each block. `irregular` lists the inner nodes (block, i, j) at which other
+    than four cells meet, with the number of these; None for volumes.
     """
 
     sizes: tuple[tuple[int, ...], ...]
@@ -75,8 +74,8 @@ LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")
 def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None = None) -> BlockFigures:
     """Return the figures of a multi-block grid.
 
-    `quality` is used for volumes, and measured if it is not given; growth and bend have percentiles if
-    `quality` has them. `run` has growth and bend without percentiles, if they are already known.
+    The `quality` of volumes is measured unless given; percentiles are computed if it has them. `run` has
+    growth and bend without percentiles, if known.
     """
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes
@@ -95,7 +94,7 @@ def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None 
 
 
 def block_counts(grid: Grid, nodes: Vertices | None = None) -> BlockCounts:
-    """Return blocks and irregular vertices of a grid; its vertices `nodes` are computed unless given."""
+    """Return blocks and irregular vertices of a grid, whose vertices may be given."""
     sizes = tuple(block.counts for block in grid.blocks)
     if grid.form == "volume":
         return BlockCounts(sizes, None)
@@ -113,10 +112,7 @@ def extreme_dict(extreme: Extreme | None) -> dict[str, Any] | None:
 
 
 def deviation(grid: Grid) -> Deviation:
-    """Return the deviation of the corner angles of planar blocks or surface patches from 90 degrees.
-
-    In the plane a deviation can be up to 270 degrees.
-    """
+    """Return the deviation of corner angles of planar blocks or surface patches, up to 270 degrees."""
     every = [corner_deviations(block.nodes) for block in grid.blocks]
     worst = [corners.max(axis=0) for corners in every]
     block = int(np.argmax([cells.max() for cells in worst]))
@@ -138,7 +134,7 @@ def solid_deviation(quality: Quality) -> Deviation:
 
 
 def corner_deviations(nodes: Floats) -> Floats:
-    """Return the deviations (4, ni-1, nj-1) in degrees of the cell corners of `nodes` (ni, nj, 2 or 3)."""
+    """Return the deviations (4, ni-1, nj-1) in degrees of cell corners of `nodes` (ni, nj, 2 or 3)."""
     ring = ring_of(nodes)
     ahead = np.roll(ring, -1, axis=0) - ring
     angle = angle_between(ahead, -np.roll(ahead, 1, axis=0))

@@ -15,9 +15,7 @@ from meshonet.kernels._native import measure_cells
 PERCENTS = (1.0, 99.0)
 """Percentiles of reports."""
 FEW = 1 << 22
-"""Grids with at most this many cells keep the values of all metrics in memory at once; larger grids those of
-a few.
-"""
+"""Most cells for which the values of all metrics are in memory at once."""
 NONE = slice(0)
 """Slice of no metric."""
 
@@ -25,8 +23,8 @@ NONE = slice(0)
 class CellRun(NamedTuple):
     """Result of one pass over the cells of a block.
 
-    `table` (metrics, 3) has minimum, mean and maximum of each metric; `where` (metrics, 2, 2) the cells i, j
-    of minimum and maximum; `values` the values, in all cells, of the metrics that were kept.
+    `table` (metrics, 3) has minimum, mean and maximum; `where` (metrics, 2, 2) the cells i, j of minimum and
+    maximum; `values` the values in all cells of the kept metrics.
     """
 
     table: Floats
@@ -35,9 +33,7 @@ class CellRun(NamedTuple):
 
 
 def run_over(nodes: Floats, kept: slice = NONE, *, periodic: bool = False, wake: int = 0) -> CellRun:
-    """Return the statistics of all metrics of `nodes` (ni, nj, 2).
-
-    For the metrics `kept`, the result also has the values (n, ni-1, nj-1) of all cells.
+    """Return statistics of all metrics of `nodes` (ni, nj, 2), and values (n, ni-1, nj-1) of some.
 
     In a `periodic` block i = ni-1 and i = 0 coincide. The first `wake` cells along the south side are
     neighbours of the last `wake` cells.
@@ -51,7 +47,7 @@ def run_over(nodes: Floats, kept: slice = NONE, *, periodic: bool = False, wake:
 
 
 def summary_of(metric: Metric, blocks: Sequence[Floats], percentiles: bool) -> Summary:
-    """Return the statistics of a metric from its values (ni-1, nj-1[, nk-1]) in the cells of each block."""
+    """Return the statistics of a metric from its values (ni-1, nj-1[, nk-1]) in each block."""
     ends = [cells.min() if metric.worst == "min" else -cells.max() for cells in blocks]
     block = int(np.argmin(ends))
     cells = blocks[block]

@@ -1,27 +1,7 @@
-"""The measures of OpenFOAM's checkMesh: non-orthogonality, skewness of faces, aspect ratio.
+"""The measures of faces of OpenFOAM's checkMesh (docs/reference/metrics.md) for planar grids.
 
-A planar grid is treated as one layer of cells of constant thickness; for volumes see
-`meshonet.geometry.quality.checkmesh_solid`.
-
-::
-
-    own  o-----.-- nei      d: from the centre of the owner cell to that of the neighbour
-               |            S: normal of the face, with the length of the face
-               f            f: centre of the face
-
-===================  =======================================================================================
-non_orthogonality    angle between d and S, degrees, of every inner face (90 and more is an error there); its
-                     mean is the angle whose cosine is the mean cosine
-face_skewness        distance from f to where d crosses the plane of the face, over the larger of 0.2 abs(d)
-                     and the distance from f to the face's end in that direction; at the outer boundary d is
-                     the normal from the owner's centre to the face, with factor 0.4
-box_ratio            sum of abs(Sx) over the faces of a cell compared with that of abs(Sy), the larger over
-                     the smaller: the aspect ratio of a cell whose edges are along the axes
-===================  =======================================================================================
-
-Faces on the seam of an O grid, on the wake of a C grid and between blocks are inner faces, as in a mesh with
-merged nodes. Source: OpenFOAM, src/OpenFOAM/meshes/primitiveMesh/primitiveMeshCheck/
-primitiveMeshTools.C and primitiveMeshCheck.C (thresholds 70 degrees, 4, 1000).
+Source: OpenFOAM, src/OpenFOAM/meshes/primitiveMesh/primitiveMeshCheck/primitiveMeshTools.C and
+primitiveMeshCheck.C (thresholds 70 degrees, 4, 1000).
 """
 
 import math
@@ -45,18 +25,14 @@ FACES = FACE_NAMES
 """Names of the measures in `FaceMeasures`."""
 
 Values: TypeAlias = tuple[tuple[int, ...], Floats | None, Floats]
-"""Measures of an array of faces: cell of the first face, angles (m, n[, l]) in degrees (None at the
-boundary), and skewness (m, n[, l]).
-"""
+"""Of faces (m, n[, l]): cell of the first, angles in degrees (None at the boundary), skewness."""
 
 
 @dataclass(frozen=True)
 class FaceMeasures:
-    """Statistics of each measure of faces, with the cell (i, j) of the largest value.
+    """Statistics of each measure of faces, with the cell of the largest value; None without such a face.
 
-    A measure that applies to no face of the grid is None.
-
-    Cells are (block, i, j) in a multi-block grid, and (block, i, j, k) in volumes.
+    Cells are (i, j), in a multi-block grid (block, i, j), in volumes (block, i, j, k).
     """
 
     non_orthogonality: Extreme | None
@@ -65,10 +41,7 @@ class FaceMeasures:
 
 
 def faces(grid: Grid) -> FaceMeasures:
-    """Return the measures of the faces of `grid`.
-
-    Raises InputError: a surface, whose cells have no faces.
-    """
+    """Return the measures of the faces of `grid`. Raises InputError: a surface."""
     if grid.form == "volume":
         cells = [cells_of(block.nodes) for block in grid.blocks]
         ratios = (((number, 0, 0, 0), own.aspect) for number, own in enumerate(cells))
@@ -85,12 +58,9 @@ def faces(grid: Grid) -> FaceMeasures:
 
 
 def worst_faces(grid: Grid, name: str) -> list[Floats]:
-    """Return, for each block (ni-1, nj-1[, nk-1]), the largest value of a measure over each cell's faces.
+    """Return, for each block (ni-1, nj-1[, nk-1]), the largest measure `name` on each cell's faces.
 
-    `name` is the name of the measure. A face between two cells belongs to the first of them, the cell that
-    `faces` reports.
-
-    Raises InputError: a surface, whose cells have no faces.
+    A face between two cells belongs to the first, which `faces` reports. Raises InputError: a surface.
     """
     if name == "box_ratio":
         volume = grid.form == "volume"
@@ -114,10 +84,7 @@ def _of_volume(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
 
 
 def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:
-    """Return the cells (block, i, j) that have a face beyond one of two limits.
-
-    `angle`, in degrees, is the limit of the face's non-orthogonality; `skew` is the limit of its skewness.
-    """
+    """Return the cells (block, i, j) with a face beyond a non-orthogonality, in degrees, or a skewness."""
     cells: list[tuple[int, int, int]] = []
     for (block, i, j), angles, skews in _of_blocks(grid):
         where = skews > skew if angles is None else (angles > angle) | (skews > skew)
@@ -136,7 +103,7 @@ def _of_blocks(grid: Grid) -> Iterator[Values]:
 def _summed(
     faces: Iterable[Values], box_ratios: Iterable[tuple[tuple[int, ...], Floats]], *, alone: bool = False
 ) -> FaceMeasures:
-    """Return the statistics of measures; the places of a block that is `alone` are without its number."""
+    """Return the statistics of measures; places of a block `alone` are without its number."""
     angles, cosines, skews, boxes = Tally(), Tally(), Tally(), Tally()
     for place, angle, skew in faces:
         skews.add(place, skew)

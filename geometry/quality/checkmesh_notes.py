@@ -14,10 +14,7 @@ def with_checkmesh_notes(notes: tuple[str, ...], grid: object) -> tuple[str, ...
 
 
 def checkmesh_notes(grid: Grid, coarsened: int = 1) -> tuple[str, ...]:
-    """Return a note on the limits of checkMesh that a grid exceeds; none if it exceeds none.
-
-    `coarsened` is the factor by which the grid was coarsened.
-    """
+    """Return a note on exceeded limits of checkMesh, if any, of a grid `coarsened` by a factor."""
     judged = quality_report(grid, "openfoam").profile
     exceeded = judged.beyond() if judged else []
     if not exceeded:

@@ -1,16 +1,8 @@
-"""The measures of OpenFOAM's checkMesh for volumes: non-orthogonality, skewness of faces, aspect ratio.
+"""The measures of OpenFOAM's checkMesh for volumes (docs/reference/metrics.md).
 
-Faces and cells are those of OpenFOAM: the area vector and the centre of a face come from triangles around the
-mean of its corners, the centre and the volume of a cell from pyramids over its faces. The measures are
-defined in `meshonet.geometry.quality.checkmesh`, except that
-
-- the extent of a face is that of its farthest corner in the direction of the offset; - the aspect ratio of a
-cell is the larger of two values: the greatest over the least of the sums of abs(S) along
-  x, y and z; and the sum of all three over 6 V^(2/3).
-
-Faces on connections are inner faces. Source: OpenFOAM,
-src/OpenFOAM/meshes/primitiveMesh/primitiveMeshFaceCentresAndAreas.C, primitiveMeshCellCentresAndVols.C and
-primitiveMeshCheck/primitiveMeshTools.C.
+Faces are triangles around the mean of their corners, cells pyramids over their faces. Source: OpenFOAM,
+primitiveMeshFaceCentresAndAreas.C, primitiveMeshCellCentresAndVols.C and primitiveMeshTools.C in
+src/OpenFOAM/meshes/primitiveMesh.
 """
 
 from collections.abc import Iterator, Sequence
@@ -30,10 +22,9 @@ _TINY = 1e-300  # in place of 0 in divisors
 
 
 class SolidFaceMeasures(NamedTuple):
-    """Measures of an array of faces (n, m).
+    """Measures of an array of faces (n, m) normal to the direction `axis`.
 
-    `place` is the cell (block, i, j, k) of the first face, `axis` the direction normal to the faces. `angle`
-    is the non-orthogonality in degrees (None at the boundary).
+    `place` is the cell (block, i, j, k) of the first face; `angle` is in degrees, None at the boundary.
     """
 
     place: tuple[int, ...]
@@ -127,7 +118,7 @@ def _cells(pairs: Sequence[Sequence[Sequence[Floats]]]) -> tuple[Floats, Floats]
 
 
 def _turn(axis: int) -> int:
-    """Return the sign of the normal along an axis that the two other directions, in their order, span."""
+    """Return the sign of the normal along an axis that the two other directions span."""
     return -1 if axis == 1 else 1
 
 

@@ -22,22 +22,15 @@ class Difference:
     at: tuple[int, ...]
     """Node with the largest distance: (i, j), in multi-block grids (block, i, j) or (block, i, j, k)."""
     relative_l2: float
-    """Root mean square distance, divided by the root mean square distance of the reference nodes from their
-    mean.
-    """
+    """Root mean square distance, divided by that of the reference nodes from their mean."""
     near_wall: float
     """The same for the tenth of all rows nearest to j = 0; in multi-block grids nearest to walls."""
     boundary: float
-    """Largest distance on the four sides, in O grids on body and far field, in multi-block grids on outer
-    sides.
-    """
+    """Largest distance on outer sides, in O grids on body and far field."""
 
 
 def compare(grid: Grid, reference: Grid) -> Difference:
-    """Return the distances between the nodes of `grid` and those of `reference`.
-
-    Raises InputError: their node counts differ.
-    """
+    """Return the distances of nodes from those of a `reference`. Raises InputError: other node counts."""
     many = "blocks" in (grid.topology, reference.topology)
     _check_sizes(grid, reference, many=many)
     pairs = zip(grid.blocks, reference.blocks, strict=True)
@@ -82,7 +75,7 @@ def _check_sizes(grid: Grid, reference: Grid, *, many: bool) -> None:
 
 
 def _beside(values: Floats, patch: Patch, part: float) -> Floats:
-    """Return the values (n,) at a patch and in a fraction `part` of all rows next to it, at least one."""
+    """Return the values (n,) at a patch, in a fraction `part` of all rows, at least one."""
     axis, end = patch.place
     rows = np.moveaxis(values, axis, 0)[:: -1 if end else 1]
     spans = patch.range(rows.shape[1:])

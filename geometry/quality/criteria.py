@@ -13,9 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Criteria:
-    """Gates and profiles by which grids are judged.
-
-    There is at least one gate or profile; where nothing is to be judged, None is used instead of `Criteria`.
+    """Gates and profiles by which grids are judged, at least one of them.
 
     Parameters
     ----------
@@ -33,7 +31,7 @@ class Criteria:
 
     @property
     def percentiles(self) -> bool:
-        """Whether a gate needs a percentile; the quality passed to `judge` must then contain percentiles."""
+        """Whether a gate needs a percentile of the quality that is judged."""
         if not self.gates:
             return False
         from meshonet.geometry.quality.gates import need_percentiles
@@ -41,10 +39,7 @@ class Criteria:
         return need_percentiles(self.gates)
 
     def judge(self, grid: Grid, quality: Quality) -> Judgement:
-        """Return the judgement of a grid of this `quality`.
-
-        Raises InputError: a gate names a figure that this grid does not have.
-        """
+        """Return the judgement of a grid of this `quality`. Raises InputError: a figure that it lacks."""
         from meshonet.geometry.quality.figures import Figures
         from meshonet.geometry.quality.profiles import profile_report
         from meshonet.geometry.quality.report import QualityReport

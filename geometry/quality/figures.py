@@ -38,10 +38,7 @@ FIGURES: Mapping[str, str] = MappingProxyType({
 
 @dataclass(frozen=True)
 class Figure:
-    """A value, the node or cell where it occurs, and the direction of its grid line.
-
-    The node or cell is (i, j) or (block, i, j[, k]). Place and direction are None if they are not known.
-    """
+    """A value; its node or cell (i, j) or (block, i, j[, k]) and the direction of its line, if known."""
 
     value: float
     at: tuple[int, ...] | None = None
@@ -49,7 +46,7 @@ class Figure:
 
     @property
     def where(self) -> str:
-        """Direction and place as text for users; the text is empty if neither is known.
+        """Direction and place as text for users, empty if unknown.
 
         >>> Figure(1.4, (12, 0), "xi").where, Figure(3.0).where
         (' along xi at i=12, j=0', '')
@@ -91,7 +88,7 @@ class Figures:
         return wall_rows(self.grid, self.walls, by_wall)
 
     def __call__(self, name: str, statistic: str = "max") -> Figure | None:
-        """Return the figure `name`, for a metric this `statistic` of it; None if the grid has no such figure.
+        """Return the figure `name`, of a metric this `statistic`; None if the grid has none.
 
         Raises InputError: a checkMesh measure of a surface.
         """
@@ -151,7 +148,7 @@ class Figures:
         return Figure((1.0 + _SAME) * distance / chord)
 
     def _chords(self) -> list[float]:
-        """Return the longest extents of closed lines on walls of a volume, which go around sections."""
+        """Return the longest extents of closed lines on walls of a volume."""
         walls = [self.grid.at(patch) for patch in self.walls]
         lines = [each for wall in walls for each in (wall, wall.swapaxes(0, 1)) if _closed(each)]
         return [_longest(each) for each in lines]
@@ -162,7 +159,7 @@ def _figure(extreme: Extreme | None) -> Figure | None:
 
 
 def _centre(ring: Floats) -> Floats:
-    """Return the centre (2,) of the circle through points (n, 2), if they are on one, with least squares."""
+    """Return the least-squares centre (2,) of a circle through points (n, 2)."""
     middle = ring.mean(axis=0)
     size = float(np.abs(ring - middle).max())
     x, y = (ring - middle).T / size

@@ -35,10 +35,7 @@ class Gate:
     """Limit, in the unit of the metric."""
 
     def figure(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> Figure:
-        """Return the figure that the gate limits, from `figures` or from `more`.
-
-        Raises InputError: a figure that this grid does not have.
-        """
+        """Return the limited figure, of `figures` or `more`. Raises InputError: there is none."""
         figure = more.get(self.metric) or figures(self.metric, self.statistic)
         if figure is None:
             known = [name for name in COUNTS if figures(name)]
@@ -47,10 +44,7 @@ class Gate:
         return figure
 
     def broken(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> str | None:
-        """Return a message if the grid meets the condition and so fails, else None.
-
-        Raises InputError: a figure that this grid does not have.
-        """
+        """Return a message if the grid meets the condition, and so fails; else None (see `figure`)."""
         figure = self.figure(figures, more)
         if not beyond(figure.value, self.compare, self.limit):
             return None
@@ -61,10 +55,9 @@ class Gate:
         return in_short(self._what, figure, self.compare, self.limit)
 
     def replaces(self, figure: str, compare: str) -> bool:
-        """Return whether the gate replaces a limit of a profile: that on `figure` with comparison `compare`.
+        """Return whether the gate replaces a profile's limit on `figure` with comparison `compare`.
 
-        It does if it limits the same figure in the same direction and, in case of a metric, its maximum or
-        minimum. A gate on a mean or a percentile applies in addition to the profile.
+        It does if figure, direction, and in a metric maximum or minimum, are the same.
         """
         return (self.metric, self.compare[0], self.statistic) == (figure, compare[0], end_of(compare))
 
@@ -84,10 +77,9 @@ def end_of(compare: str) -> str:
 
 
 def in_short(name: str, figure: Figure, compare: str, limit: float) -> str:
-    """Return a figure and its limit as text.
+    """Return a figure and its limit as text, with place for growth and bend.
 
-    Growth and bend are given with their direction and place. The figure has at least four digits, and as many
-    as distinguish it from the limit.
+    Four digits or more tell the figure from the limit.
 
     >>> in_short("growth", Figure(1.417, (12, 0), "xi"), ">", 1.3)
     'growth 1.417 > 1.3 along xi at i=12, j=0'
@@ -105,11 +97,11 @@ class Judgement:
     Parameters
     ----------
     problems : tuple of str
-        A line for each gate that failed, and for each failed check of a profile.
+        A line for each failed gate or check of a profile.
     beyond : tuple of str
-        The same as short texts, including the warnings of profiles: ``max_angle 178.2 > 170``.
+        The same as short texts, with warnings of profiles: ``max_angle 178.2 > 170``.
     replaced : tuple of str
-        The limits set by gates that override a limit of a profile, for example ``box_ratio > 4000``.
+        Limits of gates that override those of a profile, such as ``box_ratio > 4000``.
     profile : ProfileReport, optional
         The outcome of every check of the profiles.
     """
@@ -126,12 +118,10 @@ class Judgement:
 
 
 def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
-    """Return the gate that `text` describes; `more` are figures that are permitted besides `FIGURES`.
+    """Return the gate in `text`; `more` are figures permitted besides `FIGURES`.
 
-    For a metric without a statistic, ``>`` is applied to the largest value in any cell, ``<`` to the
-    smallest.
-
-    Raises InputError: `text` is no gate, or names an unknown metric or statistic.
+    Without a statistic, ``>`` applies to the largest value in any cell, ``<`` to the smallest.
+    Raises InputError: not a gate; an unknown metric or statistic.
 
     >>> parse_gate("max_angle > 170").statistic, parse_gate("scaled_jacobian.p01<0.2").statistic
     ('max', 'p01')
@@ -173,7 +163,7 @@ VERDICTS = ("pass", "warn", "fail", "error")
 
 
 def verdict_word(verdict: str) -> str:
-    """Return a verdict as it is shown to users: as in JSON, but a failure in capitals.
+    """Return a verdict as users see it.
 
     >>> verdict_word("warn"), verdict_word("fail")
     ('warn', 'FAIL')

@@ -1,7 +1,6 @@
-"""Growth ratios of neighbouring cells along grid lines.
+"""Growth ratios of neighbouring cells along grid lines, also across the seam of O and the wake of C grids.
 
-The growth at a node is the ratio of the two edges of a grid line that meet there, the larger over the
-smaller: 1 for equal edges. Lines continue across the seam of an O grid and the wake of a C grid.
+Growth at a node is the ratio of the two edges of a line there, the larger over the smaller.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -17,8 +16,7 @@ from meshonet.geometry.blocks.patches import Patch
 Singles = NDArray[np.float32]
 
 ROWS = 128
-"""Number of columns of nodes that are processed at a time, so that large grids need little additional memory.
-"""
+"""Columns of nodes processed at a time, so that large grids need little memory."""
 
 DIRECTIONS = ("xi", "eta", "zeta")
 
@@ -28,11 +26,10 @@ LARGE = 1e30
 
 @dataclass(frozen=True)
 class Extreme:
-    """Greatest and mean value of a quantity over a grid, and where the greatest value occurs.
+    """Greatest and mean value of a quantity, the 99th percentile in blocks, and where the greatest occurs.
 
-    The place `at` is the node or cell (i, j), in a multi-block grid (block, i, j), in a volume (block, i, j,
-    k); the last two also have the 99th percentile. `along` is the direction of the grid line with the
-    greatest value, one of `DIRECTIONS`.
+    `at` is the node or cell (i, j), in a multi-block grid (block, i, j[, k]); `along` is the direction of its
+    grid line, one of `DIRECTIONS`.
     """
 
     max: float
@@ -44,22 +41,19 @@ class Extreme:
 
 @dataclass(frozen=True)
 class Growth:
-    """Growth along each direction, None if lines have a single edge; zeta is None except in volumes."""
+    """Growth along each direction, None if lines have a single edge."""
 
     xi: Extreme | None
     eta: Extreme | None
     zeta: Extreme | None = None
 
     def families(self) -> dict[str, Extreme]:
-        """Return those values that are not None; the keys are the names of the directions."""
+        """Return the growths that are not None, by direction."""
         return {name: extreme for name, extreme in vars(self).items() if extreme}
 
 
 class Tally:
-    """Collects extreme and mean of values that are added part by part; with `kept` also a percentile.
-
-    Values are kept with the precision in which they are given.
-    """
+    """Collects extreme and mean of values part by part; with `kept` a percentile too."""
 
     def __init__(self, *, kept: bool = False) -> None:
         self._max, self._total, self._count = -np.inf, 0.0, 0
@@ -68,7 +62,7 @@ class Tally:
         self._values: list[Floats | Singles] | None = [] if kept else None
 
     def add(self, place: tuple[int, ...], values: Floats, along: str | None = None) -> None:
-        """Add values (m, n) or (m, n, l) of nodes or cells, the first at `place`, for example (i, j)."""
+        """Add values (m, n[, l]) of nodes or cells, the first at `place`, such as (i, j)."""
         if values.size == 0:
             return
         here = np.unravel_index(int(values.argmax()), values.shape)
@@ -85,7 +79,7 @@ class Tally:
         along: str | None,
         values: Sequence[Floats | Singles],
     ) -> None:
-        """Add `count` values by their greatest value `high`, its node or cell `at`, and their sum `total`."""
+        """Add `count` values by their sum and greatest value, the latter with its place."""
         if high > self._max:
             self._max, self._at, self._along = high, at, along
         self._total += total
@@ -94,7 +88,7 @@ class Tally:
             self._values += [part.ravel() for part in values]
 
     def add_all(self, other: "Tally") -> None:
-        """Add the values of another tally; percentiles need the kept values of both."""
+        """Add the values of another tally."""
         if other._count:
             values = other._values or ()
             self.add_summed(other._max, other._total, other._count, other._at, other._along, values)
@@ -120,10 +114,7 @@ def growth(grid: Grid) -> Growth:
 
 
 def growth_off_walls(growth: Growth, walls: Sequence[Patch]) -> Extreme | None:
-    """Return the growth along those lines that start at the `walls` of a one-block grid.
-
-    `growth` is the growth along the lines of each direction.
-    """
+    """Return the growth along those lines of a one-block grid that start at `walls`."""
     sides = {patch.side for patch in walls}
     families = (growth.eta, {"south", "north"}), (growth.xi, {"west", "east"})
     return most_of(extreme for extreme, ends in families if extreme and sides & ends)
@@ -135,28 +126,19 @@ def most_of(extremes: Iterable[Extreme | None]) -> Extreme | None:
 
 
 def beyond_seam(grid: Grid) -> Floats:
-    """Return the nodes (ni + 1, nj, 2) of an O grid, whose column 1 is repeated at the end.
-
-    The nodes of other grids are returned unchanged.
-    """
+    """Return the nodes of a grid; those of an O grid (ni + 1, nj, 2) with column 1 repeated."""
     return np.concatenate([grid.nodes, grid.nodes[1:2]]) if grid.periodic else grid.nodes
 
 
 def across_wake(grid: Grid) -> Floats:
-    """Return nodes (n, 3, 2) across the wake of a C grid: above, on and below the wake.
-
-    For other grids there are no such nodes: n is 0.
-    """
+    """Return nodes (n, 3, 2) above, on and below the wake of a C grid, none for other grids."""
     nodes = grid.wake + 1 if grid.wake else 0
     below = grid.nodes[::-1][:nodes, 1]
     return np.stack([below, grid.nodes[:nodes, 0], grid.nodes[:nodes, 1]], axis=1)
 
 
 def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
-    """Yield parts of `nodes` (ni, nj, 2), each with the index of its first column.
-
-    Successive parts overlap by `more` columns.
-    """
+    """Yield parts of `nodes` (ni, nj, 2) with their first column; parts share `more` columns."""
     for i in range(0, max(len(nodes) - more, 0), ROWS):
         yield i, nodes[i : i + ROWS + more]
 

@@ -1,9 +1,6 @@
-"""Growth and bend of grid lines, also across connections.
+"""Growth and bend (turn in degrees) of grid lines, also across connections.
 
-For the growth at a node see `meshonet.geometry.quality.growth`. The bend is the angle in degrees by which a
-grid line turns at a node, 0 where it is straight. Across a side both are taken at its nodes except irregular
-ones, through which no line continues; across a face of a volume at its inner nodes only, since its edges may
-be irregular.
+Across a side they are taken at its nodes but irregular ones, across a face of a volume at inner nodes.
 """
 
 import math
@@ -28,11 +25,10 @@ from meshonet.kernels import _native
 
 @dataclass(frozen=True)
 class Lines:
-    """Largest growth and bend at the nodes of grid lines, with their places; None if there are no nodes.
+    """Largest growth and bend at nodes of grid lines, with their places; None without nodes.
 
-    `growth` is the growth along each direction of the blocks; at a node on a side between two blocks, it is
-    the growth across this side. `leaving` is the growth along the lines that start at walls, continued
-    through all blocks that they cross; `by_wall` is the same for each wall, by name.
+    `growth` is along each direction of the blocks, or across a side. `leaving` is along lines from walls
+    through all blocks, `by_wall` the same for each wall.
     """
 
     growth: Growth
@@ -56,7 +52,7 @@ class BlockLines:
 
 
 def lines(grid: Grid, nodes: Vertices, *, all_measures: bool = True) -> Lines:
-    """Return growth and bend of the lines of planar blocks or surface patches; `nodes` are their vertices.
+    """Return growth and bend of lines of planar blocks or surface patches with these vertices.
 
     Without `all_measures`, there is neither a bend nor a percentile.
     """
@@ -68,8 +64,7 @@ def lines(grid: Grid, nodes: Vertices, *, all_measures: bool = True) -> Lines:
 def lines_of(grid: Grid, parts: list[BlockLines], *, along: bool = True, places: bool = True) -> Lines:
     """Return growth and bend of the lines of blocks in `parts`.
 
-    `along` adds percentiles for each direction and each wall; `places` adds them for nodes inside blocks and
-    for nodes on sides between blocks.
+    Percentiles: `along` for each direction and wall, `places` inside blocks and on sides.
     """
     family = {(m.block, m.axis): k for k, members in enumerate(families(grid)) for m in members}
     walls = [(patch.name, family[patch.block, patch.place[0]]) for patch in grid.walls()]
@@ -104,11 +99,10 @@ def _of(tallies: Iterable[Tally], *, kept: bool) -> Extreme | None:
 def part_of_values(
     place: tuple[int, ...], axis: int, inside: bool, values: Iterable[Floats], *, kept: bool = True
 ) -> BlockLines:
-    """Return growth and bend of the lines through an array of nodes, as one part of the result for a grid.
+    """Return growth and bend of lines along `axis` through an array of nodes.
 
-    `values` are growth and bend, or growth alone, arrays (m, n[, l]) of the nodes; the first node is at
-    `place`, (block, i, j[, k]). `axis` is the direction of the lines; `inside` tells whether the nodes are
-    inside a block; `kept` keeps the values for percentiles.
+    `values` are growth and perhaps bend (m, n[, l]), the first at `place`, (block, i, j[, k]), `inside` a
+    block or not; `kept` keeps them for percentiles.
     """
     tallies = Tally(kept=kept), Tally(kept=kept)
     for tally, each in zip(tallies, values, strict=False):
@@ -127,7 +121,7 @@ def _inside(grid: Grid, measures: Sequence[Callable[[Floats], Floats]]) -> Itera
 def _across(
     grid: Grid, nodes: Vertices, measures: Sequence[Callable[[Floats], Floats]]
 ) -> Iterator[BlockLines]:
-    """Yield the lines across each connection, one unbroken stretch of regular nodes at a time."""
+    """Yield the lines across each connection, by stretches of regular nodes."""
     for each in grid.connections:
         own, donor = across(grid, each, 2)
         line = np.stack([own[1], own[0], donor[1]])
@@ -151,10 +145,7 @@ def bends(nodes: Floats) -> Floats:
 
 
 def solid_lines(grid: Grid, *, percentiles: bool = True) -> Lines:
-    """Return growth and bend of the lines of volumes.
-
-    The `percentiles`, inside blocks and across faces, are computed in single precision.
-    """
+    """Return growth and bend of the lines of volumes; `percentiles` are of single precision."""
     numbers, nodes = range(len(grid.blocks)), [block.nodes[..., 0].size for block in grid.blocks]
     inside = over_blocks(lambda number: _solid_inside(grid, number, percentiles), numbers, nodes)
     nodes = [2 * math.prod(stop - start + 1 for start, stop in each.range) for each in grid.connections]
@@ -197,7 +188,7 @@ def _solid_across(grid: Grid, each: Connection, kept: bool) -> BlockLines:
 
 
 def growth_of_cells(grid: Grid) -> list[Floats]:
-    """Return, for each block, the greatest growth (ni-1, nj-1[, nk-1]) at the nodes of each of its cells."""
+    """Return, for each block, the greatest growth (ni-1, nj-1[, nk-1]) at nodes of each cell."""
     at_nodes = [np.ones(block.counts) for block in grid.blocks]
     for block, values in zip(grid.blocks, at_nodes, strict=True):
         for axis in range(values.ndim):
@@ -221,6 +212,6 @@ def growth_of_cells(grid: Grid) -> list[Floats]:
 
 
 def _growth(nodes: Floats) -> Floats:
-    """Return the growth (m-2, ...) along the first axis of nodes (m, ..., d); 1 within lines of length 0."""
+    """Return the growth (m-2, ...) along the first axis; 1 within lines of length 0."""
     length = norms(np.diff(nodes, axis=0))
     return np.where(length[:-1] + length[1:] > 0.0, ratios(nodes), 1.0)

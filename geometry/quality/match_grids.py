@@ -11,11 +11,10 @@ Pairing: TypeAlias = Literal["auto", "name", "order"]
 
 
 class GridMatcher:
-    """Finds, for each of many grids, its partner in a reference set, which is read only as far as needed.
+    """Finds the partner of each grid in a reference set, which is read as far as needed.
 
-    Grids are paired by ``name`` or by ``order``. With ``auto``, a single reference grid is the partner of all
-    grids. Several reference grids are paired by name if their names differ and include the name of the first
-    grid, otherwise by order.
+    Pairing is by ``name`` or ``order``. ``auto``: one reference is for all grids; several are paired by name
+    if their names differ and include that of the first grid, else by order.
     """
 
     def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:
@@ -24,10 +23,7 @@ class GridMatcher:
         self._passed: list[Grid] = []
 
     def match(self, name: str) -> Grid:
-        """Return the partner of the next grid; `name` is the name of this grid.
-
-        Raises InputError: the reference set has no grid of this name, or no further grid.
-        """
+        """Return the partner of the next grid, called `name`. Raises InputError: there is none."""
         if self._pairing == "auto":
             self._pairing = self._decided(name)
         if self._pairing == "name":

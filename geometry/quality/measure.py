@@ -1,8 +1,6 @@
-"""Grid quality: folded cells, and statistics of the metrics in `meshonet.geometry.quality.metrics`.
+"""Grid quality: folded cells, and statistics of `meshonet.geometry.quality.metrics`.
 
-A cell is folded if any of its four corner Jacobians is not positive; a grid is valid if no cell is. Cells of
-volumes have eight corners (`meshonet.geometry.quality.volumes`); cells of surface patches are measured
-relative to their own normals (`meshonet.geometry.quality.surfaces`).
+A cell is folded if any corner Jacobian is not positive; a grid is valid if no cell is.
 """
 
 from __future__ import annotations
@@ -30,7 +28,7 @@ if TYPE_CHECKING:
 def count_folded(nodes: Floats) -> int:
     """Return the number of folded cells of `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3).
 
-    It is fastest, and makes no copy, if `nodes` have the planar layout of `meshonet.geometry.arrays`.
+    No copy is made of `nodes` in planar layout (`meshonet.geometry.arrays`).
     """
     form = form_of(nodes)
     if form == "volume":
@@ -49,11 +47,7 @@ def count_folded_in(grid: Grid) -> int:
 
 
 def folded_cells(nodes: Floats) -> NDArray[np.int64]:
-    """Return the indices of the folded cells of `nodes`, in ascending order.
-
-    The indices i, j are (n, 2) for nodes (ni, nj, 2) or (ni, nj, 3); i, j, k are (n, 3) for nodes (ni, nj,
-    nk, 3).
-    """
+    """Return indices (n, 2) or (n, 3) of folded cells of nodes (`count_folded`), ascending."""
     form = form_of(nodes)
     if form == "volume":
         from meshonet.geometry.quality.volumes import folded_solids
@@ -67,10 +61,7 @@ def folded_cells(nodes: Floats) -> NDArray[np.int64]:
 
 
 def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
-    """Return at most `limit` folded cells of `nodes`, in ascending order of the scaled Jacobian.
-
-    `nodes` may have any shape that `count_folded` accepts.
-    """
+    """Return at most `limit` folded cells of nodes (`count_folded`), by ascending scaled Jacobian."""
     form = form_of(nodes)
     if form == "volume":
         from meshonet.geometry.quality.volumes import worst_solids
@@ -100,12 +91,9 @@ def worst_cells_of(grid: Grid, limit: int = 10) -> list[BadCell]:
 
 
 def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
-    """Return the quality of `grid`.
+    """Return the quality of `grid`, whose cells on both sides of connections are neighbours.
 
-    The cells of all blocks are measured as one grid: cells on both sides of a connection (also of the seam of
-    an O grid, or of the wake of a C grid) are neighbours. With `percentiles`, the 1st and the 99th percentile
-    of every metric are computed too, by linear interpolation between cells; this takes four times as long as
-    the rest.
+    `percentiles`, the 1st and 99th of every metric, take four times as long as the rest.
     """
     quality = _compiled(grid, percentiles)
     if not metrics.METRICS:
@@ -151,10 +139,7 @@ def _run(grid: Grid, kept: slice) -> CellRun:
 
 
 def angles(nodes: Floats) -> tuple[float, float]:
-    """Return the maximum and the mean of the largest included angle of each cell, in degrees.
-
-    Both are 360 if a cell of `nodes` (ni, nj, 2) is folded.
-    """
+    """Return maximum and mean of cells' largest angles, in degrees; 360 if `nodes` (ni, nj, 2) are folded."""
     if count_folded(nodes):
         return 360.0, 360.0
     table, _ = _angle_table(nodes)
@@ -168,16 +153,13 @@ def widest_cell(nodes: Floats) -> tuple[int, int]:
 
 
 def _angle_table(nodes: Floats) -> tuple[Floats, NDArray[np.int64]]:
-    """Return min, mean, max of the cells' largest angles, and the cells of min and max, without a `Grid`."""
+    """Return min, mean, max of cells' largest angles, and the cells of min and max."""
     run, k = run_over(nodes), NAMES.index("max_angle")
     return run.table[k], run.where[k]
 
 
 def per_cell(grid: Grid, name: str) -> Floats:
-    """Return the values (ni-1, nj-1) of the metric `name` in all cells of a grid of one block.
-
-    Raises InputError: a metric that these cells do not have.
-    """
+    """Return the metric `name` (ni-1, nj-1) in all cells of a block. Raises InputError: no such metric."""
     metric = metric_of(grid, name)
     if metric.cells:
         return metric.cells(grid.nodes)
@@ -188,10 +170,7 @@ def per_cell(grid: Grid, name: str) -> Floats:
 
 
 def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
-    """Return, for each block, the values (ni-1, nj-1[, nk-1]) of the metric `name` in its cells.
-
-    Raises InputError: a metric that these cells do not have.
-    """
+    """Return the metric `name` (ni-1, nj-1[, nk-1]) in each block. Raises InputError: no such metric."""
     metric = metric_of(grid, name)
     if metric.cells:
         return [metric.cells(block.nodes) for block in grid.blocks]

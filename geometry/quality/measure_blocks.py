@@ -1,7 +1,4 @@
-"""The metrics of a multi-block grid, or of surface patches, whose cells are measured as one grid.
-
-Cells across connections are neighbours.
-"""
+"""The metrics of a multi-block grid, or of surface patches; cells across connections are neighbours."""
 
 from collections.abc import Sequence
 
@@ -21,10 +18,7 @@ _TINY, _LARGE = 1e-300, 1e30
 
 
 def measure_blocks(grid: Grid, folded: int, *, percentiles: bool = False) -> Quality:
-    """Return the quality of planar blocks or surface patches; `folded` is the number of folded cells.
-
-    The places of worst cells are (block, i, j).
-    """
+    """Return the quality of planar blocks or patches with `folded` cells; places are (block, i, j)."""
     values = metrics_of_blocks(grid)
     metrics = {
         metric.name: summary_of(metric, [cells[k] for cells in values], percentiles)
@@ -34,7 +28,7 @@ def measure_blocks(grid: Grid, folded: int, *, percentiles: bool = False) -> Qua
 
 
 def metrics_of_blocks(grid: Grid) -> list[Floats]:
-    """Return, for each block, all metrics of `QUAD_METRICS` in all cells: (metrics, ni-1, nj-1)."""
+    """Return, for each block, all of `QUAD_METRICS` in all cells: (metrics, ni-1, nj-1)."""
     nodes = [block.nodes for block in grid.blocks]
     if grid.form == "surface":
         values = [quad_metrics(each) for each in nodes]
@@ -45,7 +39,7 @@ def metrics_of_blocks(grid: Grid) -> list[Floats]:
 
 
 def _area_ratios_across(grid: Grid, ratios: Sequence[Floats]) -> None:
-    """Raise the area ratios (ni-1, nj-1) of cells at connections to those with the cells across, in place."""
+    """Raise area ratios (ni-1, nj-1) of cells at connections to those with the cells across."""
     for each in grid.connections:
         own, donor = (areas(rows)[0] for rows in across(grid, each, 2))
         large, small = np.maximum(own, donor), np.maximum(np.minimum(own, donor), _TINY)

@@ -1,55 +1,8 @@
-"""The quality metrics of a cell. To add one, add a line to `METRICS`.
+"""The quality metrics of a cell (docs/reference/metrics.md). To add one, add a line to `METRICS`.
 
-A cell has its corners at nodes a = (i, j), b = (i+1, j), c = (i+1, j+1), d = (i, j+1). Metrics that Verdict
-also has are defined as there for a planar quadrilateral, except that Verdict ignores orientation: here a cell
-whose corners run clockwise is folded. An edge of zero length has no direction: such a cell counts as having
-angles of 0 and 180 degrees and a scaled Jacobian of 0.
-
-==================  ========================================================================================
-max_angle           greatest included angle, degrees; 360 minus the greatest angle between two edges when a
-                    corner Jacobian is negative (Verdict: maximum angle)
-min_angle           least included angle, degrees (Verdict: minimum angle)
-skewness            max((max_angle - 90)/90, (90 - min_angle)/90) (Verdict: equiangle skew)
-scaled_jacobian     least over the corners of u x v / (abs(u) abs(v)), u and v the edges that meet there
-                    (Verdict: scaled Jacobian)
-aspect_ratio        longest edge times perimeter over four areas; (r + 1)/2 for a rectangle with sides 1 and r
-                    (Verdict: aspect ratio)
-orthogonality       angle between the two families of grid lines at the centre of the cell, 0 to 90 degrees
-                    (Verdict: the arc cosine of skew)
-area_ratio          greatest ratio, larger over smaller, of the areas of a cell and of a neighbour in i or j,
-                    also across the seam of an ``o`` grid and the wake of a ``c`` grid
-==================  ========================================================================================
-
-A cell of a surface patch is measured as such a quadrilateral in space, relative to its own normal at its
-centre.
-
-A cell of a volume has three edges u, v, w at each of its 8 corners, in the direction of their indices, and
-the corner Jacobian u . (v x w). A corner with an edge of zero length, as at a pole, is left out.
-
-==================  ========================================================================================
-max_angle           greatest of the 24 angles between two edges at a corner, degrees
-min_angle           least of these angles, degrees
-skewness            max((max_angle - 90)/90, (90 - min_angle)/90) (Verdict: equiangle skew, faces without a
-                    reflex angle)
-deviation           greatest deviation of the three angles at a corner from 90 degrees, averaged over the
-                    corners
-scaled_jacobian     least, over the corners and the centre, of the Jacobian over the product of the lengths of
-                    its three vectors, at the centre the principal axes (Verdict: scaled Jacobian)
-jacobian_ratio      least corner Jacobian over the greatest absolute value of a corner Jacobian (Verdict:
-                    nodal Jacobian ratio; the quality that pyHyp prints)
-bezier_ratio        least of the 27 Bezier coefficients of the Jacobian over the greatest absolute value of a
-                    corner Jacobian: if it is positive, so is the Jacobian everywhere in the cell
-aspect_ratio        longest over shortest principal axis (Verdict: maximum edge ratio)
-orthogonality       least angle between the three families of grid lines at the centre of the cell, 0 to 90
-                    degrees (Verdict: the arc cosine of skew)
-volume_ratio        greatest ratio, larger over smaller, of the volumes of a cell and of a neighbour in i, j
-                    or k, also across connections; the volume is that of the trilinear cell (Verdict:
-                    volume)
-==================  ========================================================================================
-
-Sources: C. J. Stimpson et al., The Verdict Geometric Quality Library, SAND2007-1751 (2007); its code in
-VTK, ThirdParty/verdict/vtkverdict/V_QuadMetric.cpp and V_HexMetric.cpp; A. Johnen, J.-F. Remacle, C.
-Geuzaine, Geometrical validity of curvilinear finite elements, J. Comput. Phys. 233 (2013) 359-372.
+Sources: C. J. Stimpson et al., The Verdict Geometric Quality Library, SAND2007-1751 (2007), and its code in
+VTK, V_QuadMetric.cpp and V_HexMetric.cpp; A. Johnen, J.-F. Remacle, C. Geuzaine, Geometrical validity of
+curvilinear finite elements, J. Comput. Phys. 233 (2013) 359-372.
 """
 
 from collections.abc import Callable
@@ -71,8 +24,7 @@ class Metric:
     worst: Literal["min", "max"]
     short: str
     cells: Callable[[Floats], Floats] | None = None
-    """From nodes (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3) of a block to values (ni-1, nj-1[, nk-1]) of its
-    cells; None for metrics of the compiled kernels."""
+    """From nodes of a block (ni, nj[, nk], d) to values of its cells; None: by compiled kernels."""
 
 
 _NAME = attrgetter("name")

@@ -1,7 +1,4 @@
-"""Mismatch of periodic sides: distances of nodes after the rotation or translation between the sides.
-
-Rotations are compared in cylindrical coordinates, not by the matrix with which the nodes were computed.
-"""
+"""Mismatch of periodic sides, compared in cylindrical coordinates and not by the matrix that made them."""
 
 import math
 from collections.abc import Sequence
@@ -29,9 +26,7 @@ class Period:
     shift: float
     """Length of the translation, 0 for a rotation."""
     mismatch: float
-    """Largest distance of corresponding nodes after the motion, divided by their radius or by the length of
-    the shift.
-    """
+    """Largest distance of nodes after the motion, divided by their radius or the shift's length."""
     along: tuple[float, ...] = ()
     """Unit vector (x, y, z) of the translation, empty for a rotation."""
 
@@ -53,7 +48,7 @@ def periods(grid: Grid) -> tuple[Period, ...]:
 
 
 def _sides(grid: Grid, each: Connection) -> tuple[Floats, Floats]:
-    """Return the nodes (n, 3) of both sides of a connection in one order; in the plane z is 0."""
+    """Return the nodes (n, 3) of both sides of a connection in one order."""
     pair = replace(each, transform=None).nodes(grid.face)
     flat = (nodes.reshape(-1, nodes.shape[-1]) for nodes in pair)
     own, donor = (np.pad(nodes, ((0, 0), (0, 3 - nodes.shape[1]))) for nodes in flat)

@@ -1,18 +1,7 @@
-"""Quality thresholds of others: OpenFOAM, Pointwise, Verdict, and guidelines for boundary layers.
+"""Quality thresholds of others (docs/reference/quality.md); all fail a grid with folded cells.
 
-=========  =================================================================================================
-openfoam   checkMesh: no folded cells; non-orthogonality, a warning above 70 degrees and an error from 90;
-           skewness up to 4; aspect ratio, a warning above 1000, which boundary layers often exceed
-pointwise  equiangle skewness: good below 0.8, acceptable below 0.9
-verdict    scaled Jacobian from 0.3 to 1; a warning for angles above 135 or below 45 degrees
-viscous    Drag Prediction Workshop guidelines: growth away from walls below 1.25; warnings for fewer than 2
-           equal cells at the wall, for a far field nearer than 100 chords and for angles below 18 degrees
-           (ICEM practice)
-=========  =================================================================================================
-
-All of them fail a grid with folded cells. Sources: OpenFOAM primitiveMeshCheck.C; Pointwise user manual,
-Equiangle Skewness; C. J. Stimpson et al., SAND2007-1751 (2007); J. C. Vassberg et al., Gridding Guidelines of
-the AIAA Drag Prediction Workshops.
+Sources: OpenFOAM primitiveMeshCheck.C; Pointwise user manual, Equiangle Skewness; C. J. Stimpson et al.,
+SAND2007-1751 (2007); J. C. Vassberg et al., Gridding Guidelines of the AIAA Drag Prediction Workshops.
 """
 
 from collections.abc import Iterable, Sequence
@@ -48,10 +37,10 @@ class Check:
 
 @dataclass(frozen=True)
 class CheckResult:
-    """The outcome of a check; `figure` is the checked figure, None if the grid has no such figure.
+    """The outcome of a check on `figure`, None if the grid has none.
 
-    `profile` is the name of the profile to which the check belongs, `centre` (2,) or (3,) the centre of the
-    cell with this figure, and `gated` whether a user's gates replace the limits.
+    `profile` is the check's profile, `centre` (2,) or (3,) that of the cell with the figure; `gated` says
+    whether a user's gates replace the limits.
     """
 
     check: Check
@@ -79,13 +68,13 @@ class CheckResult:
 
     @property
     def worst(self) -> Limit | None:
-        """The limit that the figure exceeds; if it exceeds several, one that makes the check fail."""
+        """The limit that the figure exceeds, one that fails before one that warns."""
         limits = self.check.limits if self.figure else ()
         broken = [x for x in limits if self.figure and beyond(self.figure.value, x.compare, x.value)]
         return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":
-        """Return the outcome; if any `gates` limit the same figure, their limits replace its limits."""
+        """Return the outcome with the limits of `gates` on the same figure, if any."""
         compare = self.check.limits[0].compare
         own = [gate for gate in gates if gate.replaces(self.check.figure, compare)]
         limits = tuple(Limit("fail", gate.compare, gate.limit) for gate in own)
@@ -112,11 +101,11 @@ class ProfileReport:
         return all(result.verdict != "fail" for result in self.results)
 
     def under(self, gates: Sequence[Gate]) -> "ProfileReport":
-        """Return the report; the limits of `gates` replace the profiles' limits on the same figures."""
+        """Return the report; limits of `gates` replace those on the same figures."""
         return replace(self, results=_once(result.under(gates) for result in self.results))
 
     def replaced(self) -> list[str]:
-        """Return the limits set by gates that override a limit of the profile: ``box_ratio > 4000``."""
+        """Return limits of gates that override those of the profile: ``box_ratio > 4000``."""
         return [
             f"{result.check.figure} {limit.compare} {limit.value:g}"
             for result in self.results
@@ -125,7 +114,7 @@ class ProfileReport:
         ]
 
     def beyond(self) -> list[str]:
-        """Return a short text for each exceeded limit, warnings included: ``face_skewness 5.2 > 4``."""
+        """Return a text for each exceeded limit, warnings too: ``face_skewness 5.2 > 4``."""
         return [
             in_short(result.check.figure, result.figure, limit.compare, limit.value)
             for result in self.results
@@ -133,7 +122,7 @@ class ProfileReport:
         ]
 
     def failures(self) -> list[str]:
-        """Return a line for each check that failed, except checks that gates replace."""
+        """Return a line for each failed check that gates do not replace."""
         return [
             f"profile {result.profile}: {result.check.figure} is {result.value:.6g}{result.figure.where}, "
             "and it must "
@@ -146,7 +135,7 @@ class ProfileReport:
 
 
 def _once(results: Iterable[CheckResult]) -> tuple[CheckResult, ...]:
-    """Return the results without repeated checks: all profiles count folded cells."""
+    """Return the results without repeated checks."""
     checks: dict[Check, CheckResult] = {}
     for result in results:
         checks.setdefault(result.check, result)
@@ -183,7 +172,7 @@ PROFILES: dict[str, tuple[Check, ...]] = {
 
 
 def profile_report(figures: Figures, *profiles: str) -> ProfileReport:
-    """Return the results of all `profiles` for a grid; raise InputError if one is not in `PROFILES`."""
+    """Return the results of `profiles` for a grid. Raises InputError: one is not in `PROFILES`."""
     for profile in profiles:
         if profile not in PROFILES:
             known = "use one of " + ", ".join(PROFILES)

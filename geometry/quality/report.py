@@ -54,13 +54,12 @@ class Comparison:
 
 @dataclass(frozen=True, eq=False)
 class QualityReport:
-    """The quality of a grid, with verdicts of profiles and a comparison with another grid if requested.
+    """The quality of a grid, with verdicts of profiles and a comparison if requested.
 
-    ``report.quality.folded`` is the number of folded cells. ``report.quality["max_angle"]`` contains the
-    values ``min``, ``mean``, ``max``, ``p01`` and ``p99`` of a metric, and the worst cell.
-    ``report.figures.wall_rows`` contains the heights and angles of the first cells, ``report.figures.growth``
-    the growth ratios along xi and eta, and ``report.profile.passed`` the verdict of a profile.
-    ``report.as_dict()`` returns all values as ``meshonet quality --json`` prints them.
+    ``report.quality["max_angle"]`` has ``min``, ``mean``, ``max``, ``p01``, ``p99`` and the worst cell of a
+    metric, ``report.quality.folded`` the number of folded cells; ``report.figures.wall_rows`` heights and
+    angles of first cells, ``report.figures.growth`` growth ratios; ``report.profile.passed`` a verdict.
+    ``report.as_dict()`` has all as ``meshonet quality --json`` prints it.
 
     Parameters
     ----------
@@ -77,7 +76,7 @@ class QualityReport:
     comparison : Comparison, optional
         The comparison with a reference grid.
     flow : Flow, optional
-        The Reynolds number and length for which y+ at the walls is reported.
+        The flow for which y+ at the walls is reported.
     """
 
     grid: Grid
@@ -117,7 +116,7 @@ class QualityReport:
         return f"<QualityReport: {', '.join(parts)}>"
 
     def under(self, gates: Gates) -> QualityReport:
-        """Return the report; where `gates` limit a metric, they replace the profile's limits on it."""
+        """Return the report; limits of `gates` replace those of its profile."""
         return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
     def broken(self, gates: Gates = ()) -> list[str]:
@@ -162,19 +161,19 @@ class QualityReport:
         return [(gate, figure, beyond(figure.value, gate.compare, gate.limit)) for gate, figure in pairs]
 
     def _compared(self) -> dict[str, Figure]:
-        """Return the figures of the comparison and the greatest y+ by name."""
+        """Return figures of the comparison and the greatest y+."""
         values = self.comparison.figures() if self.comparison else {}
         values |= {Y_PLUS: max(each.max for each in self.y_plus.values())} if self.y_plus else {}
         return {name: Figure(value) for name, value in values.items()}
 
     def _at_wall(self, name: str) -> dict[str, Any]:
-        """Return y+ and skewness of the cells at a wall as a dict that JSON can hold."""
+        """Return y+ and skewness of cells at a wall for JSON."""
         facts: dict[str, Any] = {Y_PLUS: vars(self.y_plus[name])} if name in self.y_plus else {}
         skewness = self.wall_skewness.get(name)
         return facts | ({"skewness": extreme_dict(skewness)} if skewness else {})
 
     def _metrics(self) -> dict[str, Any]:
-        """Return the metrics, with the centres of their worst cells, as a dict that JSON can hold."""
+        """Return the metrics with centres of worst cells for JSON."""
         facts = quality_dict(self.quality)
         for name, summary in self.quality.metrics.items():
             facts[name]["worst_centre"] = centre_of(self.grid, summary.worst).tolist()
@@ -214,11 +213,9 @@ def _parsed(gates: Gates) -> list[Gate]:
 def quality_report(
     grid: Grid, profile: str | Sequence[str] = (), reference: Grid | None = None, flow: Flow | None = None
 ) -> QualityReport:
-    """Measure `grid`, judge it by profiles of `PROFILES` and compare it with a `reference` of the same size.
+    """Measure `grid`, judge it by profiles, and compare it with a `reference` of the same size.
 
-    With a `flow` the report has y+ of the walls.
-
-    Raises InputError: an unknown profile; a reference with other numbers of nodes.
+    A `flow` adds y+ of the walls. Raises InputError: an unknown profile; other node counts of the reference.
     """
     profiles = (profile,) if isinstance(profile, str) else profile
     quality = measure(grid, percentiles=True)

@@ -1,13 +1,7 @@
-r"""Metrics of surface patches in space: quadrilaterals, each measured relative to its normal at its centre.
+"""Metrics of quadrilaterals of surface patches, relative to the normal of each at its centre.
 
-::
-
-        d ----- c        the normal is (c + b - a - d) x (c + d - a - b), the cross product of the directions
-       /       /         of the two families of grid lines at the centre; the Jacobian of a corner is the
-      a ----- b          component of u x v along it, with u and v the edges at the corner
-
-The metrics do not depend on the side from which the surface is seen. A corner with an edge of zero length, as
-at a pole, is left out. Definitions: `meshonet.geometry.quality.metrics`.
+The normal is the cross product of the grid lines' directions there. Corners with an edge of zero length, as
+at a pole, are left out. Definitions: `meshonet.geometry.quality.metrics`.
 """
 
 from collections.abc import Iterable, Sequence
@@ -24,10 +18,7 @@ _TINY, _LARGE = 1e-300, 1e30  # in place of 0 in divisors; upper bound of ratios
 
 
 def quad_metrics(nodes: Floats) -> Floats:
-    """Return the metrics `NAMES` (metrics, ni-1, nj-1) of the cells of `nodes` (ni, nj, 3).
-
-    `area_ratio` compares neighbours within the patch.
-    """
+    """Return the metrics `NAMES` (metrics, ni-1, nj-1) of `nodes` (ni, nj, 3), areas within the patch."""
     ring = ring_of(nodes)
     edges = np.roll(ring, -1, axis=0) - ring
     before = np.roll(edges, 1, axis=0)
@@ -57,7 +48,7 @@ def quad_metrics(nodes: Floats) -> Floats:
 
 
 def folded_quads(nodes: Floats) -> NDArray[np.int64]:
-    """Return indices (n, 2) of the cells of `nodes` (ni, nj, 3) with a Jacobian that is not positive."""
+    """Return indices (n, 2) of folded cells of `nodes` (ni, nj, 3)."""
     return np.argwhere(~(_scaled_jacobians(ring_of(nodes)).min(axis=0) > 0)).astype(np.int64)
 
 

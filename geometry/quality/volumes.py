@@ -1,9 +1,6 @@
-"""Folded cells and metrics of volumes: blocks of nodes (ni, nj, nk, 3).
+"""Folded cells and metrics of volumes, blocks of nodes (ni, nj, nk, 3), for any number of threads.
 
-A cell is folded if any of its eight corner Jacobians is not positive. If all 27 Bezier coefficients of its
-Jacobian are positive, the Jacobian is positive everywhere in the cell (`meshonet.geometry.quality.metrics`).
-Both tests leave out corners with an edge of zero length. Kernels use `meshonet.geometry.threads.threads_for`
-threads; results are bitwise the same for any number.
+Corners with an edge of zero length are left out. Definitions: `meshonet.geometry.quality.metrics`.
 """
 
 from collections.abc import Callable, Sequence
@@ -52,10 +49,7 @@ def _folded_rows(nodes: Floats, test: int) -> NDArray[np.int64]:
 
 
 def worst_solids(nodes: Floats, limit: int = 10, test: int = CORNERS) -> list[BadCell]:
-    """Return at most `limit` cells of `nodes` (ni, nj, nk, 3) that fail a test, with their centres.
-
-    The order is that of ascending scaled Jacobians.
-    """
+    """Return at most `limit` cells that fail a test, by ascending scaled Jacobian."""
     i, j, k = folded_solids(nodes, test)[:_MOST].T
     points = {(a, b, c): nodes[i + a, j + b, k + c] for a in (0, 1) for b in (0, 1) for c in (0, 1)}
     least = np.ones(len(i))
@@ -122,10 +116,9 @@ def _metric(grid: Grid, volumes: Sequence[Floats], k: int) -> list[Floats]:
 
 
 def padded_volumes(grid: Grid) -> list[Floats]:
-    """Return, for each block, the volumes of its cells and of a layer around it: (ni+1, nj+1, nk+1).
+    """Return, for each block, volumes (ni+1, nj+1, nk+1) of its cells and a layer around it.
 
-    At connections the layer contains the volumes of the cells on the other side; elsewhere it repeats the
-    volumes of the nearest cells of the block.
+    The layer has those of cells across connections, elsewhere those of the nearest cells.
     """
     padded = over_blocks(_padded, grid.blocks, _nodes_of(grid))
 
@@ -156,7 +149,7 @@ def _padded(block: Block) -> Floats:
 
 
 class _BlockRun(NamedTuple):
-    """Result of a pass over a block, per metric: extremes, sum, cells of extremes (2, 3), kept values."""
+    """Result of a pass, per metric: extremes, sum, their cells (2, 3), kept values."""
 
     low: Floats
     total: Floats
@@ -166,7 +159,7 @@ class _BlockRun(NamedTuple):
 
 
 def _run_over(block: Block, volumes: Floats, kept: slice) -> _BlockRun:
-    """Compute the metrics of a block; for metrics `kept`, return the values (n, ni-1, nj-1, nk-1) too."""
+    """Return the metrics of a block, and values (n, ni-1, nj-1, nk-1) of those `kept`."""
     chunks, metrics = _native.solids_chunks(block.nodes), len(SOLID_METRICS)
     summary, where = np.empty((chunks, metrics, 3)), np.empty((chunks, metrics, 2, 3), dtype=np.int64)
     first, last, _ = kept.indices(metrics)

@@ -16,9 +16,7 @@ from meshonet.geometry.spacing.y_plus import first_cell
 
 @dataclass(frozen=True)
 class Flow:
-    """The flow for which y+ is computed.
-
-    The wall shear stress is that of a turbulent boundary layer on a flat plate, at half the reference length.
+    """The flow for which y+ is computed, by the shear stress of a turbulent flat plate at half its length.
 
     Parameters
     ----------

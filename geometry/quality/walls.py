@@ -35,7 +35,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class WallRow:
-    """Figures of the cells at a named stretch of wall; in a multi-block grid, at all stretches so named."""
+    """Figures of the cells at a named wall; in a multi-block grid, at all walls so named."""
 
     name: str
     side: str | None
@@ -43,15 +43,9 @@ class WallRow:
     height: Spread
     """Distance from each wall node to the next node of the line that leaves it, in the grid's unit."""
     off_square: Spread
-    """Deviation from 90 degrees of the two angles of every cell at the wall.
-
-    In volumes: the angle between the edge that leaves the wall at each corner of a wall face and the normal
-    of this face.
-    """
+    """Deviation from 90 degrees of cell angles at the wall, in volumes from the wall's normal."""
     equal_cells: int
-    """Smallest number of successive cells, from the wall, whose heights equal the first within 1 %; at most
-    32.
-    """
+    """Fewest successive cells from the wall, at most 32, with heights within 1 % of the first."""
     growth: Extreme | None = None
     """In multi-block grids: growth along the lines that start at the wall, through all blocks."""
 
@@ -64,9 +58,9 @@ def wall_row(grid: Grid, patch: Patch) -> WallRow:
 def wall_rows(
     grid: Grid, walls: Sequence[Patch], growth: Mapping[str, Extreme] = NO_GROWTH
 ) -> tuple[WallRow, ...]:
-    """Return the figures of the cells at each of the `walls`; in a multi-block grid, one for each name.
+    """Return the figures of the cells at `walls`, in a multi-block grid one for each name.
 
-    `growth` has, by name of the wall, the growth along the lines that start there.
+    `growth` has, by name of the wall, the growth along its lines.
     """
     if grid.topology != "blocks":
         return tuple(wall_row(grid, wall) for wall in walls)
@@ -105,7 +99,7 @@ def _wall_part(grid: Grid, patch: Patch) -> _WallPart:
 
 
 def _off_normal(wall: Floats, away: Floats) -> list[Floats]:
-    """Return the angles between edges (n, m, 3) off a wall and the normals at its cells' corners."""
+    """Return the angles between edges (n, m, 3) off a wall and normals at its corners."""
     along, across = np.diff(wall, axis=0), np.diff(wall, axis=1)
     off = []
     for a in (0, 1):
