@@ -8,12 +8,10 @@ from meshonet.kernels._native import cubic_values, solve_tridiagonal
 
 
 class CubicTable:
-    """The cubic spline through `values` (n, ...) at ascending `knots` (n,).
+    """The cubic spline through `values` (n, ...) at ascending `knots` (n,), with not-a-knot ends.
 
-    The end condition is not-a-knot: the third derivative is continuous at the second and at the last but one
-    knot. 2 knots give a straight line, 3 knots a parabola. Values at knots are bitwise kept. Beyond the first
-    and the last knot the outer cubics are continued. de Boor, A Practical Guide to Splines (1978), chapter
-    IV.
+    2 knots give a line, 3 a parabola. Values at knots are bitwise kept; outer cubics continue beyond the
+    ends. de Boor, A Practical Guide to Splines (1978), chapter IV.
     """
 
     def __init__(self, values: Floats, knots: Floats) -> None:
@@ -62,9 +60,7 @@ class CubicTable:
 
 
 def cubic_spline(values: Floats, knots: Floats, places: Floats) -> Floats:
-    """Return the cubic spline (p, ...) at `places` (p,), through `values` (n, ...) at ascending `knots` (n,).
-
-    See `CubicTable`.
+    """Return the spline (p, ...) of `CubicTable` at `places` (p,), of `values` (n, ...) at `knots` (n,).
 
     >>> knots = np.array([0.0, 1.0, 3.0, 4.0, 6.0])
     >>> float(cubic_spline(knots**3, knots, np.array([2.0]))[0])
@@ -102,11 +98,8 @@ def _bends(values: Floats, knots: Floats) -> Floats:
 class LimitedSpline:
     """The cubic spline through `values` (n, ...) at ascending `knots` (n,), limited to be monotone.
 
+    Slopes of `CubicTable` are limited to three times those of the chords on both sides, and 0 at extrema.
     Hyman, SIAM J. Sci. Stat. Comput. 4 (1983) 645-654.
-
-    Slopes at knots are those of `CubicTable`, limited to three times the slopes of the straight lines on both
-    sides, and 0 at extrema. Values in an interval therefore lie between the values at its ends. Unlike
-    `monotone.monotone_cubic`, this spline equals `CubicTable` where that is monotone and the data are smooth.
     """
 
     def __init__(self, values: Floats, knots: Floats) -> None:

@@ -24,14 +24,11 @@ _EDGES = np.arange(_STEPS + 1) / _STEPS  # ends of the parts
 class Curve:
     """A smooth curve through given points (bitwise), one cubic per interval (`geometry.curves.spline`).
 
-    An open curve has at least 2 `points` (n, 2), a closed curve 3, in any unit of length; neighbours must
-    differ. A closed curve may repeat its first point at the end. At `corners`, indices of points, the tangent
-    may jump; if None, corners are detected (`meshonet.geometry.polygon.corners`). Intervals in the mask
-    `straight` (intervals,) are straight. A long straight interval between rounded corners is tangent to these
-    (`meshonet.geometry.polygon.straights`).
-
-    Raises InputError: too few points; a point that is not finite or equals its neighbour; a corner out of
-    range.
+    `points` (n, 2) are at least 2, of a closed curve 3, in any unit; a closed curve may repeat its first. The
+    tangent may jump at `corners`, indices of points; None: they are detected (`geometry.polygon.corners`).
+    Intervals in the mask `straight` (intervals,) are straight; long ones between rounded corners are tangent
+    to these (`geometry.polygon.straights`). Raises InputError: too few points; a point not finite or equal to
+    its neighbour; a corner out of range.
 
     >>> square = Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), closed=True)
     >>> square.length, square.corners.tolist()
@@ -116,11 +113,7 @@ class Curve:
 
     @property
     def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:
-        """Tables for kernels that evaluate the curve (``kernels/geometry/curve.h``).
-
-        They are the coefficients (4, n, 2) of the cubics, tables of arc length and of the slopes of its
-        inverse, and the number of parts into which the tables divide each interval.
-        """
+        """Cubics (4, n, 2), arc lengths, slopes of their inverse, parts per interval (``curve.h``)."""
         return self._cubic, self._table, self._rate_start, self._rate_stop, _STEPS
 
     def _locate(self, s: Floats) -> tuple[Indices, Floats]:
@@ -131,9 +124,9 @@ class Curve:
         return i, t
 
     def at(self, s: Floats) -> Floats:
-        """Return the points (m, 2) at arc lengths `s` (m,), clipped to the ends of an open curve.
+        """Return points (m, 2) at arc lengths `s` (m,), clipped to an open curve.
 
-        At `knots` they are bitwise the given points of the curve.
+        At `knots` they are bitwise the given points.
         """
         i, t = self._locate(s)
         points = np.empty((len(t), 2))
@@ -141,19 +134,16 @@ class Curve:
         return points
 
     def tangent(self, s: Floats) -> Floats:
-        """Return unit tangents (m, 2) at arc lengths `s` (m,).
-
-        At a corner it is the tangent of the interval after the corner.
-        """
+        """Return unit tangents (m, 2) at arc lengths `s` (m,); at a corner, those after it."""
         i, t = self._locate(s)
         d = np.empty((len(t), 2))
         curve_slopes(self._cubic, i, t, d)
         return np.asarray(d / np.hypot(d[:, 0], d[:, 1])[:, None])
 
     def polyline(self, places: Floats) -> Floats:
-        """Return points of every interval, each at the parameters `places` (k,) in [0, 1).
+        """Return points of every interval at its parameters `places` (k,) in [0, 1).
 
-        The result has the shape (intervals * k, 2), and one more row for the end point of an open curve.
+        The result is (intervals * k, 2), with the end point of an open curve as one more row.
         """
         i = np.arange(self._cubic.shape[1])[:, None]
         t = places[None, :, None]

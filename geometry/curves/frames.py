@@ -1,7 +1,6 @@
-"""Rotation-minimising frames along a curve in space.
+"""Rotation-minimising frames along a curve in space, by double reflection.
 
-Double reflection: W. Wang, B. Juettler, D. Zheng, Y. Liu, Computation of rotation minimizing frames, ACM
-Transactions on Graphics 27 (2008) 2; fourth order in the step.
+W. Wang, B. Juettler, D. Zheng, Y. Liu, ACM Transactions on Graphics 27 (2008) 2; fourth order.
 """
 
 import math
@@ -20,12 +19,10 @@ STEPS = 4
 def frames_along(
     path: Path, s: Floats, up: Floats | None = None, *, steps: int = STEPS
 ) -> tuple[Floats, Floats]:
-    """Return the x and y axes (n, 3) of cross-sections of a path, at increasing arc lengths `s` (n,) from 0.
+    """Return x and y axes (n, 3) of cross-sections of a path, at increasing arc lengths `s` (n,) from 0.
 
-    x, y and the tangent are right-handed. At the start the y axis is as close as possible to `up`: by default
-    z, or y where the path starts along z. Along a closed path the frames are rotated about the tangent at a
-    constant rate, so that the last coincides with the first. Each interval of `s` takes `steps` steps.
-
+    x, y and the tangent are right-handed. y starts nearest to `up`, by default z, or y where the path is
+    along z. On a closed path frames turn about the tangent at a constant rate, so that the last is the first.
     Raises InputError: `up` is parallel to the path.
     """
     fine = (s[:-1, None] + (np.arange(steps) / steps) * np.diff(s)[:, None]).ravel()

@@ -9,10 +9,9 @@ from meshonet.geometry.arrays import Floats
 
 
 def inner_slopes(h: Floats, delta: Floats) -> Floats:
-    """Return slopes (n-1, ...) at the inner points between n intervals of lengths `h` and slopes `delta`.
+    """Return slopes (n-1, ...) at inner points of n intervals of lengths `h` and slopes `delta`.
 
-    They are weighted harmonic means of neighbouring `delta`, and 0 where `delta` changes its sign, so that
-    cubics do not overshoot.
+    They are weighted harmonic means, and 0 where `delta` changes its sign: cubics do not overshoot.
     """
     w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -21,10 +20,10 @@ def inner_slopes(h: Floats, delta: Floats) -> Floats:
 
 
 def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = False) -> Floats:
-    """Return, at `at` (m,), values (m, ...) of the curve through `values` (n, ...) at ascending `x` (n,).
+    """Return values (m, ...) at `at` (m,) of the curve through `values` (n, ...) at ascending `x` (n,).
 
-    The curve is piecewise cubic, monotone in each interval and flat at extrema; with `linear`, piecewise
-    linear. The slopes at the two ends are those of parabolas through three points, limited to be monotone.
+    It is piecewise cubic, monotone in each interval and flat at extrema, or `linear`; end slopes are those of
+    parabolas.
     """
     h = np.diff(x)
     i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(h) - 1)
@@ -40,11 +39,7 @@ def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = Fals
 
 
 def hermite_piece(t: Floats, low: Floats, high: Floats, a: Floats, b: Floats) -> Floats:
-    """Return the values of cubic pieces at t (0 to 1).
-
-    `low` and `high` are the values at both ends, `a` and `b` the derivatives with respect to t there. All
-    arrays broadcast.
-    """
+    """Return cubics at t (0 to 1) with end values `low`, `high` and end derivatives `a`, `b`."""
     rise = high - low
     out = low + t * (a + t * ((3 * rise - 2 * a - b) + t * (a + b - 2 * rise)))
     return np.asarray(np.where(t >= 1.0, high, out))

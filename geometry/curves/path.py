@@ -1,7 +1,6 @@
 """Curves in space along which a section is swept: splines through points, or lines and arcs.
 
-At each arc length a path has a point, a unit tangent and a curvature vector, which points to the centre of
-curvature and has length 1/radius.
+Curvature vectors point to the centre of curvature, with length 1/radius.
 """
 
 import math
@@ -41,12 +40,10 @@ _PARTS = 16  # parts of an interval in the table of arc length
 
 
 class SplinePath:
-    """The cubic spline through `points` (n, 3), with continuous curvature.
+    """The cubic spline through `points` (n, 3), by cumulative chord length, with continuous curvature.
 
-    A closed path repeats its first point at the end. The parameter of the spline is the cumulative chord
-    length; the first and the last interval of an open path are parabolas. Raises InputError: fewer than two
-    points (of a closed path four, with the repeated point), equal neighbouring points, values that are not
-    finite.
+    A closed path repeats its first point; outer intervals of an open path are parabolas.
+    Raises InputError: too few points (2, closed 4); equal neighbours; values that are not finite.
 
     >>> round(SplinePath(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]])).length, 9)
     3.0
@@ -128,8 +125,8 @@ class Bend:
 class PiecedPath:
     """Lines and arcs joined without kinks, from `start` (3,) in a `direction` (3,).
 
-    The `towards` of an arc is projected perpendicular to the path where the arc begins. Raises InputError: no
-    piece; a length or radius that is not positive; a `towards` parallel to the path.
+    `towards` of an arc is made perpendicular to the path at its beginning. Raises InputError: no piece; a
+    length or radius that is not positive; a `towards` parallel to the path.
     """
 
     def __init__(self, pieces: tuple[Bend, ...], start: Floats, direction: Floats) -> None:
@@ -157,10 +154,7 @@ class PiecedPath:
         self._start, self._tangent, self._normal = np.array(starts), np.array(tangents), np.array(normals)
 
     def at(self, s: Floats) -> PathPoints:
-        """Return points, tangents and curvature at arc lengths `s` (n,).
-
-        At a joint, they are those of the piece after the joint.
-        """
+        """Return points, tangents and curvature at arc lengths `s` (n,); at a joint, those after it."""
         s = np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length)
         k = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._radius) - 1)
         places = [np.empty((len(s), 3)) for _ in range(3)]

@@ -7,10 +7,9 @@ from meshonet.kernels._native import sampled_lines
 
 
 def sampled(lines: Floats, arc: Floats, at: Floats) -> Floats:
-    """Return points (k, n, ...) at the arc lengths `at` (k, n) on piecewise cubic `lines` (k, m, ...).
+    """Return points (k, n, ...) at arc lengths `at` (k, n), clipped, of cubic `lines` (k, m, ...).
 
-    The tangents of the cubics at nodes are those of parabolas through three nodes. `arc` (k, m) are the arc
-    lengths of the nodes. An arc length that exceeds the length of the line gives its last node.
+    Tangents at nodes are those of parabolas through three nodes; `arc` (k, m) are the nodes' arc lengths.
     """
     points = np.empty((*at.shape, lines.shape[2]))
     lines, arc, at = (np.ascontiguousarray(each) for each in (lines, arc, np.minimum(at, arc[:, -1:])))

@@ -1,12 +1,7 @@
-"""Tangents of a spline through points: twice continuously differentiable where possible, otherwise limited.
+"""Slopes of a spline through points, by chord length: C2 where possible, else limited.
 
-A cubic spline overshoots next to a short interval or an unmarked kink: the tangent at a point there is kept
-between the directions of the chords before and after it. Where two points close together form a step, which
-turns one way and back, even such a tangent causes a wide bulge in the long interval next to them: there it is
-kept close to the direction of the long chord.
-
-Slopes are derivatives by chord length, so their magnitude is near 1. Every interval has one at its start and
-one at its end; those of neighbouring intervals differ only at corners.
+At a kink a tangent stays between the chords on both sides; beside a step, two points close together that turn
+one way and back, it stays near the longer chord, or there would be a bulge.
 """
 
 import numpy as np
@@ -29,10 +24,9 @@ def spline_slopes(
 ) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, 2) at the start and at the end of each interval.
 
-    Between `corners` (indices of points), the curve is the cubic spline with continuous tangent and
-    curvature, parabolic in the intervals next to a corner; overshoots are then removed (`limited`). A closed
-    curve does not repeat its first point. Intervals of a closed curve in the mask `tangent` (n,) are straight
-    lines, and the splines next to them begin and end in the directions of these lines.
+    Between `corners` (indices) it is the cubic spline, parabolic beside a corner, without overshoots
+    (`limited`). A closed curve does not repeat its first point. Its intervals in the mask `tangent` (n,) are
+    straight lines, to which the splines beside them are tangent.
     """
     if tangent is not None and tangent.any():
         return _beside_lines(points, corners, tangent)
@@ -51,7 +45,7 @@ def spline_slopes(
 
 
 def _beside_lines(points: Floats, corners: Indices, tangent: Bools) -> tuple[Floats, Floats]:
-    """Return the slopes of a closed curve with straight intervals, as `spline_slopes`."""
+    """Return the slopes of a closed curve with straight intervals."""
     n = len(points)
     ends = distinct(np.concatenate([corners, np.flatnonzero(tangent | rolled(tangent, 1))]))
     shift = int(ends[0])
@@ -78,19 +72,10 @@ def cubics(start: Floats, chord: Floats, first: Floats, last: Floats) -> Floats:
 
 
 def checked_points(points: Floats, what: str, point: str, dimension: int, *, closed: bool = False) -> Floats:
-    """Return the points (n, d) of a curve as a float64 array.
+    """Return the points (n, d) of a curve as float64, without a repeated first point of a `closed` curve.
 
-    If a `closed` curve repeats its first point at the end, the repeated point is left out.
-
-    Parameters
-    ----------
-    points : (n, d) points, at least 2, or at least 3 different points for a closed curve.
-    what : name of the curve in messages.
-    point : name of a point in messages, with a field for its index, such as ``point {}``.
-    dimension : number of coordinates d.
-    closed : whether the curve is closed.
-
-    Raises InputError: an array of another shape; too few points; a point that is not finite or equals its
+    `what` is the curve and `point` a point with its index, ``point {}``, in messages; `dimension` is d.
+    Raises InputError: another shape; too few points (2, closed 3); a point not finite or equal to its
     neighbour.
     """
     nodes = np.array(points, dtype=np.float64)
@@ -117,12 +102,10 @@ def open_slopes(
 ) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, d) at the start and at the end of each interval of an open curve.
 
-    There is a separate spline between each two neighbouring `stops`, indices of points that include the first
-    and the last. `chord` (intervals, d) are the vectors between points and `h` (intervals,) their lengths.
-    All splines are solved as one tridiagonal system: a stop has two unknowns, one for each side, whose rows
-    are not coupled. At the ends of a spline, the slope is `held` (2, intervals, d), at the start or at the
-    end of the interval, where that is a number; otherwise the first and the last interval are parabolas, m_0
-    + m_1 = 2 delta_0.
+    There is a spline between neighbouring `stops`, indices of points with the first and the last; all are
+    solved as one tridiagonal system. `chord` (intervals, d) are the vectors between points, `h` (intervals,)
+    their lengths. End slopes are `held` (2, intervals, d) where that is finite; else outer intervals are
+    parabolas, m_0 + m_1 = 2 delta_0.
     """
     delta = chord / h[:, None]
     doubled = np.zeros(len(h) + 1, dtype=np.intp)
@@ -152,8 +135,8 @@ def open_slopes(
 def periodic_slopes(chord: Floats, h: Floats) -> Floats:
     """Return the slopes (n, d) of the periodic spline at the start of each interval.
 
-    `chord` (n, d) are the vectors from each point to the next, `h` (n,) their lengths. The cyclic system is
-    solved by the Sherman-Morrison formula.
+    Sherman-Morrison formula. `chord` (n, d) are the vectors from each point to the next, `h` (n,) their
+    lengths.
     """
     delta = chord / h[:, None]
     before = rolled(h, 1)
@@ -173,12 +156,11 @@ def periodic_slopes(chord: Floats, h: Floats) -> Floats:
 def limited(
     points: Floats, start: Floats, stop: Floats, *, closed: bool, corners: Indices
 ) -> tuple[Floats, Floats]:
-    """Return the slopes (intervals, 2) `start` and `stop` of each interval, limited to avoid overshoots.
+    """Return the slopes (intervals, 2) `start` and `stop` of each interval without overshoots.
 
-    Each tangent is kept near the range of directions between the chords before and after its point. `corners`
-    are the indices of `points` (n, 2) at which the tangent may jump. At a corner, only the chord of the own
-    interval is known; there the tangent may deviate from this chord by as much as the polygon turns at the
-    other end of the interval. A closed curve does not repeat its first point.
+    Each tangent stays near the directions of the two chords at its point (n, 2). At `corners` (indices of
+    points) it may leave its only chord by as much as the polygon turns at the other end of the interval. A
+    closed curve does not repeat its first point.
     """
     n = len(points)
     chord = rolled(points, -1) - points  # the last of an open curve is not used
@@ -206,11 +188,9 @@ def limited(
 
 
 def _ranges(turn: Floats, length: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return least and largest angles (n,) of tangents from the chords before their points, and the slack.
+    """Return least and largest angles (n,) of tangents from the chords before, and the slack.
 
-    They lie between the two chords, within the slack. Where one of the intervals is a step (its ends turn in
-    opposite directions), the shorter the step is relative to the other interval, the less the tangent may
-    leave the chord of that interval.
+    Beside a step, whose ends turn in opposite directions, tangents stay near the other chord.
     """
     step_after = turn * rolled(turn, -1) < 0
     step_before = rolled(step_after, 1)
@@ -227,11 +207,7 @@ def _ranges(turn: Floats, length: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def _edges_kept_open(start: Floats, stop: Floats, chord: Floats, corners: Indices) -> tuple[Floats, Floats]:
-    """Return slopes that follow the chords at sharp edges where the two sides would otherwise cross.
-
-    A corner that turns by more than 120 degrees is the tip of a wedge; the angle between its tangents is at
-    least a quarter of that between its chords.
-    """
+    """Return slopes along the chords at edges sharper than 120 degrees whose sides would cross."""
     before, after = chord[corners - 1], chord[corners]
     angle, kept = angle_between(before, after), angle_between(stop[corners - 1], start[corners])
     open_by = np.where(np.sign(kept) == np.sign(angle), np.pi - np.abs(kept), np.abs(kept) - np.pi)
@@ -245,7 +221,7 @@ def _edges_kept_open(start: Floats, stop: Floats, chord: Floats, corners: Indice
 
 
 def _turned(slope: Floats, chord: Floats, least: Floats, most: Floats) -> Floats:
-    """Return slopes (n, 2) at angles from the chord between `least` and `most`, at most `LONGEST` long."""
+    """Return slopes (n, 2) at angles from the chord from `least` to `most`, at most `LONGEST` long."""
     angle = angle_between(chord, slope)
     size = np.hypot(slope[:, 0], slope[:, 1])
     wrong = np.flatnonzero((angle < least) | (angle > most) | (size > LONGEST))

@@ -9,8 +9,5 @@ from meshonet.geometry.polygon.straights import find_kinks
 
 
 def wall_line(nodes: Floats) -> Curve:
-    """Return the open curve through `nodes` (n, 2) of a wall, with corners at slight kinks too.
-
-    Raises InputError: see `Curve`.
-    """
+    """Return the open curve through `nodes` (n, 2) of a wall, with corners at slight kinks too (`Curve`)."""
     return Curve(nodes, corners=np.concatenate([find_corners(nodes), find_kinks(nodes, few=0)]))

@@ -1,8 +1,4 @@
-"""Random bodies in far fields, to train and test operators on O grids around non-airfoil shapes.
-
-Ellipses, polygons, rounded polygons, stars, rounded rectangles and bullets, at random positions and angles
-within circles, ellipses, rectangles, polygons and rounded rectangles 1.6 to 25 times their size.
-"""
+"""Random bodies in far fields 1.6 to 25 times their size, to train and test operators on O grids."""
 
 import math
 from collections.abc import Callable
@@ -29,7 +25,7 @@ BEND = np.radians(25.0)
 
 
 class BodyCurve(NamedTuple):
-    """A closed curve, counter-clockwise around 0, without its first point repeated; `corners` are indices."""
+    """A closed curve, counter-clockwise around 0, with its first point once; `corners` are indices."""
 
     points: Complexes
     corners: tuple[int, ...] = ()
@@ -77,7 +73,7 @@ def _even(q: Floats) -> Floats:
 
 
 def _law(rng: np.random.Generator) -> Callable[[Floats], Floats]:
-    """Return a random node distribution: a rising map of [0, 1] to itself, uniform or locally clustered."""
+    """Return a random node distribution, a rising map of [0, 1] to itself."""
     if rng.random() < 0.5:
         return _even
     k = np.arange(1, 4)
@@ -87,14 +83,14 @@ def _law(rng: np.random.Generator) -> Callable[[Floats], Floats]:
 
 
 def _facing(ring: Complexes, direction: float) -> int:
-    """Return the index of the outermost point of a closed curve in a `direction` (radians) from 0."""
+    """Return the index of the outermost point in a `direction` (radians) from 0."""
     off = np.abs(angle(times(ring, exp(-1j * direction))))
     near = np.flatnonzero(off < off.min() + 2 * np.pi / len(ring))
     return int(near[np.argmax(modulus(ring[near]))])
 
 
 def _nodes(ring: BodyCurve, first: int, law: Callable[[Floats], Floats], n: int) -> Complexes:
-    """Return n nodes clockwise from the point `first`, where they also end; corners are among them."""
+    """Return n nodes clockwise from the point `first` back to it; corners are nodes."""
     m = len(ring.points)
     points = np.roll(ring.points, -first)[::-1]
     points = np.concatenate([points[-1:], points])  # clockwise, closed

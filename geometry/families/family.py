@@ -38,9 +38,9 @@ class Family:
     """Whether extrapolation tests low values of the parameter instead of high values."""
 
     def boundary(self, parameter: float, ni: int, nj: int) -> Boundary:
-        """Return the member with the given parameter and ni by nj nodes, named after family and parameter.
+        """Return the member with the given parameter and ni by nj nodes, named after both.
 
-        Raises InputError: a parameter outside of `least` to `most`, or too few nodes for the corners.
+        Raises InputError: a parameter out of range, or too few nodes for the corners.
         """
         if not self.least <= parameter <= self.most:
             what = f"{self.name} with {self.parameter} {parameter:g}"
@@ -62,8 +62,7 @@ def family(name: str) -> Family:
 def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
     """Return n nodes (n, 2) along a polyline, in nearly equal steps; every corner is bitwise a node.
 
-    If `like`, another polyline with equally many corners, is given, each corner gets the node index that it
-    has in `like`.
+    With `like`, another polyline, corners have the same node indices as its corners.
 
     >>> polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], 5).tolist()
     [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]]
@@ -78,10 +77,7 @@ def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
 
 
 def arch(height: float, ni: int, nj: int) -> Boundary:
-    """Case 1: return the unit square with an arch as its top, y = 1 + h sin(pi x); h may be negative.
-
-    Nodes are at equal steps of x on top and bottom.
-    """
+    """Case 1: return the unit square with the top y = 1 + h sin(pi x), nodes at equal steps of x."""
     x = np.linspace(0.0, 1.0, ni)
     top = np.stack([x, 1.0 + height * sin(np.pi * x)], axis=1)
     top[-1] = 1.0, 1.0
@@ -89,15 +85,9 @@ def arch(height: float, ni: int, nj: int) -> Boundary:
 
 
 def hexagon(angle: float, ni: int, nj: int) -> Boundary:
-    """Case 2: return a hexagon: a square with a kink of `angle` degrees in its top and in its bottom.
+    """Case 2: return a square with a kink of `angle` degrees in its top and in its bottom.
 
-    ::
-
-          .^.           the angle is that inside the kinks at (1/2, 1 + h) and (1/2, -h): 90 degrees
-        .'   '.         where h = 1/2, 180 where it is a square, more where the kinks point inwards
-       |       |
-        '.   .'
-          'v'
+    The angle is that inside the kinks at (1/2, 1 + h) and (1/2, -h): 90 degrees for h = 1/2.
     """
     h = 0.5 / math.tan(math.radians(0.5 * angle))
     south = polyline([(0.0, 0.0), (0.5, -h), (1.0, 0.0)], ni)
@@ -106,19 +96,11 @@ def hexagon(angle: float, ni: int, nj: int) -> Boundary:
 
 
 def wrench(opening: float, ni: int, nj: int) -> Boundary:
-    """Case 3: return a wrench, a unit square with a jaw in its top.
+    """Case 3: return a unit square with a jaw in its top, `opening` wide.
 
-    ::
-
-             .          .         The opening w is the width of the jaw, centred at x = 1/2; the jaw
-           .' |        | '.       extends from y = 1 down to 0.6, and its lips end at y = 1.15, 0.05
-         .'   |   w    |   '.     outside of it. At the two lower corners of the jaw the angle inside
-        |     |________|     |    the domain is 270 degrees; elliptic grids fold there.
-        '--------------------'
-
-    The corners have the same node indices for every opening: those that nearly equal steps give for an
-    opening of 0.3. The boundary nodes thus depend smoothly on the opening, as interpolation between training
-    cases requires.
+    The jaw is centred at x = 1/2, from y = 1 down to 0.6; its lips end at y = 1.15, 0.05 outside of it.
+    Elliptic grids fold at its lower corners. Corners have the node indices of an opening of 0.3, so that
+    nodes depend smoothly on the opening.
     """
     south, north = polyline([(0.0, 0.0), (1.0, 0.0)], ni), polyline(_jaw(opening), ni, like=_jaw(0.3))
     return _upright(south, north, nj, f"wrench-{opening:.6g}")
@@ -161,7 +143,7 @@ def airfoil(ratio: float, ni: int, nj: int) -> Boundary:
 
 
 def hole(height: float, ni: int, nj: int) -> Boundary:
-    """Case 6: return a plate, 2 by 2 around (0, 0), with a circular hole of radius 0.35 at y = `height`.
+    """Case 6: return a plate, 2 by 2 around (0, 0), with a hole of radius 0.35 at y = `height`.
 
     Nodes run clockwise from the rightmost point of the hole.
     """

@@ -1,8 +1,6 @@
 """Random four-sided domains, to train and test operators.
 
-The four corners are displaced at random; the sides between them are straight, wavy, bowed, kinked, bumped or
-circular arcs. Some domains taper to a tail, are bent around a centre, or are warped as a whole. Node
-distributions are uniform or clustered.
+Sides between displaced corners are deflected; some domains are tapered, bent or warped as a whole.
 """
 
 import math
@@ -20,9 +18,7 @@ FINE = 601
 """Points of a side before nodes are placed on it."""
 
 CHECKED = 65
-"""Number of nodes per side with which a random domain is accepted or rejected, so that a seed gives the same
-shape for any node counts.
-"""
+"""Nodes per side with which a domain is accepted, so that a seed gives one shape for all counts."""
 
 LEAST, MOST = np.radians(3.0), np.radians(178.0)
 """Angles of the four corners."""
@@ -69,7 +65,7 @@ def _sides(rng: np.random.Generator) -> list[Complexes]:
 
 
 def _side(a: complex, b: complex, swing: float, rng: np.random.Generator) -> Complexes:
-    """Return a curve from `a` to `b`: a straight line with one or two deflections, scaled by `swing`."""
+    """Return a line from `a` to `b` with one or two deflections, scaled by `swing`."""
     t = np.linspace(0.0, 1.0, FINE)
     kinds = rng.choice(len(DEFLECTIONS), size=rng.choice([1, 2], p=[2 / 3, 1 / 3]), replace=False, p=SHARES)
     height = sum(DEFLECTIONS[kind](t, rng) for kind in kinds)
@@ -130,7 +126,7 @@ def _bent(sides: list[Complexes], rng: np.random.Generator) -> list[Complexes]:
 
 
 def _law(rng: np.random.Generator) -> Callable[[Floats], Floats]:
-    """Return a node distribution, a rising map of [0, 1] to itself: mostly uniform, otherwise clustered."""
+    """Return a node distribution, a rising map of [0, 1] to itself, mostly uniform."""
     draw = rng.random()
     if draw < 0.25:
         shift = rng.uniform(-0.12, 0.12)

@@ -1,8 +1,4 @@
-"""Random airfoils with random wall spacing, to train and test operators.
-
-Three generators together cover shapes from thin reflexed plates to thick, strongly cambered and blunt
-sections: NACA four-digit formulas, class-shape transformation (CST) with Bernstein polynomials, and
-Karman-Trefftz maps of a circle. No data of real airfoils are used.
+"""Random airfoils with random wall spacing, to train and test operators: NACA, CST and Karman-Trefftz.
 
 Kulfan, J. Aircraft 45 (2008) 142 (CST); Milne-Thomson, Theoretical Aerodynamics (1966) 7.32 (Karman-Trefftz).
 """
@@ -29,10 +25,7 @@ ORDER = 6  # order of the Bernstein polynomials
 
 
 def boundary(rng: np.random.Generator, ni: int, nj: int, spacing: Spacing | None = None) -> Boundary:
-    """Return a random airfoil's O boundary: random section, wall spacing and far field (4 to 60 chords).
-
-    `spacing`, if given, is used for every wall.
-    """
+    """Return a random airfoil's O boundary, with a far field at 4 to 60 chords and this `spacing`."""
     while True:
         settings: dict[str, Any] = {"spacing": spacing} if spacing else {}
         far_field = math.exp(rng.uniform(math.log(4.0), math.log(60.0)))

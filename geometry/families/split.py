@@ -1,11 +1,5 @@
 """Which members of a family are for training an operator, and which for testing it.
 
-::
-
-    interpolation      train train train | test | train train train     parameter ->
-    extrapolation      train train train train train train | test       by default towards high values
-    random             train test train train train test train          cases 4 and 6 of the paper
-
 Xiao et al., arXiv 2501.11937, section IV.
 """
 
@@ -25,13 +19,11 @@ SHARE = 1 / 6
 def split(
     parameters: Sequence[float], way: str, *, seed: int = 0, share: float = SHARE, low: bool = False
 ) -> tuple[str, ...]:
-    """Return ``train`` or ``test`` for each member; `way`, one of `WAYS`, says how parameters decide.
+    """Return ``train`` or ``test`` for each member, by the `way`, one of `WAYS`.
 
-    `share` is the fraction of test members; there is at least one, and at least two are for training. With
-    `low`, test members for extrapolation have low values of the parameter. A random split ignores the
-    parameters.
-
-    Raises InputError: an unknown way; fewer than three members; equal parameters, unless the split is random.
+    ``interpolation`` tests middle values of the parameter, ``extrapolation`` the highest (with `low` the
+    lowest), ``random`` any. `share` is the fraction of test members: at least one, with at least two left for
+    training. Raises InputError: an unknown way; fewer than three members; equal parameters, unless random.
 
     >>> split([0.3, 0.1, 0.2], "extrapolation")
     ('test', 'train', 'train')

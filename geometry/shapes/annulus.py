@@ -24,9 +24,9 @@ class Annulus:
         self.body, self.outer, self.name = body, outer, name
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the O boundary: the body sampled as usual, with the given far field instead of a circle.
+        """Return the O boundary of the body with the given far field.
 
-        Raises InputError: the topology is not ``o``, or a setting does not apply to the body.
+        Raises InputError: another topology than ``o``; a setting that does not apply to the body.
         """
         if sampling.topology not in ("auto", "o"):
             raise InputError("a body in a far field makes an O grid", "use {topology} o", source=self.name)
@@ -36,7 +36,7 @@ class Annulus:
         return replace(boundary, north=north, west=cut, east=cut)
 
     def _around(self, circle: Floats) -> Floats:
-        """Return nodes (n, 2) of the outer curve in nearly equal steps, from where the circle begins."""
+        """Return nodes (n, 2) of the outer curve in nearly equal steps, from the circle's start."""
         middle = 0.5 * (circle.max(axis=0) + circle.min(axis=0))
         wanted = (circle[0] - middle) / np.hypot(*(circle[0] - middle))
         arcs = np.linspace(0.0, self.outer.length, 2049)[:-1]

@@ -35,13 +35,11 @@ FARFIELD = "farfield"
 def assembled(
     shapes: Sequence[Shape], names: Sequence[str], sampling: Sampling, name: str = ""
 ) -> DomainShape:
-    """Return the domain that `shapes` form together; `names` has a name for each shape.
+    """Return the domain that `shapes` with these `names` form together.
 
-    Airfoils keep their smooth curves; other shapes become polygons. If one shape encloses all others, it is
-    the outer boundary. Otherwise the outer boundary is a circle; its radius is that of `sampling`, in units
-    of the extent of all shapes together.
-
-    Raises InputError: shapes that are not closed curves; a far field that does not apply.
+    Airfoils keep their smooth curves; other shapes become polygons. The outer boundary is a shape around all
+    others, or a circle with the radius of `sampling` in extents of all shapes. Raises InputError: shapes that
+    are not closed curves; a far field that does not apply.
     """
     _check_airfoils(shapes, sampling)
     as_asked = [_as_asked(shape, sampling) for shape in shapes]
@@ -84,10 +82,7 @@ def _check_airfoils(shapes: Sequence[Shape], sampling: Sampling) -> None:
 
 
 def domain_of(shape: Shape, sampling: Sampling) -> DomainShape:
-    """Return the domain inside a shape, or the domain in the far field around it.
-
-    Raises InputError: a shape that is not a closed curve, such as a boundary with a wake.
-    """
+    """Return the domain inside a shape, or in the far field around it. Raises InputError: no closed curve."""
     if isinstance(shape, DomainShape):
         if not shape.assembled:
             _check_airfoils([shape], sampling)
@@ -111,7 +106,7 @@ def far_loop(middle: Floats, radius: float) -> Loop:
 
 
 def _as_asked(shape: Shape, sampling: Sampling) -> tuple[Shape, tuple[str, ...]]:
-    """Return the shape with airfoils and their trailing edges as `sampling` has them, and its notes."""
+    """Return the shape with airfoils as `sampling` has them, and its notes."""
     if isinstance(shape, Annulus):
         body, notes = _as_asked(shape.body, sampling)
         return Annulus(body, shape.outer, shape.name), notes
@@ -127,7 +122,7 @@ def _as_asked(shape: Shape, sampling: Sampling) -> tuple[Shape, tuple[str, ...]]
 
 
 def _bodies(shape: Shape, name: str) -> list[Loop]:
-    """Return the loops of a shape, whichever side the domain is on; `name` is used where it has no names."""
+    """Return the loops of a shape, called `name` if it has no names."""
     if isinstance(shape, Airfoil):
         return [_section_loop(shape, name)]
     if isinstance(shape, Outline):
@@ -157,7 +152,7 @@ def _section_loop(airfoil: Airfoil, name: str) -> Loop:
 
 
 def _edges_loop(boundary: Boundary) -> Loop:
-    """Return the loop of a four-sided boundary's nodes, with corners at those of the block and of patches."""
+    """Return the loop of a four-sided boundary's nodes, with corners of block and patches."""
     ni, nj = boundary.ni - 1, boundary.nj - 1
     names: list[str] = []
     for side in SIDES:
@@ -173,7 +168,7 @@ def _edges_loop(boundary: Boundary) -> Loop:
 
 
 def _facing(loop: Loop, *, hole: bool) -> Loop:
-    """Return the loop with the domain on its left: outside of a hole, inside otherwise."""
+    """Return the loop with the domain on its left."""
     if (polygon_area(loop.curve.points) > 0) != hole:
         return loop
     return ring_loop(loop.curve.points, hole=hole, corners=loop.corners, names=loop.names)

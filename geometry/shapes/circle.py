@@ -13,10 +13,7 @@ POINTS = 256
 
 
 class Circle(Outline):
-    """The outline of a circle around the origin.
-
-    Raises InputError: a radius that is not positive.
-    """
+    """The outline of a circle around the origin. Raises InputError: a radius that is not positive."""
 
     def __init__(self, radius: float) -> None:
         if not 1e-9 <= radius <= 1e9:
@@ -27,9 +24,7 @@ class Circle(Outline):
 
 
 def circle(designation: str) -> Circle:
-    """Return the circle with a radius given as text, such as ``0.5``.
-
-    Raises InputError: not a positive number.
+    """Return the circle with a radius as text, such as ``0.5``. Raises InputError: not positive.
 
     >>> circle("0.5").radius
     0.5

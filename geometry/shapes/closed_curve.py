@@ -15,7 +15,7 @@ from meshonet.geometry.shapes.outline import Outline
 def closed_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Outline | Airfoil:
     """Return the airfoil or the outline through `points` (n, 2), without repeated neighbours.
 
-    `places` are the places of the points in their source, for messages.
+    `places` are those of the points in their source.
     """
     keep = np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])
     if ends_meet(points):
@@ -29,7 +29,7 @@ def closed_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Outli
 
 
 def _ends_in_one_edge(points: Floats) -> bool:
-    """Return whether a curve (n, 2) is slender, with one corner, or the two of a base, at one end."""
+    """Return whether a slender curve (n, 2) has one corner, or the two of a base, at one end."""
     if len(points) < 10:
         return False
     turn = np.abs(turning(points, closed=True))

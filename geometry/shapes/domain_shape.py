@@ -1,13 +1,4 @@
-"""A planar domain as a shape: of many blocks, or of one if its sides allow that.
-
-=============================================  =====================================================
-domain                                         by default made as
-=============================================  =====================================================
-four convex corners, all others kinks          one four-sided block
-one hole, and a smooth loop far from it        one O block
-any other                                      several blocks, found by a decomposition
-=============================================  =====================================================
-"""
+"""A planar domain as a shape of several blocks, or of one (docs/guide/kinds-of-domains.md)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -38,13 +29,12 @@ class DomainShape:
     ----------
     domain : loops and their names.
     many : whether the domain becomes several blocks unless a single block is requested.
-    one : picklable function that returns the shape of the domain as a single block; None if there is none.
-    unit : reference length of Reynolds numbers: the extent of the domain's bodies, or the chord of an
-        airfoil.
+    one : picklable function that returns the shape as a single block; None if there is none.
+    unit : reference length of Reynolds numbers: the extent of bodies, or the chord of an airfoil.
     far_field : whether a far field was added around bodies.
     layout : blocks of the domain, if the input contains them.
     assembled : whether the domain was assembled from several shapes.
-    grid : the multi-block grid that the domain was taken from, if the input is a grid.
+    grid : the multi-block grid of the input, if it is one.
     """
 
     domain: Domain
@@ -75,10 +65,7 @@ class DomainShape:
         return replace(self, domain=replace(self.domain, notes=(*self.notes, *notes)))
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the four edges of the domain as a single block.
-
-        Raises InputError: the domain cannot be a single block, or its nodes cannot be distributed.
-        """
+        """Return the four edges of the domain as a single block. Raises InputError: it cannot be one."""
         if self.domain.periodic:
             remedy = "make many blocks of it with infer or solve-pde"
             raise InputError("a domain with periodic sides is not one block", remedy)
@@ -89,7 +76,7 @@ class DomainShape:
 
 
 def itself(shape: Shape) -> Shape:
-    """Return the shape unchanged; unlike a lambda, a `partial` of this function can be pickled."""
+    """Return the shape; unlike a lambda, a `partial` of this can be pickled."""
     return shape
 
 

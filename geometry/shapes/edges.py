@@ -27,9 +27,7 @@ _JOIN = 1e-6
 _PARTS = 16
 """Number of straight pieces per interval of a curve that are searched for names."""
 _STRAIGHT = 0.5
-"""A curve whose ends are farther apart than this fraction of its length is a wall; otherwise a closed
-outline.
-"""
+"""A curve is a wall, not a closed outline, if its ends are this part of its length apart."""
 
 
 class DrawnEdge(NamedTuple):
@@ -51,13 +49,11 @@ class DrawnEdge(NamedTuple):
 
 
 def channel(walls: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()) -> DomainShape | Outline:
-    """Return the domain between two walls, whose ends are joined by straight lines; the first wall is south.
+    """Return the domain between two walls, the first of them south, whose ends straight lines join.
 
-    Walls are of the kind ``wall`` unless their names suggest another kind; walls without a name are called
-    ``wall``. The line that joins the first points of the walls is ``inlet``, the line that joins the last
-    points is ``outlet``.
-
-    Raises InputError: walls that cross; equal neighbouring points.
+    Walls have the kind ``wall`` unless named otherwise, and this name by default. The line between first
+    points is ``inlet``, that between last points ``outlet``. Raises InputError: walls that cross; equal
+    neighbours.
     """
     south, north = (_checked(wall)._replace(name=wall.name or "wall") for wall in walls)
     a, b, c, d = south.points[0], south.points[-1], north.points[0], north.points[-1]
@@ -74,9 +70,8 @@ def four_edges(
 ) -> Boundary | DomainShape | Outline:
     """Return the domain of four edges, chained end to end from the first, which is south.
 
-    If opposite edges have equal numbers of points, at least three, the points become the nodes.
-
-    Raises InputError: edges that do not meet, or that cross; equal neighbouring points.
+    Points are the nodes if opposite edges have equally many, at least three.
+    Raises InputError: edges that do not meet, or that cross; equal neighbours.
     """
     chain = _directed(_chained([_checked(edge) for edge in edges]))
     counts = [len(edge.points) for edge in chain]
@@ -92,7 +87,7 @@ def four_edges(
 def _sampled(
     chain: Sequence[DrawnEdge], name: str, notes: tuple[str, ...], walls: Sequence[str] = ()
 ) -> DomainShape | Outline:
-    """Return the domain of a closed chain of four edges, on which nodes will be sampled."""
+    """Return the domain of a closed chain of four edges, to be sampled."""
     chain = _directed(chain)
     ring = np.concatenate([edge.points[:-1] for edge in chain])
     places = [place for edge in chain for place in edge.places[:-1]]
@@ -128,7 +123,7 @@ def _checked(edge: DrawnEdge) -> DrawnEdge:
 
 
 def _directed(chain: Sequence[DrawnEdge]) -> list[DrawnEdge]:
-    """Return a closed chain counter-clockwise; the first edge stays first, reversed if necessary."""
+    """Return a closed chain counter-clockwise from the first edge."""
     ring = np.concatenate([edge.points[:-1] for edge in chain])
     check_outline(ring, [place for edge in chain for place in edge.places[:-1]])
     if polygon_area(ring) >= 0:
@@ -137,7 +132,7 @@ def _directed(chain: Sequence[DrawnEdge]) -> list[DrawnEdge]:
 
 
 def _chained(edges: Sequence[DrawnEdge]) -> list[DrawnEdge]:
-    """Return four edges in order and directed so that each begins where the previous one ends."""
+    """Return four edges so that each begins where the previous one ends."""
     reach = _JOIN * extent_of(np.concatenate([edge.points for edge in edges]))
     chain, left = [edges[0]], [way for edge in edges[1:] for way in (edge, edge.reversed())]
     while left:

@@ -13,10 +13,7 @@ from meshonet.geometry.errors import InputError
 
 
 def far_circle(centre: Floats, radius: float, n: int, start: float) -> Floats:
-    """Return nodes (n, 2) clockwise on a circle from the angle `start` (radians).
-
-    The last node is bitwise the first.
-    """
+    """Return nodes (n, 2) clockwise on a circle from the angle `start` (radians) back to it, bitwise."""
     angle = start - np.linspace(0.0, 2 * np.pi, n)
     nodes = centre + radius * np.stack([cos(angle), sin(angle)], axis=1)
     nodes[-1] = nodes[0]
@@ -24,7 +21,7 @@ def far_circle(centre: Floats, radius: float, n: int, start: float) -> Floats:
 
 
 def straight(a: Floats, b: Floats, n: int) -> Floats:
-    """Return n equally spaced nodes (n, 2) from `a` (2,) to `b` (2,); the ends are bitwise `a` and `b`."""
+    """Return n equally spaced nodes (n, 2) from `a` (2,) to `b` (2,), bitwise."""
     t = np.linspace(0.0, 1.0, n)[:, None]
     nodes = (1 - t) * a + t * b
     nodes[0], nodes[-1] = a, b
@@ -36,7 +33,7 @@ TURNED = 10.0
 
 
 def _start(wall: Floats, behind: float) -> tuple[float, str]:
-    """Return the angle of the first far-field node, where the map takes the first wall node, and a note."""
+    """Return the angle of the first far-field node on the conformal map, and a note."""
     from meshonet.geometry.conformal.lift import lift_body, mirrored  # which domains of blocks do not need
 
     try:
@@ -61,14 +58,12 @@ def o_boundary(
     turned: bool = True,
     notes: tuple[str, ...] = (),
 ) -> Boundary:
-    """Return the O boundary of a closed wall within a circle.
+    """Return the O boundary of a closed, clockwise `wall` (ni, 2) within a circle, clockwise by equal angles.
 
-    `wall` (ni, 2) runs clockwise and repeats its first node at the end. Far-field nodes run clockwise at
-    equal angles. With `turned`, the first of them is the image of `wall[0]` under the conformal map of the
-    body, so that the grid is not sheared; for a symmetric body it is straight downstream. Otherwise, the
-    first node is in the direction of `wall[0]`, which suffices for marching methods because they make their
-    own far field. West and east are the straight cut from `wall[0]` to the first far-field node. `curve`,
-    `name`, `chord` and `notes` are passed to `Boundary`; a large rotation of the far field is noted.
+    If `turned`, the first far-field node is the image of `wall[0]` under the body's conformal map, so that
+    the grid is not sheared; a large turn is noted. Else it is in the direction of `wall[0]`, as suffices for
+    marching. West and east are the straight cut between both. `curve`, `name`, `chord` and `notes` are those
+    of `Boundary`.
     """
     middle = np.asarray(centre, dtype=np.float64)
     start, note = math.atan2(wall[0, 1] - middle[1], wall[0, 0] - middle[0]), ""

@@ -16,10 +16,9 @@ _BLOCK = 1 << 22  # distances computed at a time
 
 
 class Labelled:
-    """A shape with straight `edges` (n, 2, 2), whose names (n,) become the names of patches.
+    """A shape with straight `edges` (n, 2, 2), whose names (n,), perhaps "", become those of patches.
 
-    An edge without a name has the name "". Edges with names in `walls` are walls unless the name suggests
-    another kind.
+    Edges with names in `walls` are walls unless the name implies another kind.
     """
 
     def __init__(self, shape: Shape, edges: Floats, names: Sequence[str], walls: Sequence[str] = ()) -> None:
@@ -36,7 +35,7 @@ class Labelled:
         return getattr(self.shape, "notes", ())
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the boundary of the shape; each cell has the name of the edge nearest to its middle."""
+        """Return the boundary, with each cell named after the edge nearest to its middle."""
         boundary = self.shape.boundary(sampling)
         sides: tuple[Side, ...] = ("south", "north") if boundary.around_body else SIDES
         patches = []
@@ -49,7 +48,7 @@ class Labelled:
         return replace(boundary, patches=tuple(patches))
 
     def _nearest(self, points: Floats) -> list[tuple[int, float]]:
-        """Return the index and the distance of the edge nearest to each of `points` (m, 2)."""
+        """Return index and distance of the edge nearest to each of `points` (m, 2)."""
         nearest: list[tuple[int, float]] = []
         start, along = self._edges[:, 0], self._edges[:, 1] - self._edges[:, 0]
         square = np.maximum((along**2).sum(axis=1), 1e-300)
@@ -64,11 +63,9 @@ class Labelled:
 
 
 def runs(side: Side, names: Sequence[str], walls: Sequence[str] = ()) -> list[Patch]:
-    """Return the patches of a side whose cells have these `names`.
+    """Return the patches of a side with cells of these `names`, or else the name of the side.
 
-    A cell without a name gets the name of the side.
-
-    Patches with names in `walls` are walls unless the name suggests another kind.
+    Patches with names in `walls` are walls unless the name implies another kind.
 
     >>> runs("south", ["wall", "wall", "slot"])
     [Patch(name='wall', side='south', start=0, stop=2), Patch(name='slot', side='south', start=2, stop=3)]

@@ -1,12 +1,7 @@
 """A closed curve that is not an airfoil: the outline of a four-sided domain, or a body in a far field.
 
-::
-
-      D ---- north ---> C         quad: south is the lowest edge, or starts at the first of the given corners;
-      ^                 ^         the others follow counter-clockwise.
-     west              east
-      |                 |         o: the nodes run clockwise from the body's rightmost point; the far field
-      A ---- south ---> B         is a circle around the middle of its bounding box.
+A quad has the lowest edge as south, or that from the first given corner, then counter-clockwise. O nodes run
+clockwise from the rightmost point, in a circle around the middle of the bounding box.
 """
 
 from collections.abc import Callable, Sequence
@@ -33,14 +28,10 @@ _DEPARTURE = 5e-3
 
 
 class Outline:
-    """A closed curve through points.
+    """A closed curve through `points` (n, 2), at least 3, of any unit and orientation.
 
-    The `points` (n, 2), at least 3, are in any unit and of either orientation; the first point may be
-    repeated at the end. `corners`, if given, are the indices of the four corners of a quad domain, south-west
-    first. `places` (n,) are the positions of the points in the input, for messages.
-
-    Raises InputError: too few points; equal neighbouring points; an outline that crosses itself or has no
-    area.
+    `corners` are the indices of those of a quad domain, south-west first; `places` (n,) are positions in the
+    input. Raises InputError: too few points; equal neighbours; an outline that crosses itself or has no area.
     """
 
     far_field_unit = "extents of the body"
@@ -74,12 +65,10 @@ class Outline:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the four edges of the domain, or the O boundary around the body.
 
-        The spacing applies to each edge, or to the whole body. ``uniform`` and ``auto`` give equal steps of
-        arc length; but around a smooth body ``auto`` means ``conformal``
-        (`meshonet.geometry.conformal.spacing`). With ``tanh`` the steps at the ends are a quarter of the mean
-        step. Other values are ``cosine`` and ``curvature``. Corners of the curve are nodes.
-
-        Raises InputError: a topology or spacing that does not apply; corner indices out of range.
+        The spacing applies to each edge, or to the whole body. ``auto`` is ``conformal`` around a smooth body
+        (`geometry.conformal.spacing`), else ``uniform``; ``tanh`` has end steps of a quarter of the mean
+        step. Corners are nodes. Raises InputError: a topology or spacing that does not apply; corner indices
+        out of range.
         """
         topology = self.topology if sampling.topology == "auto" else sampling.topology
         if sampling.corners is not None and sampling.topology == "auto":
@@ -157,8 +146,8 @@ class Outline:
     def _sharpest_corners(self) -> tuple[int, ...]:
         """Return the four sharpest corners, counter-clockwise; the lowest edge is between the first two.
 
-        Among corners that are equally sharp to a degree, those nearest to the corners of the bounding box are
-        used. If there are fewer than four, they are the points closest to the corners of the box.
+        Among corners equally sharp to a degree, those nearest to corners of the bounding box are taken. If
+        there are fewer than four, the points closest to the corners of the box are taken.
         """
         p = self.curve.points
         middle, half = 0.5 * (p.max(axis=0) + p.min(axis=0)), 0.5 * np.maximum(np.ptp(p, axis=0), 1e-300)
@@ -195,7 +184,7 @@ class Outline:
         return o_boundary(wall, nj, box.mean(axis=0), radius, curve, self.name, extent, notes=notes)
 
     def clockwise(self) -> Curve:
-        """Return the curve clockwise, from its rightmost point or the middle of a straight right side."""
+        """Return the curve clockwise from its rightmost point or the middle of a right side."""
         curve = self.curve.reversed() if self._left else self.curve
         p, n = curve.points, len(curve.points)
         corner = np.isin(np.arange(n), curve.corner_index)
@@ -216,7 +205,7 @@ class Outline:
         return Curve(p, closed=True, corners=np.flatnonzero(corner), straight=straight)
 
     def _around(self, curve: Curve, ni: int, sampling: Sampling) -> tuple[Floats, tuple[str, ...]]:
-        """Return the arc lengths (ni,) of the nodes around a body, and a note if the spacing was changed."""
+        """Return the arc lengths (ni,) of nodes around a body, and a note on changed spacing."""
         notes: tuple[str, ...] = ()
         step = sampling.refined
         if sampling.spacing == "conformal" or (sampling.spacing == "auto" and curve.corners.size == 0):
@@ -238,10 +227,7 @@ def _on_a_line(points: Floats, extent: float) -> bool:
 
 
 def _with_sides(curve: Curve, ends: Sequence[int]) -> Curve:
-    """Return the closed curve as it was meant: with the corners, kinks and straight lines of its points.
-
-    It has corners at the ends of its four sides, if they are given, and where a side alone has one.
-    """
+    """Return the closed curve with corners, kinks and straight lines of its points and sides."""
     points, corners = curve.points, distinct(np.append(curve.corner_index, np.array(ends, dtype=np.intp)))
     corners = _with_those_within(find_corners, points, corners, sorted(ends))
     corners = _with_those_within(find_kinks, points, corners, corners.tolist())
@@ -252,13 +238,13 @@ def _with_sides(curve: Curve, ends: Sequence[int]) -> Curve:
 def _with_those_within(
     search: Callable[[Floats], Indices], points: Floats, corners: Indices, ends: Sequence[int]
 ) -> Indices:
-    """Return the corners, and the points that `search` returns for each stretch between `ends`."""
+    """Return the corners, and those that `search` finds in stretches between `ends`."""
     more = [side[search(points[side])] for side in _stretches(ends, len(points))]
     return distinct(np.concatenate([corners, *more]))
 
 
 def _stretches(ends: Sequence[int], n: int) -> list[Indices]:
-    """Return the indices of the points of each stretch of a closed curve of `n` points between its `ends`."""
+    """Return the indices of each stretch of a closed curve of `n` points between `ends`."""
     pairs = zip(ends, (*ends[1:], *(first + n for first in ends[:1])), strict=True)
     return [np.arange(first, last + 1) % n for first, last in pairs]
 

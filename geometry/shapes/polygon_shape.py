@@ -29,10 +29,7 @@ from meshonet.geometry.shapes.shape import Shape
 
 @dataclass(frozen=True)
 class PolygonRing:
-    """A closed polygon from a file: points (n, 2), corners, names, positions of the points in the file.
-
-    If `corners` is None, they are detected; if `names` is empty, the polygon gets the default names.
-    """
+    """A closed polygon (n, 2): corners (None: detected), names (empty: default), places in the file."""
 
     points: Floats
     corners: Sequence[int] | None = None
@@ -46,10 +43,7 @@ def polygon_shape(
 ) -> DomainShape:  # fmt: skip
     """Return the domain inside the first of the `rings` and outside of the others.
 
-    `periodic` are pairs of names of periodic sides.
-
-    Raises InputError: the errors of `ring_loop`, with the number of the ring if there are several; the errors
-    of `with_periodic_sides`.
+    `periodic` are pairs of names of sides. Raises InputError: see `ring_loop` and `with_periodic_sides`.
     """
     loops = []
     for number, ring in enumerate(rings):
@@ -73,7 +67,7 @@ def polygon_shape(
 
 
 def domain_or_body(shape: Outline | Airfoil) -> Shape:
-    """Return a closed curve unchanged, or the domain inside it if it has corners, but not four."""
+    """Return a closed curve, or the domain inside it if it has corners, but not four."""
     if isinstance(shape, Airfoil) or shape.topology != "quad":
         return shape
     points = shape.curve.points

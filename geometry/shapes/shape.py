@@ -25,11 +25,7 @@ class Shape(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class SpatialShape:
-    """A grid whose nodes have three coordinates: blocks (ni, nj, nk, 3), or surface patches (ni, nj, 3).
-
-    Marching starts from patches as its wall. Other methods fill the volume that six patches, or the faces of
-    one block, enclose. A grid of several blocks can be smoothed across its connections.
-    """
+    """A grid whose nodes have three coordinates: blocks (ni, nj, nk, 3), or surface patches (ni, nj, 3)."""
 
     grid: Grid
 
@@ -44,15 +40,15 @@ class SpatialShape:
         return all(len(block.counts) == 2 for block in self.grid.blocks)
 
     def boundary(self, sampling: Sampling) -> Boundary:  # noqa: ARG002 - as all shapes have it
-        """Raise InputError: a three-dimensional shape does not have the four edges of a plane domain."""
+        """Raise InputError: it does not have the four edges of a plane domain."""
         problem = "its nodes have three coordinates and the boundary of a plane grid is asked for"
         raise InputError(problem, "use a command that makes volumes: tfi, solve-pde or infer")
 
 
 def edges_of(shape: Shape, sampling: Sampling) -> Boundary:
-    """Return the boundary of `shape`, checked for crossing edges, with the notes of the shape.
+    """Return the boundary of `shape`, checked for crossing edges, with its notes.
 
-    Raises InputError: the errors of `shape`; edges that cross or touch; a body outside its far field.
+    Raises InputError: errors of `shape`; edges that cross or touch; a body outside its far field.
     """
     if isinstance(shape, Boundary):
         check_edges(shape)  # first as given, so that messages have the user's own node numbers

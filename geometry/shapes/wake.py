@@ -1,14 +1,7 @@
-r"""C boundaries: the cut behind a sharp trailing edge, and the far field around both.
+"""C boundaries: the cut behind a sharp trailing edge, and the far field around both.
 
-::
-
-      .---------- north ----------+        south runs along the wake to the trailing edge, clockwise around
-    /                             | east   the wall, and back along the wake: both parts of the wake are one
-   |      ___                     |        array, so that their nodes coincide bitwise. West and east are the
-   |    <_____>-- - - wake - - - -+        straight outlet; the far field is a half circle around the middle
-   |                              | west   of the body, and a straight line on each side of the wake.
-    \                             |
-       '---------------------------+
+South runs along the wake, clockwise around the wall, and back along the wake bitwise; west and east are the
+outlet; north is a half circle around the body with straight lines beside the wake.
 """
 
 import math
@@ -38,10 +31,8 @@ _STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the tra
 _RISE, _FROM, _UP_TO = 3e-4, 1.0, 200.0
 BEHIND_BASE = 0.15
 """First cells at a wake are higher by a x²/((x + b)(1 + x/c)) chords at x chords behind the edge, with these
-a, b and c: by far less than a wake is wide. Cells at its end are chords long; where they are a millionth as
-high, lines between their middles are at 80 to 89 degrees from the normal of the wake. Behind a base b is
-smaller: its rows of cells get higher by different factors, so that they have to be higher where cells are
-only as long as the base is wide.
+a, b and c. At its end cells are chords long: much lower ones would be skewed. Behind a base b is smaller,
+since its rows of cells get higher by different factors.
 """
 _LEAST_WALL = 5  # fewest nodes of a wall, with its trailing edge counted twice
 
@@ -51,13 +42,10 @@ def cells_of_wake(
 ) -> int:
     """Return the number of cells along the wake of a C grid.
 
-    The grid has `ni` nodes along xi, which include both sides of the wake. `nodes_wanted` is the number of
-    nodes along the wake, with the trailing edge. If it is None, the number of cells is chosen in three steps.
-    First it is the number of cells that fill the `length` of the wake if they start with `first` and grow by
-    13 % each. Then it is limited to the range from 20 to 23 % of the cells along xi. Finally it is rounded to
-    a multiple of a step, which is the first of `steps` that is at most a quarter of the number.
-
-    Raises InputError: too few nodes are left for the wall.
+    The grid has `ni` nodes along xi, and on the wake `nodes_wanted` if that is given. By default, cells grow
+    by 13 % from `first` over `length`. Their number is limited to 20 to 23 % of all cells, and rounded to a
+    multiple of a step: the first of `steps` that is at most a quarter of it. Raises InputError: too few nodes
+    left for the wall.
     """
     if nodes_wanted is not None:
         cells = nodes_wanted - 1
@@ -75,7 +63,7 @@ def cells_of_wake(
 
 
 def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
-    """Return the unit vector (2,) along which a wake ends: x, or the chord's direction if it is too steep."""
+    """Return the unit vector (2,) along which a wake ends: x, or that of a steep chord."""
     chord = np.asarray(trailing_edge - leading_edge)
     if abs(chord[1]) <= abs(chord[0]):
         return np.array([math.copysign(1.0, chord[0]), 0.0])
@@ -86,8 +74,8 @@ def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
 class WakeLine:
     """The line of a wake: from a trailing edge along the bisector of its wedge, turning into the axis.
 
-    In coordinates x along the axis and y to its left, y = tan(b) l (1 - exp(-x/l)), with the angle b of the
-    bisector (at most 34°) and the relaxation length l.
+    With x along the axis and y to its left, y = tan(b) l (1 - exp(-x/l)), with the angle b of the bisector
+    (at most 34°) and the relaxation length l.
     """
 
     begin: Floats
@@ -102,7 +90,7 @@ class WakeLine:
 
     @classmethod
     def behind(cls, wall: Floats, axis: Floats, chord: float, length: float) -> Self:
-        """Return the wake behind a closed `wall` (n, 2), which begins and ends at its sharp trailing edge."""
+        """Return the wake behind a closed `wall` (n, 2) from its sharp trailing edge."""
         upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
         along = upper / np.hypot(*upper) + lower / np.hypot(*lower)
         angle = math.atan2(axis[0] * along[1] - axis[1] * along[0], product(axis, along))
@@ -110,10 +98,7 @@ class WakeLine:
         return cls(wall[0], axis, slope, chord, length)
 
     def nodes(self, first: float, cells: int) -> Floats:
-        """Return nodes (cells + 1, 2) of the wake, from the trailing edge.
-
-        The first cell has the length `first`.
-        """
+        """Return nodes (cells + 1, 2) from the trailing edge; the first cell has the length `first`."""
         x = growing(first / math.hypot(1.0, self.slope), self.length, cells)
         x *= self.length / x[-1]
         y = -self.slope * self.relaxation * expm1(-x / self.relaxation)
@@ -123,13 +108,9 @@ class WakeLine:
 
 
 def growing(first: float, length: float, cells: int) -> Floats:
-    """Return the distances (cells + 1,) of nodes from the start of a line; cells grow from `first` on.
+    """Return distances (cells + 1,) of nodes along a line, in units of `first`, up to `length`.
 
-    Distances are in units of `first`; the last is `length` in this unit. From cell k of n to the next, the
-    logarithm of the size increases by
-
-        g (1 - exp(-k/m)) (1 + b (2k/n - 1))
-
+    From cell k of n to the next, the logarithm of the size increases by g (1 - exp(-k/m)) (1 + b (2k/n - 1)),
     with constants m and b; g follows from the length.
     """
     if first * cells >= length or cells < 2:
@@ -149,10 +130,9 @@ def growing(first: float, length: float, cells: int) -> Floats:
 
 
 def rise(behind: Floats, begin: float = _FROM) -> Floats:
-    """Return by how much (n,) first-cell heights increase, at distances `behind` (n,) the trailing edge.
+    """Return the rise (n,) of first-cell heights at distances `behind` (n,) the trailing edge, in chords.
 
-    The increase starts at about the distance `begin`, which is `BEHIND_BASE` behind a base. All values are in
-    chords.
+    It sets in at about the distance `begin`, which is `BEHIND_BASE` behind a base.
     """
     return np.asarray(_RISE * behind**2 / ((behind + begin) * (1.0 + behind / _UP_TO)))
 
@@ -172,11 +152,9 @@ def c_boundary(
 ) -> Boundary:
     """Return the C boundary of a closed wall (n, 2) and the wake (m, 2) from its edge to the outlet.
 
-    The wall runs clockwise from the sharp trailing edge, which is repeated at the end. The far field in front
-    is a half circle with this `centre` and `radius`; `axis` (2,) is the unit vector along which the wake
-    ends. `curve`, `name`, `chord` and `notes` are passed to `Boundary`.
-
-    Raises InputError: the wake leaves the far field, or crosses the wall.
+    The wall runs clockwise from its sharp trailing edge. The far field in front is a half circle of `centre`
+    and `radius`; the wake ends along the unit vector `axis` (2,). `curve`, `name`, `chord` and `notes` are
+    those of `Boundary`. Raises InputError: the wake leaves the far field, or crosses the wall.
     """
     south = np.concatenate([wake[:0:-1], wall[:-1], wake])
     behind, beside = along_and_across(wake[-1] - centre, axis)

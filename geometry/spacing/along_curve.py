@@ -12,9 +12,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.laws import LAWS, Spacing
 
 MANY = 64
-"""If there are more corners than this, and than a quarter of the cells, they are facets of a drawn curve, and
-need not be nodes.
-"""
+"""Corners beyond this number, and beyond a quarter of the cells, are facets that need not be nodes."""
 
 
 def stretch_arcs(
@@ -27,12 +25,11 @@ def stretch_arcs(
     forward: bool = True,
     step: int = 1,
 ) -> Floats:
-    """Return arc lengths (cells + 1,) of nodes on a closed curve from `begin` to `end`.
+    """Return arc lengths (cells + 1,) of nodes on a closed curve from `begin` to `end`, or once around.
 
-    If `begin` and `end` are equal, the nodes go once around the curve. They run in the direction of the
-    curve, or against it if not `forward`. With the spacing ``tanh``, the cells at the ends are a quarter of
-    the mean cell; spacings that need more than the curve become equal steps. The nodes at corners have
-    indices that are multiples of `step`, if there are enough such nodes.
+    They run against the curve if not `forward`. ``tanh`` has end cells of a quarter of the mean; spacings
+    that need more than the curve are equal steps. Corners are nodes whose index is a multiple of `step`, if
+    these suffice.
     """
     sign = 1.0 if forward else -1.0
     length = (sign * (end - begin)) % curve.length or curve.length
@@ -58,9 +55,7 @@ def stretch_arcs(
 def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = (), step: int = 1) -> Floats:
     """Return the distances (n,) of nodes, changed so that there is a node at each of the `corners` (m,).
 
-    Each corner gets the nearest node; only every `step`-th node is used if these suffice. The first, the last
-    and the `fixed` nodes do not move; nodes between corners move in proportion.
-
+    It is the nearest, of every `step`-th if these suffice. The first, the last and the `fixed` nodes stay.
     Raises InputError: more corners than nodes.
     """
     if corners.size == 0:
@@ -84,10 +79,7 @@ def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = (), s
 
 
 def _nearest(place: Floats, stays: list[int], step: int) -> NDArray[np.intp] | None:
-    """Return the nodes (m,) nearest to corners at fractional indices (m,), among multiples of `step`.
-
-    They differ from each other and from those that stay; None if there are too few.
-    """
+    """Return different nodes (m,) near places (m,): multiples of `step` other than those that stay."""
     node = np.rint(place / step).astype(np.intp)
     for low, high in pairwise(stays):
         mine = np.flatnonzero((place > low) & (place < high))

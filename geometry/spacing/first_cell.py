@@ -18,9 +18,9 @@ class FirstCell:
     Parameters
     ----------
     first_cell : float or mapping, optional
-        First-cell height, in the unit of the request; for multi-block grids also heights by name of the wall.
+        Height in the unit of the request; for multi-block grids also heights by name of the wall.
     y_plus : float or mapping, optional
-        First-cell height as y+, which is converted by the friction of a flat plate.
+        Height as y+, converted by the friction of a flat plate.
     reynolds : float, optional
         Reynolds number for `y_plus`.
     chord_fraction : float, optional
@@ -42,7 +42,7 @@ class FirstCell:
 
     @property
     def by_wall(self) -> tuple[str, ...]:
-        """Names of the walls that have their own height; empty if one height is given for all walls."""
+        """Names of walls with heights of their own; empty if all have one height."""
         setting = self.first_cell if self.y_plus is None else self.y_plus
         return tuple(setting) if isinstance(setting, Mapping) else ()
 
@@ -74,10 +74,9 @@ class FirstCell:
             self.heights()  # raises for values out of range
 
     def heights(self, unit: float = 1.0) -> AtWalls | None:
-        """Return the first-cell height in the unit of the request, or a dict of heights by wall.
+        """Return the first-cell height in the unit of the request, or by wall; None if not requested.
 
-        None if no first cell is requested. `unit` is the reference length of the Reynolds number if `length`
-        is None.
+        `unit` is the reference length if `length` is None.
         """
         setting = self.first_cell if self.y_plus is None else self.y_plus
         if isinstance(setting, Mapping):
@@ -85,12 +84,10 @@ class FirstCell:
         return None if setting is None else self._height(setting, unit)
 
     def height(self, unit: float = 1.0) -> float | None:
-        """Return the first-cell height in the unit of the request; None if no height is requested.
+        """Return the first-cell height in the unit of the request; None if not requested.
 
-        `unit` is the reference length of the Reynolds number if `length` is None.
-
-        Raises InputError: different heights for different walls, which only multi-block grids accept; a value
-        out of range.
+        `unit` is the reference length if `length` is None. Raises InputError: different heights of walls; a
+        value out of range.
         """
         height = self.heights(unit)
         if isinstance(height, Mapping):
@@ -107,10 +104,10 @@ class FirstCell:
         return first_cell(setting, self.reynolds, self.chord_fraction) * (self.length or unit)
 
     def height_note(self, where: str, unit: float = 1.0, in_unit: str = "", scale: float = 1.0) -> str:
-        """Return a note on how the first-cell height follows from y+; an empty text if no y+ is given.
+        """Return a note on how the first-cell height follows from y+; empty without y+.
 
-        `where` describes the reference length, `scale` is the factor from the unit of the request to the unit
-        of the note, and `in_unit` is the name of that unit.
+        `where` describes the reference length; `scale` is the factor to the unit of the note, called
+        `in_unit`.
         """
         from meshonet.geometry.spacing.y_plus import height_note
 

@@ -20,11 +20,9 @@ def check_growth(growth: float | None, most: float = LARGEST) -> None:
 
 
 def growth_ratio(first: float, length: float, cells: int) -> float:
-    """Return the growth ratio g >= 1 with which `cells` cells, the first of size `first`, fill `length`.
+    """Return the growth ratio g >= 1 by which `cells` cells, from `first` on, fill `length`.
 
-    first (gⁿ - 1)/(g - 1) = length
-
-    Raises InputError: even equal cells of the size `first` are longer than `length`, or the ratio is above
+    first (gⁿ - 1)/(g - 1) = length. Raises InputError: equal cells are longer than `length`, or g is above
     `LARGEST`.
 
     >>> growth_ratio(1.0, 7.0, 3)
@@ -53,7 +51,7 @@ def growth_ratio(first: float, length: float, cells: int) -> float:
 
 
 def cells_for_growth(first: float, length: float, ratio: float) -> int:
-    """Return the least number of cells, the first of size `first`, that fill `length` by growth <= `ratio`.
+    """Return the least number of cells from `first` on that fill `length` with growth <= `ratio`.
 
     >>> cells_for_growth(1.0, 7.0, 2.0), cells_for_growth(1.0, 7.1, 2.0), cells_for_growth(1.0, 7.0, 1.0)
     (3, 4, 7)
@@ -64,9 +62,7 @@ def cells_for_growth(first: float, length: float, ratio: float) -> int:
 
 
 def growing_steps(first: float, length: float, cells: int, constant: int = 1) -> Floats:
-    """Return sizes (cells,) that begin with `first`, grow by `growth_ratio` and add up to `length`.
-
-    The first `constant` sizes are equal; the others grow.
+    """Return sizes (cells,) that add up to `length`: `constant` equal ones of `first`, then growing.
 
     >>> growing_steps(1.0, 9.0, 5, 3).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]
@@ -79,8 +75,7 @@ def growing_steps(first: float, length: float, cells: int, constant: int = 1) ->
 def growth_rate(place: Floats, first: float, length: float, rate: float) -> float:
     """Return the rate g such that cells of the sizes first · exp(g · place) fill `length`.
 
-    `place` (n,) rises from 0. Newton's method starts from a `rate` that must not be below g; it converges
-    because the sum of the sizes is convex in g.
+    `place` (n,) rises from 0; `rate`, at least g, is where Newton's method starts: the sum is convex in g.
     """
     for _ in range(100):
         sizes = first * exp(rate * place)

@@ -1,7 +1,6 @@
 """Spacings, functions that place nodes along a curve: from index / (n - 1) to relative arc length, 0 to 1.
 
-To add one, add a line to `LAWS`: its name is then accepted by ``--spacing`` and wherever spacings are. The
-help of the command line reads this module, so it does not load NumPy; the function of a spacing does.
+A line in `LAWS` adds one everywhere. NumPy is not loaded here, since ``--help`` reads this.
 """
 
 from __future__ import annotations
@@ -23,9 +22,7 @@ class Law:
     """A spacing."""
 
     place: Callable[[Floats], Floats] | None = None
-    """The function s(q), with s and q from 0 to 1; None for a spacing that depends on the curve or on its end
-    cells.
-    """
+    """The function s(q), both from 0 to 1; None: it depends on the curve or its end cells."""
     sets_ends: bool = False
     """Whether the cells at the two ends of a stretch can be prescribed."""
 

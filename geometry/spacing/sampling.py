@@ -15,8 +15,9 @@ DEFAULT_NI = 200  # default node counts
 DEFAULT_NJ = 100  # half as many as along xi
 DEFAULT_FAR_FIELD = 15.0  # in chords
 MULTIPLES = (8, 4, 2, 1)
-"""Corners of airfoils are placed on every 8th, 4th or 2nd node, so that grids can be coarsened: the largest
-of these steps that divides the number of cells, and for which there are enough cells.
+"""Steps of nodes on which corners of airfoils are placed, so that grids can be coarsened.
+
+It is the largest that divides the number of cells, and for which there are enough.
 """
 MOST_NODES = 100_000  # per direction: more is taken for a typing error
 
@@ -28,50 +29,41 @@ class Sampling:
     Parameters
     ----------
     ni, nj : int, optional
-        Number of nodes along xi (around the body) and eta (away from it). None: the numbers of the shape, or
-        `DEFAULT_NI` and `DEFAULT_NJ` if the shape is a curve.
+        Number of nodes along xi (around the body) and eta (away from it). None: those of the shape, or for a
+        curve `DEFAULT_NI` and `DEFAULT_NJ`.
     nk : int, optional
-        Number of nodes of a volume along zeta. None: the number of the given volume; planar grids accept only
-        None.
+        Number of nodes of a volume along zeta. None: that of the given volume. Planar grids have None.
     topology : {'auto', 'quad', 'o', 'c'}, optional
         Topology of the grid; ``auto``: the topology that suits the shape.
     spacing : str, optional
-        Distribution of the nodes along a wall. ``auto`` is ``conformal`` around airfoils and smooth bodies
+        Distribution of nodes along a wall. ``auto`` is ``conformal`` around airfoils and smooth bodies
         (``tanh`` if a cell size is given), and ``uniform`` elsewhere.
     le_spacing, te_spacing : float, optional
         Length of the wall cells at the leading and at the trailing edge, in chords.
     far_field : float, optional
-        Smallest distance of the outer boundary from the middle of the body. The unit is the chord of an
-        airfoil, or the largest extent of another body. None: `DEFAULT_FAR_FIELD`. For marching from a
-        surface, it is the marching distance in the unit of the surface. Shapes without a far field accept
-        only None.
+        Smallest distance of the outer boundary from the middle of the body, in chords of an airfoil or
+        extents of another body. None: `DEFAULT_FAR_FIELD`, or no far field. For marching
+        from a surface: the distance in the unit of the surface.
     corners : tuple of 4 int, optional
         Indices, from 0, of the points that become the corners of a quad domain.
     te : {'auto', 'exact', 'round', 'wedge'}, optional
-        Treatment of a blunt trailing edge of an airfoil: ``exact`` does not change it, ``round`` rounds
-        its corners, ``wedge`` closes it by a wedge. ``auto`` is ``wedge`` for C grids of one block, which
-        need a sharp edge, and ``exact`` for all others.
+        Treatment of a blunt trailing edge: ``exact`` leaves it, ``round`` rounds its corners, ``wedge``
+        closes it. ``auto`` is ``wedge`` for C grids of one block, which need a sharp edge, else ``exact``.
     wake : float, optional
         Length of the wake of a C grid in chords; None: the far-field distance.
     wake_nodes : int, optional
-        Number of nodes along the wake, including the trailing edge; None: derived from the cell length at the
-        trailing edge.
+        Number of nodes along the wake, with the trailing edge; None: follows from the cell length there.
     base_nodes : int, optional
-        Number of nodes on a blunt base, including both corners; it must be odd for an O grid. None: derived
-        from the width of the base and the cells next to it.
+        Number of nodes on a blunt base, with both corners, odd for an O grid; None: follows from its width.
     base : float, optional
-        Thickness in chords to which thinner trailing edges of airfoils are opened: both sides move apart, in
-        proportion to the distance from the leading edge.
+        Thickness in chords to which thinner trailing edges of airfoils are opened.
     smooth : float, optional
-        Largest deviation, in chords, of smoothing splines that replace the points of an airfoil. Choose three
-        times the standard deviation of the noise. A base higher than twice this value keeps its corners; a
-        lower base is closed. Needs SciPy.
+        Largest deviation, in chords, of smoothing splines; three standard deviations of the noise are a good
+        choice. A base less than twice as high is closed. Needs SciPy.
     refined : int, optional
-        Place corners on nodes whose index is a multiple of this number, so that the grid can be coarsened by
-        this factor.
+        Corners are nodes with an index that is a multiple of this number, for coarsening by it.
     viscous : bool, optional
-        Whether cells at the wall will be thin; if so, the topology ``auto`` is C around airfoils with a sharp
-        trailing edge.
+        Whether cells at the wall will be thin; ``auto`` is then C around airfoils with a sharp trailing edge.
     normalise : bool, optional
         Move the leading edge to (0, 0) and the trailing edge to (1, 0).
 
@@ -132,9 +124,7 @@ class Sampling:
             raise InputError(problem, "give four point indices")
 
     def corner_steps(self, cells: int) -> tuple[int, ...]:
-        """Return possible steps for the node indices of corners, best first.
-
-        The index of each corner is a multiple of one of these steps.
+        """Return steps, best first, of which one divides the node indices of all corners.
 
         >>> Sampling().corner_steps(404), Sampling().corner_steps(398), Sampling(refined=8).corner_steps(400)
         ((4, 2, 1), (2, 1), (8,))
@@ -145,10 +135,7 @@ class Sampling:
 
     @property
     def radius(self) -> float:
-        """Radius of the far field in chords.
-
-        Raises InputError: a radius that does not enclose a body with a chord of 1.
-        """
+        """Radius of the far field in chords. Raises InputError: not above 1."""
         radius = DEFAULT_FAR_FIELD if self.far_field is None else self.far_field
         if not 1.0 < radius <= 1e6:
             raise InputError(f"the far field is at {radius:g} chords", "use more than 1 and at most 1e6")
@@ -168,9 +155,7 @@ def first_within(steps: tuple[int, ...], most: float) -> int:
 
 
 def nodes_beside(cells: int, every: int) -> str:
-    """Return as text the numbers of nodes for which the number of cells is a multiple of `every`.
-
-    Only the nearest such numbers below and above `cells` are given.
+    """Return as text the nearest numbers of nodes whose cells are a multiple of `every`.
 
     >>> nodes_beside(49, 4), nodes_beside(3, 4)
     ('49 or 53', '5')

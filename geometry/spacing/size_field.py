@@ -13,9 +13,7 @@ from meshonet.geometry.elementary import arctan2, exp, expm1, geomspace, log, pr
 GROWTH = math.log(1.10)
 """Largest growth of cells along the wall: 10 % from one cell to the next."""
 HURRY = 1.3
-"""Factor on the growth if nodes are few; only if this is not enough, curvature and nose are resolved more
-coarsely.
-"""
+"""Factor on the growth if nodes are few, before curvature and nose are resolved more coarsely."""
 RUSH = math.log(1.18) / GROWTH
 """Factor on the growth from the corners of a base on, whose cells are small, if nodes are few."""
 _LONGEST = 2.5  # largest cell between the corners of a base, in mean cells
@@ -44,15 +42,13 @@ def arcs_by_curvature(
 ) -> Floats:
     """Return arc lengths (cells + 1,) from one end of the trailing edge around the nose to the other.
 
-    The cell size h is a smooth minimum of four sizes, 1/h⁴ = Σ 1/hₖ⁴: the size at the trailing edge and the
-    size at the leading edge, each increasing by `GROWTH` times the distance from the edge; `TURN` /
-    curvature, reduced where its slope along the wall exceeds `GROWTH`; and a largest size, such that the
-    integral of ds/h is the number of cells. If there are too few cells for the first three sizes, those of
-    curvature and of the leading edge are increased, and with `hurried` (for C grids, whose wake takes half of
-    the nodes) growth is up to `HURRY` times as fast. If the two sizes would have to be more than `_SCARCE`
-    times as large, growth increases again, and finally all sizes are scaled up. With `based`, cells are also
-    too few if the largest size exceeds `_LONGEST` mean cells; unless `at_edge` is given, growth from the
-    trailing edge on is then up to `RUSH` times as fast, before other sizes change.
+    The cell size h is a smooth minimum, 1/h⁴ = Σ 1/hₖ⁴, of four sizes: those at trailing and leading edge,
+    which increase by `GROWTH` times the distance; `TURN` / curvature, whose slope is at most `GROWTH`; and a
+    largest size, for which the integral of ds/h is the number of cells. If cells are too few, the sizes of
+    curvature and leading edge increase, with growth up to `HURRY` times as fast if `hurried` (C grids).
+    Beyond `_SCARCE` times, growth increases again; at last all sizes are scaled. With `based`, cells are also
+    too few if the largest exceeds `_LONGEST` mean cells; before that, growth from the edge is up to `RUSH`
+    times as fast, unless `at_edge` is given.
 
     Parameters
     ----------
@@ -60,10 +56,9 @@ def arcs_by_curvature(
     cells : number of cells between the two ends.
     chord : chord length; the curvature is averaged over 0.2 % of it.
     steps : cell sizes at the trailing and at the leading edge.
-    exact : whether each of these two sizes is prescribed. The cell at the edge then deviates from it by less
-        than 0.5 %, unless twelve corrections of the sizes near the edge do not suffice.
+    exact : whether each size is prescribed, and met within 0.5 % if twelve corrections suffice.
     hurried : whether growth may be `HURRY` times as fast if cells are too few.
-    at_edge : logarithm of the growth ratio of cells next to the trailing edge, if larger than `GROWTH`.
+    at_edge : logarithm of the growth ratio next to the trailing edge, if larger than `GROWTH`.
     based : whether the ends are corners of a base, at which cells are small.
     """
     lower, nose, upper = stations
@@ -98,8 +93,7 @@ def arcs_by_curvature(
 def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -> Floats:
     """Return distances (cells + 1,) of nodes along a closed curve from `begin`, by curvature alone.
 
-    `way` is the length along which nodes are distributed; it is negative if they follow each other against
-    the direction of the curve.
+    `way` is the length with nodes, negative against the direction of the curve.
     """
     s = np.linspace(0.0, abs(way), 2 * _SAMPLES + 1)
     bend = _bend(curve, begin + np.sign(way) * s, curve.length)
@@ -108,7 +102,7 @@ def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -
 
 
 def _placed(s: Floats, density: Floats, cells: int) -> Floats:
-    """Return cells + 1 arc lengths from the first to the last of s, with equal integrals of the density."""
+    """Return cells + 1 arc lengths from the first to the last of s by density."""
     count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
     places = monotone_cubic(count * (cells / count[-1]), s, np.arange(cells + 1.0))
     places[0], places[-1] = s[0], s[-1]
@@ -140,7 +134,7 @@ def _bend(curve: Curve, s: Floats, chord: float) -> Floats:
 
 
 def _affordable(cells: int, s: Floats, known: Callable[[float], Floats]) -> Floats:
-    """Return `known` (the sum of 1/h⁴ at s) with the least factor, at least 1, for which `cells` suffice."""
+    """Return `known`, the sum of 1/h⁴, with the least factor from 1 on for `cells`."""
     goal, width = math.log(cells), 0.5 * np.diff(s)
 
     def excess(log_factor: float) -> tuple[float, Floats]:
@@ -176,9 +170,8 @@ def _known(
 ) -> Floats:
     """Return the sum of 1/h⁴ over both edges and curvature, for which alone the size is `size`.
 
-    `fewer` is the factor on size and on the leading edge's cell, `hurry` the largest factor on growth before
-    these are much larger. With `ramp`, growth sets in slowly behind the trailing edge: the grid lines that
-    leave there converge, unlike those next to them.
+    `fewer` is the factor on size and leading edge, `hurry` the largest on growth before these are much
+    larger. With `ramp`, growth sets in slowly behind the trailing edge, whose grid lines converge.
     """
     lower, nose, upper = stations
     growth = GROWTH * max(min(fewer, hurry), fewer / _SCARCE)
@@ -202,7 +195,7 @@ def _quartic(h: Floats) -> Floats:
 
 
 def limited_size(s: Floats, size: Floats, growth: float) -> Floats:
-    """Return h(s) = min over s' of size(s') + growth |s - s'|, by one forward and one backward pass."""
+    """Return h(s) = min over s' of size(s') + growth |s - s'|."""
     size = np.minimum.accumulate(size - growth * s) + growth * s
     return np.asarray(np.minimum.accumulate((size + growth * s)[::-1])[::-1] - growth * s)
 

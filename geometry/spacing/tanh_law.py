@@ -42,21 +42,17 @@ class TanhLaw:
         return np.asarray(np.where(np.asarray(q) >= 1.0, 1.0, np.where(np.asarray(q) <= 0.0, 0.0, s)))
 
     def _end_steps(self, low_q: float, high_q: float) -> tuple[float, float]:
-        """Return s at `low_q` and 1 - s at 1 - `high_q`, both small, without cancellation."""
+        """Return s at `low_q` and 1 - s at 1 - `high_q` without cancellation."""
         a, d = math.sqrt(self.end / self.start), self.stretch
         low, high = (_small_u(d, q) for q in (low_q, high_q))
         return low / (a + (1.0 - a) * low), a * high / (1.0 - (1.0 - a) * high)
 
     @classmethod
     def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> Self:
-        """Return the law with first step `first` and last step `last` of `cells` cells.
+        """Return the law of `cells` cells from step `first` to `last`, met to a relative 1e-6.
 
-        The steps are met to a relative error of 1e-6.
-
-        The last cell may extend beyond 1: `last_part` (1 or 0.5) is the fraction of it that lies before 1. If
-        it is 0.5, `cells` is no integer.
-
-        Raises InputError: the steps are too large together, or there are too few cells between them.
+        Of the last cell the part `last_part` (1 or 0.5) is before 1; with 0.5, `cells` is no integer.
+        Raises InputError: the steps are too large together, or too few cells are between them.
         """
         start, end = first * cells, last * cells
         for _ in range(60):

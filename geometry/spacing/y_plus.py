@@ -13,11 +13,9 @@ SAME = 1e-6
 def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> float:
     """Return the distance from the wall, in chords, at which y+ has the value `y_plus`.
 
-    The skin friction is that of a turbulent boundary layer on a flat plate at the distance x from its leading
-    edge: y+ = y u_τ/ν, u_τ/U = √(C_f/2), C_f = (2 log₁₀ Re_x - 0.65)^-2.3 (`SOURCE`). `reynolds` is based on
-    the chord; `chord_fraction` is x in chords.
-
-    Raises InputError: a value out of range, or x too small for a turbulent boundary layer.
+    On a turbulent flat plate, at the distance x = `chord_fraction` chords from its leading edge: y+ = y
+    u_τ/ν, u_τ/U = √(C_f/2), C_f = (2 log₁₀ Re_x - 0.65)^-2.3 (`SOURCE`), with `reynolds` of the chord. Raises
+    InputError: a value out of range, or x too small for a turbulent boundary layer.
 
     >>> f"{first_cell(1.0, 6e6):.3g}"
     '4.23e-06'
@@ -52,9 +50,8 @@ def first_cell_note(
 ) -> str:
     """Return a sentence that compares the first-cell heights, from `low` to `high`, with `target`.
 
-    `growth` is the mean growth ratio away from the wall, None if unknown; `where` is the word for the nodes
-    in the sentence. Heights are in the unit of the nodes; if `chord` is not 1, `target` is also given in
-    chords.
+    `growth` is the mean growth ratio off the wall, `where` the word for nodes. Unless `chord` is 1, `target`
+    is also in chords.
     """
     size = (
         f"{target:.6g}"

@@ -26,9 +26,7 @@ _THICK = 0.1
 _ALIKE = 0.5
 """Smallest cosine of the angle between the two sides of a trailing edge."""
 _THIN = 0.02
-"""Largest thickness, divided by the length, of a trailing edge that may lie in a plane at an end of the
-surface.
-"""
+"""Largest thickness over length of a trailing edge in a plane at an end of the surface."""
 _CELLS = (2, 16)
 """Smallest and largest number of cells across a base whose ends are not given."""
 _TURNS = {"west": 1, "north": 2, "east": -1, "south": 0}
@@ -38,8 +36,8 @@ _TURNS = {"west": 1, "north": 2, "east": -1, "south": 0}
 class _OpenSide:
     """A side of a patch along which all edges are open.
 
-    `line` (n,) are its node numbers; `inward` (n, m, 3) are the nodes of the patch, which start there. `axis`
-    is that of the plane at an end of the surface in which the side lies, or None.
+    `line` (n,) are its nodes, `inward` (n, m, 3) those of the patch from there; `axis` is that of a plane at
+    an end of the surface with the side, or None.
     """
 
     patch: int
@@ -61,12 +59,9 @@ class _Edge(NamedTuple):
 
 
 def with_bases(patches: Sequence[Floats]) -> tuple[list[Floats], list[int], tuple[str, ...]]:
-    """Return the patches and bases for open trailing edges, the patch index of each of them, and notes.
+    """Return the patches and bases for open trailing edges, the patch index above each, and notes.
 
-    `patches` are (ni, nj, 3). The index of a base is that of the patch on its upper side.
-
-    Raises InputError: the patches that close the two ends of a trailing edge have different numbers of cells
-    there.
+    `patches` are (ni, nj, 3). Raises InputError: the ends of a trailing edge have different numbers of cells.
     """
     nodes, lattices = merged(patches)
     sides = _open_sides(patches, nodes, lattices)
@@ -106,9 +101,8 @@ def _open_sides(patches: Sequence[Floats], nodes: Floats, lattices: tuple[Indice
 def _trailing_edges(nodes: Floats, sides: list[_OpenSide]) -> list[_Edge]:
     """Return the open trailing edges between sides.
 
-    The edges of the upper and the lower side of a wing at a plane of symmetry look like a trailing edge. An
-    edge in a plane at an end of the surface must therefore be thin, and thinner than such pairs of sides in
-    planes normal to another axis.
+    Sides of a wing in a plane of symmetry look like one; an edge in a plane at an end of the surface must
+    therefore be thin, and thinner than pairs in planes normal to another axis.
     """
     size = extent_of(nodes)
     pairs = [
@@ -130,7 +124,7 @@ def _trailing_edges(nodes: Floats, sides: list[_OpenSide]) -> list[_Edge]:
 
 
 def _alike(nodes: Floats, one: _OpenSide, other: _OpenSide, size: float) -> bool:
-    """Return whether two sides have equal node counts, and are close, with patches in one direction."""
+    """Return whether two sides have as many nodes, and are close, with patches in one direction."""
     if len(one.line) != len(other.line):
         return False
     gap = norms(nodes[one.line] - nodes[other.line])
@@ -147,7 +141,7 @@ def _thickness(nodes: Floats, one: _OpenSide, other: _OpenSide) -> float:
 
 
 def _base(nodes: Floats, one: _OpenSide, line: Indices, sides: list[_OpenSide]) -> Floats:
-    """Return the base (n, m, 3) from a side to `line`, with the nodes of open sides across its ends."""
+    """Return the base (n, m, 3) from a side to `line`, with nodes of open sides across its ends."""
     upper, lower = nodes[one.line], nodes[line]
     ends = [_across(nodes, int(one.line[k]), int(line[k]), sides) for k in (0, -1)]
     counts = {len(end) for end in ends if end is not None}

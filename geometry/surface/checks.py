@@ -18,7 +18,7 @@ _SIDES = ("west", "east", "south", "north")
 
 
 def place_of(nodes: Floats, lattices: tuple[Indices, ...], node: int) -> str:
-    """Return as text the position of a node: the first patch that contains it, i, j, x, y, z."""
+    """Return the position of a node as text: its first patch, i, j, x, y, z."""
     for number, lattice in enumerate(lattices):
         at = np.argwhere(lattice == node)
         if len(at):
@@ -28,7 +28,7 @@ def place_of(nodes: Floats, lattices: tuple[Indices, ...], node: int) -> str:
 
 
 def check_quads(nodes: Floats, lattices: tuple[Indices, ...], quads: Indices) -> None:
-    """Raise InputError if an edge of a patch has length zero, or if a quadrilateral is folded onto itself."""
+    """Raise InputError for an edge of length zero, or a quadrilateral folded onto itself."""
     for number, k in enumerate(lattices):
         for side, line in zip(_SIDES, (k[0], k[-1], k[:, 0], k[:, -1]), strict=True):
             if (line == line[0]).all():
@@ -48,7 +48,7 @@ def check_quads(nodes: Floats, lattices: tuple[Indices, ...], quads: Indices) ->
 
 
 def check_manifold(nodes: Floats, lattices: tuple[Indices, ...], crowded: Indices) -> None:
-    """Raise InputError if an edge belongs to three faces or more; `crowded` are nodes of such edges."""
+    """Raise InputError if an edge, with `crowded` nodes, belongs to three faces or more."""
     if len(crowded):
         owners = [str(n) for n, k in enumerate(lattices) if (k == crowded[0]).any()]
         problem = f"an edge belongs to three faces or more (patches {', '.join(owners)})"
@@ -78,10 +78,7 @@ def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> 
 
 
 def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if nodes of open `edges` (k, 2) lie inside other open edges.
-
-    In this case two sides meet, but have different nodes.
-    """
+    """Raise InputError if nodes of open `edges` (k, 2) lie inside others: sides meet with different nodes."""
     ends = nodes[edges]
     along = ends[:, 1] - ends[:, 0]
     length = norms(along)
@@ -108,7 +105,7 @@ def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) ->
 def check_sides(
     nodes: Floats, lattices: tuple[Indices, ...], quads: Indices, twin: Indices, valence: Indices
 ) -> None:
-    """Raise InputError if two sheets touch in a node; the faces around it do not form a single ring."""
+    """Raise InputError if the faces around a node do not form a single ring."""
     first, _ = ends_of(quads)
     faces = np.bincount(first, minlength=len(nodes))
     opened = np.bincount(first[twin < 0], minlength=len(nodes))

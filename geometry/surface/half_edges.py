@@ -1,12 +1,6 @@
-"""Half-edges of quadrilaterals over one table of nodes.
+"""Half-edges of quadrilaterals: 4 q + k goes from corner k of quadrilateral q to its next corner.
 
-::
-
-    d <-- 2 --- c      half-edge 4 q + k goes from corner k of quadrilateral q to its next corner; its
-    |           ^      twin is the half-edge of the quadrilateral on the other side of the same edge,
-    3     q     1      in the opposite direction if both are oriented alike
-    v           |
-    a --- 0 --> b
+Its twin is the half-edge on the other side, in the opposite direction if both are oriented alike.
 """
 
 import numpy as np
@@ -20,17 +14,16 @@ def ends_of(quads: Indices) -> tuple[Indices, Indices]:
 
 
 def open_sides(quads: Indices, twin: Indices) -> Indices:
-    """Return the corners (k, 4) of the quadrilaterals at open edges; both ends of the edge come first."""
+    """Return the corners (k, 4) of the quadrilaterals at open edges, from both ends of the edge on."""
     opened = np.flatnonzero(twin < 0)
     around = (opened[:, None] % 4 + np.arange(4)) % 4
     return np.asarray(quads[opened[:, None] // 4, around])
 
 
 def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
-    """Return the twin (4 m,) of each half-edge, -1 at open edges, and the surplus half-edges.
+    """Return the twin (4 m,) of each half-edge, -1 at open edges, and half-edges beyond two of an edge.
 
-    `nodes` is the number of nodes. If an edge has more than two half-edges, all but the first two are
-    surplus.
+    `nodes` is the number of nodes.
     """
     first, last = ends_of(quads)
     key = np.minimum(first, last) * nodes + np.maximum(first, last)
@@ -47,9 +40,8 @@ def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
 def rings(quads: Indices, twin: Indices, nodes: int) -> tuple[Indices, Indices]:
     """Return the neighbours (n, w) of each node in order around it, padded with -1, and their number (n,).
 
-    All quadrilaterals must have the same orientation. Inside the surface the neighbours form a closed ring.
-    At a node on an open edge they begin and end with the neighbours along open edges: there is one more than
-    there are quadrilaterals.
+    Quadrilaterals have one orientation. Neighbours of a node on an open edge begin and end along open edges,
+    one more than there are quadrilaterals.
     """
     first, last = ends_of(quads)
     edges = np.arange(len(first))

@@ -12,8 +12,7 @@ from meshonet.geometry.surface.surface import Surface
 CONCAVE_DEG = 30.0
 """Smallest turn of the normal at a concave edge, in degrees: walls that meet at 150 degrees."""
 _LEAST = 0.01
-"""Concave edges that are together shorter than this fraction of the surface's size are dents, not junctions.
-"""
+"""Concave edges shorter together than this fraction of the surface's size are dents."""
 
 _BESIDE = 0.1
 """Largest distance from a concave edge, divided by the surface's size, at which cells fold because of it."""
@@ -27,9 +26,9 @@ class Hollows:
     ----------
     edges : (k, 2) the two nodes of each edge.
     angles : (k,) angle of the space between the two faces, in degrees, at most 150.
-    distance : (n,) distance of each node from the nearest concave edge, measured along edges of the surface,
-        plus the width of the cells at the concave edge, so that it is nowhere 0. It is infinite if no edge is
-        concave.
+    distance : (n,) distance of each node from a concave edge along edges, plus the width of cells there;
+    infinite
+        without concave edges.
     """
 
     edges: Indices
@@ -37,14 +36,11 @@ class Hollows:
     distance: Floats
 
     def sharpest(self) -> tuple[float, int] | None:
-        """Return the smallest angle in degrees, and a node of its edge; None if no edge is concave."""
+        """Return the smallest angle in degrees and a node of its edge, if any."""
         return self._at(int(self.angles.argmin())) if len(self.edges) else None
 
     def nearest(self, surface: Surface, numbers: Indices) -> tuple[float, int] | None:
-        """Return the angle in degrees and a node of the concave edge nearest to the nodes `numbers` (n,).
-
-        None if the nearest edge is farther away than a tenth of the surface's size.
-        """
+        """Return angle in degrees and a node of the concave edge nearest to `numbers` (n,), if it is near."""
         if not len(self.edges):
             return None
         edges = surface.nodes[self.edges[:, 0]]

@@ -12,16 +12,11 @@ TOLERANCE = 1e-8
 """Edge nodes nearer than this fraction of the surface's size are one node."""
 
 SLANT = np.array([0.5257311, 0.6513887, 0.5470973])
-"""Direction along which points are sorted. It is oblique, so that distant points seldom have equal positions
-along it.
-"""
+"""Direction along which points are sorted; along an oblique one few distant points are equal."""
 
 
 def near_pairs(points: Floats, distance: float) -> Indices:
-    """Return the pairs (m, 2) of `points` (n, 3) within `distance` along each axis, the lower index first.
-
-    Points are sorted along a slanted line, because distant points seldom have equal positions along it.
-    """
+    """Return the pairs (m, 2) of `points` (n, 3) within `distance` along each axis, the lower index first."""
     along = product(points, SLANT)
     order = np.argsort(along, kind="stable")
     along, window = along[order], distance * float(SLANT.sum()) * (1.0 + 1e-12)
@@ -40,8 +35,7 @@ def near_pairs(points: Floats, distance: float) -> Indices:
 def merged(patches: Sequence[Floats]) -> tuple[Floats, tuple[Indices, ...]]:
     """Return all nodes (n, 3) of `patches` (ni, nj, 3), and the node numbers (ni, nj) of each patch.
 
-    Edge nodes nearer than `TOLERANCE` times the size of the surface become one node, with the coordinates of
-    the first. Numbers ascend in the order in which nodes first appear.
+    Edge nodes within `TOLERANCE` of the size of the surface are one node, the first; numbers ascend.
     """
     points = np.concatenate([np.ascontiguousarray(patch).reshape(-1, 3) for patch in patches])
     edges = [

@@ -20,10 +20,8 @@ def turned_alike(
 ) -> tuple[list[int], list[int], tuple[int, int] | None]:
     """Return, for `count` patches, component and sign (1 or -1) of each, and a pair of patches or None.
 
-    `patch` (4 m,) is the index of the patch of each half-edge, `half_edges` are the first and the last nodes
-    of the half-edges. If the patches with sign -1 are reversed, all patches of a component are consistent. If
-    this is impossible, because the surface is not orientable, the third result is a pair of patches that
-    contradict each other.
+    `patch` (4 m,) is that of each half-edge, from the first to the last node in `half_edges`. Reversing
+    patches of sign -1 makes a component consistent, unless a pair contradicts: the surface is not orientable.
     """
     first, _ = half_edges
     edges = np.flatnonzero(twin > np.arange(len(twin)))
@@ -56,9 +54,8 @@ def turned_alike(
 def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list[int]:
     """Return the axes of the planes of symmetry that close a surface.
 
-    `sides` (k, 4) are the faces at open edges; the nodes of the edge come first. If all open edges outside
-    one plane are the rim of a small hole, as at the end of half a fuselage, only this one plane closes the
-    surface.
+    `sides` are those of `open_sides`. If all open edges outside one plane are the rim of a small hole, as at
+    the end of half a fuselage, only this plane closes it.
     """
     axes = sorted({plane.axis for plane in planes})
     slack = FLAT * extent_of(nodes)
@@ -71,12 +68,10 @@ def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list
 
 
 def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | None:
-    """Return 1 if consistently oriented `quads` (m, 4) face outwards, -1 if they face inwards.
+    """Return 1 if consistently oriented `quads` (m, 4) face outwards, -1 if inwards; None if undefined.
 
-    Planes normal to the axes `flat` close the surface at open edges that lie in them. The result is None if
-    the surface encloses no volume; the criterion is the vector sum of its area. The result is also None if
-    planes normal to two axes are needed to close the surface. Such a surface, for example the corner of a
-    box, can be closed on either side, so that outwards is not defined.
+    Planes normal to the axes `flat` close open edges in them. It is undefined without an enclosed volume, by
+    the vector sum of area, and with planes of two axes, as at the corner of a box.
     """
     if len(flat) > 1:
         return None

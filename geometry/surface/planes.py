@@ -13,10 +13,9 @@ FEWEST = 3
 """Smallest number of open edges in a plane of symmetry."""
 
 SLANT_DEG = 5.0
-"""Largest deviation, in degrees, from the normal of a plane of symmetry of a surface that encloses no volume.
+"""Largest angle, in degrees, between a surface that encloses no volume and the normal of a plane of symmetry.
 
-The mirror image of such a surface must continue it smoothly. The surface of half a closed body may meet its
-mirror image at an edge.
+Its mirror image must continue it smoothly; half a closed body may meet its own at an edge.
 """
 
 
@@ -32,11 +31,10 @@ class Plane:
 
 
 def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
-    """Return the planes normal to a coordinate axis that contain open edges and have the surface on one side.
+    """Return the planes normal to an axis that contain open edges and have the surface on one side.
 
-    `sides` (k, 4) are the faces at open edges; the nodes of the edge come first. An edge in two such planes
-    belongs to the plane with more edges, and a plane must have at least `FEWEST` edges. The reason is that a
-    blunt trailing edge at a wing root is straight too, but only the root is in a plane of symmetry.
+    `sides` are those of `open_sides`. An edge belongs to the plane with the most edges, `FEWEST` or more: a
+    blunt trailing edge at a wing root is straight too.
     """
     if not len(sides):
         return ()
@@ -58,19 +56,13 @@ def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
 
 
 def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:
-    """Return the indices of those `sides` (k, 4) whose edges lie in a plane, but whose faces do not.
-
-    Nodes lie in the plane if their distance is at most `slack`.
-    """
+    """Return which `sides` (k, 4) have their edges, but not their faces, within `slack` of a plane."""
     near = np.abs(nodes[sides, plane.axis] - plane.value) <= slack
     return np.asarray(near[:, :2].all(axis=1) & ~near[:, 2:].all(axis=1))
 
 
 def slant(nodes: Floats, sides: Indices, plane: Plane) -> float:
-    """Return the mean angle in degrees between a plane's normal and the faces at open edges in the plane.
-
-    `sides` are as in `planes_of`.
-    """
+    """Return the mean angle in degrees between a plane's normal and faces at open edges in it."""
     mine = sides[edges_in(nodes, sides, plane, FLAT * extent_of(nodes))]
     a, b, c, d = (nodes[mine[:, k]] for k in range(4))
     normal = np.cross(c - a, d - b)

@@ -1,15 +1,7 @@
 """A core patch and the rows around it in place of a pole, a side of a patch that is a single point.
 
-::
-
-    i                          the fan of curves out of the pole,       +---+---+---+
-    |  . . . . . .             its first columns j replaced by a core   |   |   |   |
-    | pole  . . .     ->       of (a, b) cells; around it rows that     +---+---o---+   o: the pole
-    |  . . . . . .             go over into the column `at`             |   |   |   |
-    +------------ j                                                     +---+---+---+
-
-Seen from outside. A closed fan gets a core with the pole inside, one of 180 degrees, between two edges in a
-plane of symmetry, a core with the pole on a side, one of 90 degrees a core with the pole at a corner.
+The first columns of the fan of curves out of the pole become a core of (a, b) cells; rows around it go over
+into the column `at`. The pole is inside, or with a fan of 180 or 90 degrees on a side or at a corner.
 """
 
 import math
@@ -26,18 +18,14 @@ _SIZE = 0.35
 _ROUNDING = 0.5
 """Exponent of the map from the square to the core: 0 keeps the square's corners, 1 makes a disc's rim."""
 _EVEN = 0.25
-"""Constant a of the map x sqrt(1 - a y^2), y sqrt(1 - a x^2) from the square to an even core: a = 0 keeps the
-square, a = 1/2 makes a disc, whose corners are flat. With this value corners have 127 degrees, as in cores
-that are not even.
+"""Constant a of the map x sqrt(1 - a y^2), y sqrt(1 - a x^2) from the square to an even core.
+
+a = 0 keeps the square, 1/2 makes a disc; this value makes corners of 127 degrees, as in other cores.
 """
 _NOSE = 0.65
-"""Smallest ratio of the width of a column to its distance from the pole, relative to the largest: behind it
-ends the nose.
-"""
+"""Smallest ratio of a column's width to its distance from the pole, relative to the largest, on a nose."""
 _FEWEST = 3
-"""Smallest number of rows between a core and the column `at`, and smallest number of columns that they
-replace.
-"""
+"""Fewest rows between a core and the column `at`, and fewest columns that they replace."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +35,7 @@ class PoleCore:
     Parameters
     ----------
     nodes : (b + 1, a + 1, 3) nodes of the core, with the orientation of the fan.
-    rows : (r, m + 1, 3) rows of nodes, from the edge of the core to the column of the fan with index `at`.
+    rows : (r, m + 1, 3) rows from the edge of the core to the column `at`.
     at : index of the first column of the fan (m + 1, n, 3) that is kept.
     """
 
@@ -57,15 +45,11 @@ class PoleCore:
 
 
 def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> PoleCore:
-    """Return the core of a `fan` (m + 1, n, 3) of curves that leave a pole, a single point, at j = 0.
+    """Return the core of a `fan` (m + 1, n, 3) of curves that leave a pole at j = 0.
 
-    By default the core and the rings of cells around it are rounded, as a march from the surface requires. An
-    `even` core is square, so that its lines have no kinks; across kinks cell sizes would differ by a factor
-    of up to 2.
-
-    `quarters` is the angle of the fan in right angles. A closed fan repeats its first curve, and has an even
-    number m of cells. Columns are replaced up to the first whose cells are as long as they are wide, but at
-    most `most`.
+    The core and its rings are rounded, as a march requires; an `even` core is square, without kinks, across
+    which sizes would differ by up to 2. `quarters` is the angle of the fan in right angles; a closed fan
+    repeats its first curve, with m even. Columns are replaced up to square cells, but at most `most`.
     """
     m = len(fan) - 1
     steps = norms(np.diff(fan, axis=1)).mean(axis=0)
@@ -84,11 +68,9 @@ def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> Pol
 
 
 def _column(widths: Floats, arc: Floats, most: int) -> int:
-    """Return the column up to which a core replaces a fan.
+    """Return the column up to which a core replaces a fan, with cells of `widths` (n,) at `arc` (n,).
 
-    `widths` (n,) are those of its cells, `arc` (n,) the arc lengths from the pole.
-
-    It is the first whose cells are as wide as long, or the last on the nose, whose width still grows there.
+    It is the first of square cells, or the last on the nose, whose width still grows.
     """
     square = np.flatnonzero(widths[1:most] >= np.diff(arc)[1:most])
     spread = widths[1 : most + 1] / arc[1 : most + 1]
@@ -98,9 +80,9 @@ def _column(widths: Floats, arc: Floats, most: int) -> int:
 
 
 def _knots(m: int, quarters: int) -> tuple[Floats, Floats]:
-    """Return coordinates y (a + 1,), rising, and x (b + 1,), falling, of a square's lines, the pole at 0.
+    """Return y (a + 1,), rising, and x (b + 1,), falling, of a square's lines, the pole at 0.
 
-    The turn 0 of the fan is the half-line y = 0, x > 0. Where a count is odd the pole is beside the middle.
+    The turn 0 of the fan is the half-line y = 0, x > 0.
     """
     if quarters == 1:
         return np.linspace(0.0, 1.0, m // 2 + 1), np.linspace(1.0, 0.0, m - m // 2 + 1)
@@ -111,13 +93,13 @@ def _knots(m: int, quarters: int) -> tuple[Floats, Floats]:
 
 
 def _both_ways(cells: int) -> Floats:
-    """Return knots (cells + 1,) from -1 to 1 with 0 among them."""
+    """Return knots (cells + 1,) from -1 over 0 to 1."""
     low = cells // 2
     return np.concatenate([np.linspace(-1.0, 0.0, low + 1)[:-1], np.linspace(0.0, 1.0, cells - low + 1)])
 
 
 def _polar(y: Floats, x: Floats, quarters: int, *, even: bool) -> tuple[Floats, Floats]:
-    """Return radii and turns (0 to 1 over the fan) of the nodes (a + 1, b + 1) of a core of half width 1."""
+    """Return radii and turns (0 to 1 over the fan) of the nodes (a + 1, b + 1) of a core."""
     y, x = np.broadcast_arrays(y[:, None], x[None])
     if even:
         y, x = y * np.sqrt(1.0 - _EVEN * (x * x)), x * np.sqrt(1.0 - _EVEN * (y * y))
@@ -142,9 +124,9 @@ def _rim(core: Floats, quarters: int) -> Floats:
 
 
 def _row_places(rim: Floats, first: float, length: float, last: float) -> tuple[Floats, Floats]:
-    """Return radii and turns (r + 1, m + 1) of rows from the rim (m + 1, 2) of a core out to radius 1.
+    """Return radii and turns (r + 1, m + 1) of rows from the rim (m + 1, 2) of a core to radius 1.
 
-    Their sizes go geometrically from `first` to `last`, lengths of which the radius 1 has `length`.
+    Sizes go geometrically from `first` to `last`; radius 1 has `length`.
     """
     way = (1.0 - _SIZE) * length
     ratio = last / first
@@ -161,10 +143,7 @@ def _row_places(rim: Floats, first: float, length: float, last: float) -> tuple[
 
 
 class _Fan:
-    """The surface of a fan (m + 1, n, 3): cubic splines along its curves, cubics through four across them.
-
-    Both by the mean arc length from the pole, `knots` (n,), and by the number of the curve.
-    """
+    """The surface of a fan (m + 1, n, 3): cubic splines along curves, cubics through four across them."""
 
     def __init__(self, fan: Floats, knots: Floats, *, closed: bool) -> None:
         ahead = fan[1:2] if closed else fan[:0]

@@ -18,9 +18,9 @@ _LEAST = {1: 2, 2: 4, 4: 8}
 
 @dataclass(frozen=True)
 class _FanPatch:
-    """A patch of a fan, turned (and mirrored) so that its pole is at j = 0 and i runs as in the fan.
+    """A patch turned (and mirrored) so that its pole is at j = 0 and i runs as in the fan.
 
-    `both` is True if there is a pole at its other end too.
+    `both`: there is a pole at its other end too.
     """
 
     patch: int
@@ -41,12 +41,9 @@ def without_poles(
 ) -> tuple[list[Floats], list[int], tuple[str, ...]]:
     """Return the patches without poles, the index of a given patch for each of them, and notes.
 
-    A pole is a side of a patch that is a single point. `patches` are (ni, nj, 3). Patches keep their indices;
-    rows of cells replace their first columns. Cores are appended; the index of a core is that of a patch at
-    its pole. Several patches that meet in the same pole share a core. Without `replace` all patches are
-    returned unchanged.
-
-    Raises InputError: too few cells around a pole, or an odd number of them.
+    A pole is a side of a patch (ni, nj, 3) that is a single point. Patches keep their indices; cores, one for
+    each pole, are appended with the index of a patch there. Without `replace` nothing is done. Raises
+    InputError: too few cells around a pole, or an odd number.
     """
     out, owners, notes = list(patches), list(range(len(patches))), []
     while replace and (fan := _next_fan(out)):
@@ -58,7 +55,7 @@ def without_poles(
 
 
 def _replaced(patches: list[Floats], fan: list[_FanPatch]) -> tuple[Floats, str]:
-    """Return the core in place of the pole of a fan, and a note, and change its `patches`."""
+    """Return the core in place of a fan's pole, and a note; change its `patches`."""
     turned = [member.turned(patches) for member in fan]
     columns = min(nodes.shape[1] for nodes in turned)
     common = [nodes[:, :columns] for nodes in turned]
@@ -96,7 +93,7 @@ def _replaced(patches: list[Floats], fan: list[_FanPatch]) -> tuple[Floats, str]
 
 
 def _check_ends(patches: Sequence[Floats], fan: list[_FanPatch], joined: Floats, slack: float) -> None:
-    """Raise InputError if an outer curve of an open fan is a seam with another patch, whose nodes stay."""
+    """Raise InputError if an outer curve of an open fan is a seam with another patch."""
     members = {member.patch for member in fan}
     for node in joined[[0, -1], 1]:
         for number, patch in enumerate(patches):
@@ -109,17 +106,14 @@ def _check_ends(patches: Sequence[Floats], fan: list[_FanPatch], joined: Floats,
 
 
 def _right_angles(fan: Floats) -> int:
-    """Return the angle between the first and last curves of an open fan, in right angles: 1 or 2.
-
-    Lines around the pole leave the planes of these curves at right angles, and turn as much as the planes.
-    """
+    """Return the angle between first and last curves of an open fan, 1 or 2 right angles."""
     around = np.diff(fan[:, 1], axis=0)[[0, -1]]
     around /= norms(around)[:, None]
     return 2 if float((around[0] * around[1]).sum()) < -0.5 else 1
 
 
 def _next_fan(patches: Sequence[Floats]) -> list[_FanPatch] | None:
-    """Return the patches around one pole, in order and turned the same way, None if there is no pole."""
+    """Return the patches around one pole, in order and turned alike, or None."""
     slack = TOLERANCE * max(extent_of(patch.reshape(-1, 3)) for patch in patches)
     fans = [member for number, patch in enumerate(patches) for member in _fans(number, patch, slack)]
     if not fans:

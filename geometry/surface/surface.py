@@ -1,12 +1,4 @@
-"""A surface of patches in space with one table of nodes: seams, poles and folds need no special treatment.
-
-::
-
-    patch 0     patch 1            nodes are numbered once; each patch has an array of node numbers.
-    +--+--+     +--+--+            Quadrilaterals are oriented so that i x j points outwards.
-    |  |  |  +  |  |  |   ->   quads (m, 4), twins across shared edges, open edges
-    +--+--+     +--+--+
-"""
+"""A surface of patches in space with one table of nodes: seams, poles and folds need no special treatment."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -42,10 +34,8 @@ class Surface:
     nodes : (n, 3) the table of nodes, in any unit of length.
     lattices : for each patch, the indices (ni, nj) of its nodes; the normal i x j points outwards.
     names : names of the patches, ``wall`` if the file has no names.
-    twin : (4 m,) for each half-edge of `quads`, the half-edge on the other side; -1 at open edges
-        (`half_edges`).
-    ring, valence : (n, w) the neighbours in order around each node, and (n,) their number
-        (`half_edges.rings`).
+    twin : (4 m,) for each half-edge of `quads`, that on the other side; -1 at open edges (`half_edges`).
+    ring, valence : (n, w) neighbours in order around each node, (n,) their number (`half_edges.rings`).
     planes : planes normal to an axis that contain open edges, with the surface on one side of them.
     notes : sentences on what was changed or assumed.
     """
@@ -87,17 +77,12 @@ class Surface:
 def surface_of(grid: Grid, *, poles: Literal["replace", "refuse"] = "replace") -> Surface:
     """Return the surface that the patches (ni, nj, 3) of a grid form together.
 
-    A pole (a side that is a single point) is replaced by a core patch, with a note, unless `poles` is
-    ``refuse``. Open trailing edges are closed by base patches, with a note.
-
-    Patches with the opposite orientation are reversed along i, with a note. A closed surface, or a surface
-    that planes normal to one axis close, gets outward normals; any other surface keeps the orientation of
-    most of its area.
-
-    Raises InputError, with the place: blocks that are not patches; an edge of zero length, or shared by three
-    quadrilaterals; a node at which two sheets touch; sides that nearly match, or that meet with different
-    nodes; an open trailing edge with different numbers of cells across its two ends; a surface that cannot be
-    oriented.
+    With notes, poles (sides that are single points) become cores unless `poles` is ``refuse``, open trailing
+    edges are closed, and patches with the opposite orientation reversed along i. A surface that is closed, or
+    that planes normal to one axis close, faces outwards; any other keeps the orientation of most of its area.
+    Raises InputError, with the place: a block that is no patch; an edge of zero length or of three
+    quadrilaterals; sheets that touch in a node; sides that nearly match, or meet with different nodes; a
+    trailing edge whose ends differ; no orientation.
     """
     if any(block.nodes.ndim != 3 or block.nodes.shape[-1] != 3 for block in grid.blocks):
         problem = "a surface is made of patches (ni, nj, 3), and a block of this grid is none"

@@ -36,10 +36,7 @@ _WIDEST_WEDGE = 50.0  # degrees; a C grid by default needs surfaces that meet at
 
 
 class CrossingError(InputError):
-    """Error: the polygon through the wall nodes crosses itself.
-
-    The reason is that there are too few nodes where the section is thin.
-    """
+    """Error: the polygon through too few wall nodes crosses itself where the section is thin."""
 
 
 class Airfoil:
@@ -47,17 +44,15 @@ class Airfoil:
 
     ::
 
-                  upper  <----.             The curve runs clockwise: it starts at the trailing edge
-               .-----------------.___       (of a blunt one, at the middle of its straight base), goes
-        LE    (                      --- TE along the lower side to the leading edge and back along the
-               '-------------------'''      upper side. The leading edge is the point of the curve that
-                  lower  ---->              is farthest from the trailing edge.
+                  upper  <----.             The curve runs clockwise from the trailing edge (the middle of
+               .-----------------.___       a straight base) along the lower side; the leading edge is the
+        LE    (                      --- TE point farthest from the trailing edge.
+               '-------------------'''
+                  lower  ---->
 
-    The `points` (n, 2) may have any unit, orientation and first point; they are cleaned (`clean_section`)
-    unless they are already a clean section. `places` (n,) are the positions of the points in the input, such
-    as ``line 12``, for messages. `notes` say how the points were changed before.
-
-    Raises InputError, with the place: the points are no airfoil.
+    The `points` (n, 2), of any unit and orientation, are cleaned (`clean_section`) unless they are a clean
+    section. `places` (n,) are their positions in the input, such as ``line 12``; `notes` say how they were
+    changed before. Raises InputError, with the place: the points are no airfoil.
     """
 
     chord: float
@@ -67,9 +62,7 @@ class Airfoil:
     trailing_edge: Floats
     """(2,) the trailing edge; if it is blunt, the middle of the base."""
     crossing: InputError | None
-    """The reason if there is no `curve`: the surfaces cross, for example because the points are noisy (see
-    `smoothed`).
-    """
+    """Why there is no `curve`: the surfaces cross, perhaps by noise of the points (`smoothed`)."""
     gap: float
     """Distance between the ends of the upper and the lower surface."""
     nose_radius: float
@@ -83,9 +76,7 @@ class Airfoil:
     base_is_round: bool
     """Whether the base is rounded, without corners."""
     blunt: bool
-    """Whether the trailing edge is a straight base; a gap below 2e-4 chords counts as sharp, and is closed at
-    its middle.
-    """
+    """Whether the trailing edge is a straight base; a gap below 2e-4 chords is closed at its middle."""
 
     far_field_unit = "chords"
     """Unit of the far-field distance."""
@@ -122,21 +113,16 @@ class Airfoil:
 
     @property
     def curve(self) -> Curve:
-        """The curve through the points (see the drawing).
-
-        Raises InputError, with the place: the surfaces cross.
-        """
+        """The curve through the points. Raises InputError, with the place: the surfaces cross."""
         if self.crossing:
             raise self.crossing
         return self.points_curve
 
     @property
     def unit(self) -> float:
-        """Unit of wall cell sizes: the chord, or 1 if that is the nominal chord.
+        """Unit of wall cell sizes: the chord, or 1 if the chord is within 1 % of that.
 
-        In a cambered section the distance from the trailing edge to the farthest point exceeds the nominal
-        chord (for NACA 2412 by 8e-5). If this distance is within 1 % of 1, the nominal chord is taken to be
-        1.
+        In cambered sections the farthest point is beyond the nominal chord, of NACA 2412 by 8e-5.
         """
         return 1.0 if abs(self.chord - 1.0) < 0.01 else self.chord
 
@@ -151,7 +137,7 @@ class Airfoil:
 
     @property
     def outline_notes(self) -> tuple[str, ...]:
-        """Notes on the outline: `notes`; an oblique base; a curve that deviates much from its polygon."""
+        """Notes on the outline, an oblique base, and a curve that deviates from its polygon."""
         return self.notes + shape_notes(self._section, self.curve, self.chord)
 
     @cached_property
@@ -203,11 +189,11 @@ class Airfoil:
         return Airfoil(section.points, self.name, notes=(*self.notes, moved_note(self._section, section)))
 
     def wall(self, ni: int, sampling: Sampling) -> Floats:
-        """Return nodes (ni, 2) on the curve, clockwise from the trailing edge; the last equals the first."""
+        """Return nodes (ni, 2) on the curve, clockwise from the trailing edge back to it."""
         return self._wall(ni, sampling)[0]
 
     def _wall(self, ni: int, sampling: Sampling) -> tuple[Floats, tuple[str, ...]]:
-        """Return the nodes of `wall`, and a note if ``auto`` spacing is not the usual one."""
+        """Return the nodes of `wall`, and a note on unusual ``auto`` spacing."""
         if sampling.spacing != "auto":
             return self._nodes(ni, sampling), ()
         notes: tuple[str, ...] = ()
@@ -232,13 +218,11 @@ class Airfoil:
         return nodes
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return this wall with a far field around: a circle (O grid), or a half circle and a wake (C grid).
+        """Return this wall with a far field: a circle (O grid), or a half circle and a wake (C grid).
 
-        Topology ``auto`` becomes ``c`` if cells at the wall will be thin and the trailing edge (after the
-        change by `Sampling.te`) is sharp, with an angle of at most 50 degrees; otherwise it becomes ``o``.
-
-        Raises InputError: the topology is ``quad``, or ``c`` with a blunt trailing edge; there are too few
-        nodes.
+        Topology ``auto`` is ``c`` if cells at the wall will be thin and the trailing edge, after
+        `Sampling.te`, is sharp, of at most 50 degrees. Raises InputError: topology ``quad``, or ``c`` with a
+        blunt trailing edge; too few nodes.
         """
         if sampling.topology == "quad":
             raise InputError("topology quad is not made from an airfoil", "use o or c")

@@ -1,16 +1,7 @@
 """The start of a C grid around a blunt section: wall, base, and wake lines from both corners of the base.
 
-::
-
-         .-----------------------.______          upper wake
-        (           wall          upper |=========================|
-         '-----------------------.______| base        H block     | outlet
-                                  lower  =========================|
-                                                  lower wake
-
-Both wake lines start tangential to their surface, or turned away from the base where a rounded surface would
-leave them little angle to it, and turn into the axis of the wake. Their mean follows the line behind a sharp
-edge (`meshonet.geometry.shapes.wake.WakeLine`); their distance stays close to the width of the base.
+Wake lines start along their surfaces, or turned off a rounded one, and turn into the axis of the wake, as far
+apart as the base is wide. Their mean is the line behind a sharp edge (`shapes.wake.WakeLine`).
 """
 
 from __future__ import annotations
@@ -47,8 +38,7 @@ GROWTH = 1.2  # growth ratio along wake and base unless given
 _WITHIN = 0.92  # fraction of the growth beyond 1 used along wake and base: the lines bend, which adds growth
 _STEEPEST = math.radians(85.0)  # largest angle between a wake line at its corner and the axis of the wake
 _LEAST_ANGLE = math.radians(60.0)
-"""Smallest angle between base and wake line at a corner: below it, the line is turned away from its surface.
-"""
+"""Smallest angle between base and wake line; lines with a smaller one are turned off the surface."""
 _MOST_TURNED = math.radians(40.0)
 """Largest such turn. Measured on 90 bases of .02 to .25 chords, half of them with flanks rounded by up to 85
 degrees: largest angles are at most 134 degrees, with 30 degrees 144, with 50 degrees 143."""
@@ -67,9 +57,9 @@ _LEAST_WALL = 24  # fewest cells on a wall
 class BaseWake:
     """Lines of nodes around and behind a section with a base (a blunt trailing edge).
 
-    The `wall` (n, 2) runs clockwise from the lower to the upper corner of the base; the `base` (m, 2) runs
-    straight from the lower to the upper corner. The wakes `lower` and `upper` (k, 2) run from these corners
-    to the outlet. Corners are bitwise shared.
+    The `wall` (n, 2) runs clockwise from the lower to the upper corner of the base, the `base` (m, 2)
+    straight. The wakes `lower` and `upper` (k, 2) run from these corners to the outlet. Corners are bitwise
+    shared.
     """
 
     wall: Floats
@@ -90,9 +80,7 @@ def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float |
     """Return the lines at which the C grid of a `body` with a blunt trailing edge starts.
 
     `first` is the first-cell height at wall and base, in the unit of the body; `growth` limits the growth
-    ratio along base and wake.
-
-    Raises InputError: too few nodes.
+    along base and wake. Raises InputError: too few nodes.
     """
     ratio = 1.0 + _WITHIN * ((growth or GROWTH) - 1.0)
     points = body.curve.points
@@ -132,9 +120,9 @@ def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float |
 
 
 def _wall(body: Airfoil, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
-    """Return the nodes (cells + 1, 2) of the wall, from the lower corner of the base round to the upper one.
+    """Return the nodes (cells + 1, 2) of the wall, from the lower corner of the base to the upper.
 
-    At the corners cells have the length `first`, that of the first wake cells, and grow by `ratio`.
+    Cells at the corners have the length `first` and grow by `ratio`.
     """
     if sampling.spacing not in ("auto", "curvature"):
         problem = f"{sampling.spacing} spacing around a base, from which a C grid has two wakes"
@@ -157,9 +145,9 @@ def _base(
     every: tuple[int, ...],
     growth: float | None,
 ) -> tuple[Floats, tuple[str, ...]]:
-    """Return the nodes (m, 2) of the base from its lower corner; cells grow from `first` at both corners.
+    """Return the nodes (m, 2) of the base from its lower corner; cells grow from `first` at both.
 
-    With them is a note if the given number of `nodes` makes cells grow by more than `GROWTH`.
+    A note says if the given number of `nodes` makes cells grow by more than `GROWTH`.
     """
     a, b = corners
     width = float(np.hypot(*(b - a)))
@@ -200,10 +188,7 @@ def _fewest(width: float, first: float, ratio: float) -> int:
 
 
 def end_fractions(ends: Floats, cells: int) -> Floats:
-    """Return m rows of numbers (m, cells + 1) from 0 to 1; the first and the last step of each is in `ends`.
-
-    `ends` (m,) must be at most 1/cells.
-    """
+    """Return rows (m, cells + 1) from 0 to 1 with these first and last steps (m,), at most 1/cells."""
     out = np.zeros((len(ends), cells + 1))
     steps = np.empty(cells)
     for row, end in zip(out, ends.tolist(), strict=True):
@@ -233,10 +218,7 @@ def _wake_cells(
 
 
 def corner_cell(cells: float, first: float, chord: float) -> float:
-    """Return the length of the wall cells beside a base: `first`, or more if the wall has few `cells`.
-
-    The reason is that cells must grow from this length to the mean length within half of each side.
-    """
+    """Return the length of wall cells beside a base: `first`, or more if few `cells` must grow from it."""
     side = 0.5 * cells
     return max(first, chord / side * math.pow(_STEEP, -0.5 * side))
 
@@ -248,10 +230,7 @@ def _whole(cells: int, steps: tuple[int, ...]) -> int:
 
 
 def _slopes(wall: Floats, axis: Floats) -> tuple[tuple[float, float], bool]:
-    """Return the slopes of the lower and the upper wake line at their corners against the axis of the wake.
-
-    The second value is whether one of them is turned off its surface.
-    """
+    """Return the slopes of both wake lines against the axis, and whether one leaves its surface."""
     base = wall[-1] - wall[0]
     slopes, turned = [], False
     for surface, side, way in ((wall[1] - wall[0], base, -1.0), (wall[-2] - wall[-1], -base, 1.0)):
@@ -281,8 +260,7 @@ def _lines(
 ) -> tuple[Floats, Floats]:
     """Return the lower and the upper wake line (cells + 1, 2), from the base to the outlet.
 
-    There are `across` cells between the two lines. Behind the base, their height increases like that of the
-    cells beside the lines.
+    Behind the base, the `across` cells between them get higher as those beside the lines.
     """
     normal = np.array([-axis[1], axis[0]])
     corners = wall[0], wall[-1]

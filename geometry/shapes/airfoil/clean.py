@@ -1,6 +1,6 @@
 """From the points of an airfoil file to a clean closed polygon that starts at the trailing edge.
 
-Points are not moved, except that the two ends of a negligible trailing-edge gap are replaced by their mean.
+Points do not move, except that both ends of a negligible gap become their mean.
 """
 
 import math
@@ -15,9 +15,7 @@ from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import find_corners, turning
 
 SHARP_GAP = 2e-4
-"""Gap in chords below which a trailing edge counts as sharp: with a smaller limit, more grids of real files
-fold.
-"""
+"""Gap in chords below which a trailing edge is sharp; a smaller one folds more grids of real files."""
 SAME_POINT = 1e-5
 """Points nearer than this fraction of the extent count as one: their direction is noise of the last digit."""
 ON_BASE = 5e-5
@@ -33,10 +31,9 @@ _REACH = 8  # number of first and of last points among which the corners of a ba
 
 @dataclass(frozen=True, eq=False)
 class CleanSection:
-    """A clean closed polygon (n, 2), clockwise from the trailing edge.
+    """A clean closed polygon (n, 2), clockwise from a sharp trailing edge or the lower corner of a base.
 
-    A section with a sharp trailing edge begins at this edge. A section with a base begins at the lower corner
-    of its base and ends at the upper corner; the base is the segment from the last point to the first.
+    The base is the segment from the last point, its upper corner, to the first.
     """
 
     points: Floats
@@ -59,14 +56,11 @@ class CleanSection:
 
 
 def clean_section(points: Floats) -> CleanSection:
-    """Return the section described by `points` (n, 2), of either orientation.
+    """Return the section of `points` (n, 2), of either orientation.
 
-    The points are assumed to start at the trailing edge, unless the other end of the section is clearly
-    sharper. Repeated points and points on a straight base are removed; neighbouring points in the wrong order
-    are swapped.
-
-    Raises InputError: there are fewer than 4 distinct points, or no area; the ends are too far apart for a
-    trailing edge.
+    Points start at the trailing edge, unless the other end is clearly sharper. Repeated points and those on a
+    straight base are removed, neighbours in the wrong order swapped.
+    Raises InputError: fewer than 4 distinct points; no area; ends too far apart for a trailing edge.
     """
     raw = np.asarray(points, dtype=np.float64)
     extent = float(np.hypot(*np.ptp(raw, axis=0))) if len(raw) else 0.0
@@ -93,11 +87,7 @@ def clean_section(points: Floats) -> CleanSection:
 
 
 def _middle_of_base(ring: Floats, tolerance: float) -> int:
-    """Return the index of the first or last point if it lies within a straight base, or -1.
-
-    The points of `Curve` begin there and end at a corner of the base. Its corners may be rounded by short
-    pieces, each of which turns a little.
-    """
+    """Return the index of the first or last point if it is within a straight base, or -1."""
     if len(ring) <= 5:
         return -1
     turn = np.abs(turning(ring, closed=True))
@@ -112,7 +102,7 @@ def _middle_of_base(ring: Floats, tolerance: float) -> int:
 
 
 def _distinct(points: Floats, tolerance: float) -> Indices:
-    """Return indices of points that differ from their neighbours; both ends are kept, in either direction."""
+    """Return indices of points that differ from their neighbours, and of both ends."""
     n = len(points)
     if (np.hypot(*np.diff(points, axis=0).T) > tolerance).all():
         return np.arange(n)
@@ -127,10 +117,9 @@ def _distinct(points: Floats, tolerance: float) -> Indices:
 
 
 def _in_order(points: Floats, index: Indices) -> Indices:
-    """Return indices with neighbouring points swapped where they are clearly in the wrong order.
+    """Return indices, with neighbours swapped where this shortens the polygon by more than their distance.
 
-    That is where swapping shortens the polygon by more than their distance. On a line, 0 2 1 3 becomes
-    shorter by twice that; swapping the two sides of a thin edge hardly changes the length.
+    Swapping the two sides of a thin edge hardly changes the length.
     """
     order = index.copy()
     for _ in range(50):
@@ -193,7 +182,7 @@ def _starts_at_nose(ring: Floats, start: int, far_end: int, open_gap: bool) -> b
 
 
 def _has_base(ring: Floats, k: int) -> bool:
-    """Return whether two adjacent points near point k turn by more than 50 degrees each, 130 in total."""
+    """Return whether two adjacent points near point k turn by 50 degrees each, 130 in total."""
     n = len(ring)
     turn = -turning(ring, closed=True)
     near = np.arange(k - 3, k + 4) % n
@@ -202,7 +191,7 @@ def _has_base(ring: Floats, k: int) -> bool:
 
 
 def _sharpness(ring: Floats, end: int, far_end: int) -> tuple[float, float]:
-    """Return (p, t): behind ring[end] thickness grows like distance to the power p, and is t at 5 % chord.
+    """Return (p, t): behind ring[end] thickness grows like distance to the power p; t at 5 % chord.
 
     p is about 0.35 at a round leading edge, 0.85 at a wedge, 1.5 at a cusp, measured between 5 % and 20 %.
     """
@@ -221,7 +210,7 @@ def _sharpness(ring: Floats, end: int, far_end: int) -> tuple[float, float]:
 
 
 def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> CleanSection:
-    """Return the section of a polygon that starts at its trailing edge, which may or may not be a base."""
+    """Return the section of a polygon from its trailing edge, with or without a base."""
     gap = float(norms(ring[0] - ring[-1])) if open_gap else 0.0
     if open_gap and gap < SHARP_GAP * chord:
         ring = ring.copy()
@@ -252,10 +241,7 @@ def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> CleanS
 
 
 def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> CleanSection:
-    """Return the section with its corners.
-
-    A sharp leading edge is a corner; a round leading edge that is given by few points is not.
-    """
+    """Return the section with its corners; a round leading edge of few points is none."""
     edge = 0.5 * (ring[0] + ring[-1]) if blunt else ring[0]
     distance = norms(ring - edge)
     nose = int(np.argmax(distance))

@@ -1,16 +1,7 @@
-"""NACA four- and five-digit airfoils from their formulas.
+"""NACA four- and five-digit airfoils from their formulas (docs/reference/shapes.md).
 
-::
-
-    NACA 2412                      NACA 23012                          NACA 23112
-         | | '- thickness, %            | |||'- thickness, %                  |
-         | '--- its place, tenths       | ||'-- 0 simple mean line            '-- 1 reflexed
-         '----- camber, %               | |'--- position of the camber, 1 to 5 (twentieths)
-                                        '-'---- design lift coefficient in 3/20
-
-The thickness polynomial leaves a base of 0.0021 chords for a thickness of 1 chord; with ``-sharp`` after the
-digits its last coefficient is changed to close it. Jacobs, Ward and Pinkerton, NACA Report 460 (1933); Jacobs
-and Pinkerton, NACA Report 537 (1935); reflexed mean lines as in Ladson and Brooks, NASA TM X-3284 (1975).
+Jacobs, Ward and Pinkerton, NACA Report 460 (1933); Jacobs and Pinkerton, NACA Report 537 (1935); reflexed
+mean lines as in Ladson and Brooks, NASA TM X-3284 (1975).
 """
 
 import re
@@ -42,7 +33,7 @@ _KNOWN = "use four digits such as 2412 or five such as 23012, with -sharp for a 
 def naca(designation: str) -> Airfoil:
     """Return the airfoil of a designation such as ``2412``, ``23012`` or ``0012-sharp``, with chord 1.
 
-    Raises InputError: a designation that is not a known airfoil.
+    Raises InputError: not a known airfoil.
 
     >>> naca("2412").name, naca("0012").blunt, naca("0012-sharp").blunt
     ('NACA 2412', True, False)
@@ -54,7 +45,7 @@ def naca(designation: str) -> Airfoil:
 
 
 def naca_points(designation: str, n: int = POINTS) -> Floats:
-    """Return points (2 n - 1, 2) from the trailing edge over the upper side and back over the lower side.
+    """Return points (2 n - 1, 2) from the trailing edge over the upper side and back.
 
     Each surface has `n` points, with cosine spacing in x.
     """
@@ -71,8 +62,7 @@ def naca_points(designation: str, n: int = POINTS) -> Floats:
 def thickness(x: Floats, ratio: float, *, sharp: bool = False) -> Floats:
     """Return the half thickness in chords, at x (any shape, 0 to 1), of a section of thickness `ratio` t.
 
-    y = 5 t (0.2969 √x - 0.1260 x - 0.3516 x² + 0.2843 x³ - 0.1015 x⁴), with 0.1036 in place of 0.1015 if
-    sharp.
+    y = 5 t (0.2969 √x - 0.1260 x - 0.3516 x² + 0.2843 x³ - 0.1015 x⁴); sharp: 0.1036 in place of 0.1015.
     """
     last = -0.1036 if sharp else -0.1015
     inner = 0.2969 * np.sqrt(x) + x * (-0.1260 + x * (-0.3516 + x * (0.2843 + x * last)))

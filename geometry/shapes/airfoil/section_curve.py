@@ -27,9 +27,7 @@ _CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31
 DEPARTURE, FAR_OFF = 1e-3, 5e-3
 """Distance in chords beyond which the curve counts as another wall than the lines between its points."""
 RIPPLES = 10
-"""Smallest number of sign changes of the curvature of a section that ripples; designed sections have at most
-six.
-"""
+"""Fewest sign changes of the curvature that are ripples; designed sections have at most six."""
 _FLAT = 0.1  # curvature times chord below which its sign is ignored
 OBLIQUE = 30.0  # least angle in degrees between a base and the normal of the chord to be called oblique
 BESIDE = 0.01  # chords along the surfaces that count as next to the base
@@ -51,9 +49,8 @@ def section_curve(
 ) -> tuple[Curve, tuple[str, ...], InputError | None]:
     """Return the curve through the points of a section, notes, and an error if its surfaces cross.
 
-    Surfaces that touch or cross because of rounding are moved apart first
-    (`meshonet.geometry.shapes.airfoil.separate_surfaces`). Intervals in which the curve would cross itself
-    are made straight. If the surfaces still cross, the error is returned, not raised.
+    Surfaces that cross by rounding are moved apart (`shapes.airfoil.separate_surfaces`); intervals in which
+    the curve would cross itself are made straight.
     """
     notes: list[str] = []
     crossed = None
@@ -99,7 +96,7 @@ def moved_note(before: CleanSection, section: CleanSection) -> str:
 
 
 def sign_changes(curve: Curve, chord: float) -> int:
-    """Return how often the curvature of a section's curve changes its sign; corners do not count."""
+    """Return how often a section's curvature changes its sign, without corners."""
     points = curve.points
     steps = norms(np.concatenate([points[1:], points[:1]]) - points)
     bend = turning(points, closed=True) * (2.0 * chord) / (steps + np.concatenate([steps[-1:], steps[:-1]]))
@@ -121,7 +118,7 @@ def nose_radius(curve: Curve, middle: float, edge: Floats, chord: float) -> floa
 
 
 def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str, ...]:
-    """Return notes on an oblique base, ripples, and a curve that deviates from its points' polygon."""
+    """Return notes on an oblique base, ripples, and deviation from the polygon."""
     notes = _oblique_base(section, chord)
     count = sign_changes(curve, chord)
     if count >= RIPPLES:
@@ -131,13 +128,13 @@ def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str,
 
 
 def wall_departure(off: float) -> str:
-    """Return the note on a curve that deviates from its points' polygon by `off` chords."""
+    """Return the note on a curve that deviates from its polygon by `off` chords."""
     note = departure_note("the wall is a smooth curve", off, " chords")
     return Change(note) if off > FAR_OFF else note
 
 
 def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
-    """Return a note if the base is far from normal to the chord; a sharp section may end in one piece."""
+    """Return a note on a base, or a last piece of a surface, far from normal to the chord."""
     points, last = section.points, len(section.points) - 1
     others = [(last, "")] if section.blunt else [(1, "lower"), (last, "upper")]
     for other, side in others:
@@ -160,8 +157,8 @@ def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
 def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, fixed: bool) -> tuple[str, ...]:
     """Return a note if a base uses most nodes, or if cell sizes jump at its lower corner.
 
-    The upper corner is like the lower one. `wall` (n, 2) runs from the middle of the base, which has length
-    `base` and ends at `corner` (2,); the number of its nodes may be `fixed`.
+    `wall` (n, 2) runs from the middle of the base, which has length `base` and ends at `corner` (2,). The
+    number of its nodes may be `fixed`.
     """
     steps = norms(np.diff(wall, axis=0))
     arcs = np.cumsum(steps)
@@ -189,13 +186,13 @@ def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, fixed:
 
 
 def opened_note(height: float, thickness: float) -> str:
-    """Return the note on a trailing edge that is opened to a base; `height`, `thickness` are in chords."""
+    """Return the note on a trailing edge opened from `height` to `thickness`, in chords."""
     was = f"its trailing edge, {height:.2g} chords thick,"
     return Change(f"the outline is changed: {was} is opened to {thickness:g}")
 
 
 def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, option: TrailingEdge) -> tuple[str, ...]:
-    """Return a note on how `te` changed the base, or, without a base, that `option` changes nothing."""
+    """Return a note on how `te` changed the base, or that `option` changes nothing."""
     base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"
     if before.blunt and te == "wedge":
         length = float(np.hypot(*(after.trailing_edge - before.trailing_edge))) / before.chord
@@ -208,7 +205,7 @@ def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, option: Traili
 
 
 def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -> InputError:
-    """Return the error for surfaces that cross, with the place and the points around it."""
+    """Return the error for surfaces that cross."""
     n = len(section.points)
     ends = [section.index[k % n] for c in (crossing.first, crossing.second) for k in (c, c + 1)]
     a, b, c, d = (places[k] if places else f"point {k}" for k in ends)
@@ -223,9 +220,7 @@ def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -
 def farthest_arc(curve: Curve, point: Floats) -> float:
     """Return the arc length of the point of the curve that is farthest from `point`.
 
-    If several points are equally far (a flat nose), the middle of these is taken, so that a symmetric section
-    stays symmetric. Where the distance is a smooth function of arc length, the zero of its derivative is
-    found.
+    Of several (a flat nose) it is the middle, so that a symmetric section stays symmetric.
     """
     s = np.concatenate([curve.knots, 0.5 * (curve.knots + np.append(curve.knots[1:], curve.length))])
     s = np.sort(s)
@@ -249,6 +244,6 @@ def farthest_arc(curve: Curve, point: Floats) -> float:
 
 
 def _slopes(curve: Curve, point: Floats, arcs: Floats) -> Floats:
-    """Return half the derivative (m,) of the squared distance from `point` along the curve at `arcs` (m,)."""
+    """Return half the derivatives (m,) of the squared distance along the curve at `arcs` (m,)."""
     points, ways = curve.at(arcs) - point, curve.tangent(arcs)
     return np.asarray(points[:, 0] * ways[:, 0] + points[:, 1] * ways[:, 1])

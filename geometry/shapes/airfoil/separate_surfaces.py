@@ -1,9 +1,4 @@
-"""Moves apart surfaces that touch or cross because of rounded coordinates.
-
-Where a section is thinner than the digits of its file resolve, as at a cusped trailing edge, its surfaces
-coincide or cross. Points there are moved normal to the chord, each by half the missing thickness and at most
-`MOST` chords.
-"""
+"""Moves apart surfaces that touch or cross because of rounded coordinates, normal to the chord."""
 
 from collections.abc import Callable
 
@@ -17,11 +12,9 @@ _WEDGE = 0.02  # near an edge the least thickness is this fraction of the distan
 
 
 def moved_apart(ring: Floats, nose: int) -> Floats:
-    """Return a closed polygon (n, 2) with its surfaces moved apart, each by at most `MOST` chords.
+    """Return a closed polygon (n, 2) whose surfaces are 2 `MOST` chords apart, moved by at most `MOST`.
 
-    The surfaces are then 2 `MOST` chords apart, or less where points would have to move farther than `MOST`.
-    The polygon runs clockwise from the trailing edge. The trailing edge and the leading edge (the point with
-    index `nose`) do not move.
+    It runs clockwise from the trailing edge, which does not move, nor does the leading edge, index `nose`.
     """
     chord = float(np.hypot(*(ring[nose] - ring[0])))
 
@@ -32,10 +25,9 @@ def moved_apart(ring: Floats, nose: int) -> Floats:
 
 
 def wedged_apart(ring: Floats, nose: int, thin: float) -> Floats:
-    """Return a closed polygon (n, 2), thickened near its trailing edge to at least a wedge.
+    """Return a closed polygon (n, 2), near its trailing edge at least as thick as a wedge.
 
-    The wedge begins at the trailing edge, as thick as the base if there is one, and ends where its thickness
-    is `thin`.
+    The wedge is as thick as a base at first, and ends where it has the thickness `thin`.
     """
 
     def least(places: Floats, thickness: Floats) -> Floats:
@@ -48,10 +40,9 @@ def wedged_apart(ring: Floats, nose: int, thin: float) -> Floats:
 
 
 def _thickened(ring: Floats, nose: int, least: Callable[[Floats, Floats], Floats], most: float) -> Floats:
-    """Return a closed polygon with each surface moved by half the missing thickness, at most by `most`.
+    """Return a closed polygon with both surfaces moved by half the missing thickness, at most by `most`.
 
-    `least` returns the least thickness (n,) at ascending distances (n,) from the edge along the chord,
-    where the section has thickness (n,).
+    `least` has distances from the edge (n,) and thickness (n,) there, and returns the least thickness (n,).
     """
     edge = ring[0]
     axis = ring[nose] - edge

@@ -1,10 +1,7 @@
-"""Smoothing of sections whose coordinates are noisy or rounded.
+"""Smoothing of sections by least-squares splines of FITPACK, with the fewest knots within the tolerance.
 
-From corner to corner, points are replaced by those of a least-squares spline with the fewest knots with
-which it stays within the tolerance. FITPACK finds it, through SciPy (P. Dierckx, Curve and Surface Fitting
-with Splines, 1993). Knots are evenly spaced, half by the number of points and half in a parameter that runs
-faster near the nose, as the angle does in the theory of thin airfoils: in the arc length, a spline that
-smooths the sides would flatten the nose.
+Half of the density of knots follows the angle of the theory of thin airfoils; by arc length, a spline that
+smooths the sides would flatten the nose. P. Dierckx, Curve and Surface Fitting with Splines, 1993.
 """
 
 from __future__ import annotations
@@ -37,10 +34,8 @@ _HEAVIER = 2.0  # factor of the weight of an outlier in each round
 def smooth_ring(section: CleanSection, nose_radius: float, limit: float) -> tuple[Floats, float]:
     """Return the points (n, 2) of a section moved to splines within `limit`, and the largest displacement.
 
-    Corners are kept. A base is closed at its middle if it is narrower than `limit`, or if noise has swapped
-    its two ends. Where noise could close the section, it remains at least as thick as a wedge.
-
-    Raises InputError: SciPy is not installed.
+    Corners are kept. A base is closed if it is narrower than `limit`, or noise has swapped its ends. Where
+    noise could close the section, it stays as thick as a wedge. Raises InputError: SciPy is not installed.
     """
     unsmoothed = np.concatenate([section.points, section.points[: 0 if section.blunt else 1]])
     points = _closed(unsmoothed, limit)
@@ -71,7 +66,7 @@ def smoothing_notes(before: Airfoil, after: Airfoil, most: float) -> tuple[str, 
 
 
 def _closed(points: Floats, limit: float) -> Floats:
-    """Return points (n, 2) with the ends at their middle if they are near or noise swapped them."""
+    """Return points (n, 2) with near or swapped ends at their middle."""
     edge = 0.5 * (points[0] + points[-1])
     axis = edge - points[np.argmax(norms(points - edge))]
     _, across = along_and_across(points[[0, -1]] - edge, axis / np.hypot(*axis))
@@ -82,14 +77,14 @@ def _closed(points: Floats, limit: float) -> Floats:
 
 
 def _stands_out(points: Floats, k: int, limit: float) -> bool:
-    """Return whether a corner, or an end, is farther from the line between its neighbours than noise is."""
+    """Return whether a corner or end is farther off its neighbours' line than noise."""
     a, b = points[max(k - _BESIDE, 0)], points[min(k + _BESIDE, len(points) - 1)]
     _, across = along_and_across(points[k] - a, b - a)
     return k in (0, len(points) - 1) or bool(abs(across) > _THIN * limit * np.hypot(*(b - a)))
 
 
 def _fitted(points: Floats, nose: Floats, radius: float, limit: float) -> Floats:
-    """Return points (n, 2) on the spline with the fewest knots within `limit` of all, ends as they are."""
+    """Return points (n, 2) on the spline with the fewest knots within `limit`."""
     if len(points) < _FEWEST:
         return points
     u = _parameter(points, nose, radius)
@@ -104,18 +99,15 @@ def _fitted(points: Floats, nose: Floats, radius: float, limit: float) -> Floats
 
 
 def _parameter(points: Floats, nose: Floats, radius: float) -> Floats:
-    """Return the parameter (n,) of points: ds / sqrt(distance from the nose + radius / 2).
-
-    Around a parabola of this radius it is the angle of the theory of thin airfoils, up to a factor.
-    """
+    """Return ds / sqrt(distance from the nose + radius / 2), summed (n,): an angle around a parabola."""
     away = norms(0.5 * (points[1:] + points[:-1]) - nose)
     return np.append(0.0, np.cumsum(norms(points[1:] - points[:-1]) / np.sqrt(away + 0.5 * radius)))
 
 
 def _within(points: Floats, u: Floats, knots: Floats, limit: float) -> Floats | None:
-    """Return points (n, 2) on the least-squares spline with `knots`, or None if it is not within `limit`.
+    """Return points (n, 2) on the least-squares spline with `knots`, or None beyond `limit`.
 
-    A few points may be farther off at first: their weights are increased until they are not.
+    Weights of a few outliers increase until they are within it.
     """
     try:
         from scipy.interpolate import splev, splprep

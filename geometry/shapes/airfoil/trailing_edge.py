@@ -1,16 +1,7 @@
 """Blunt trailing edges with rounded corners, or closed by a wedge.
 
-::
-
-    upper surface ----.       The fillet, a cubic Bezier curve, leaves the surface at a distance `along` from
-                       )      the corner and meets the base at `across` from it: 0.9 of half the base, with an
-                       |      upper limit; `along` is twice that. The rest of the outline is unchanged.
-    base               |
-
-    upper surface ----.__          Both surfaces continue as cubics, tangentially, to a tip behind the middle
-                     |   `--.._    of the base, in the mean of their two directions: `REACH` base widths away,
-    base             |     __..--  or nearer if the surfaces would meet before. The given points stay, except
-    lower surface ---+--``         those on the base, which are dropped.
+A fillet is a cubic Bezier curve. The sides of a wedge are tangential cubics to a tip behind the middle of the
+base, `REACH` widths away, or nearer if the surfaces would meet before.
 """
 
 from __future__ import annotations
@@ -37,27 +28,21 @@ _CAP = 5e-3  # upper limit of the length that a fillet takes of the base, in cho
 _PULL = 0.6  # position of the fillet's control points between its ends (0) and the corner (1)
 _POINTS = 24  # points on a fillet
 _TURN = 0.5
-"""On half a base that turns by 90 degrees: number of nodes placed by turning, for each node placed by length.
-"""
+"""On half a base of 90 degrees: nodes placed by turning, for each node placed by length."""
 _MORE = 1.3  # factor up to which cells are added so that neither half has too few
 _NEAR = 0.1  # chords from the corner within which the surface gets new points, taken from the curve
 REACH = 4.0
-"""Largest length of the wedge in widths of the base: between parallel surfaces the tip has an angle of 14
-degrees.
-"""
+"""Largest length of the wedge in widths of the base: 14 degrees between parallel surfaces."""
 LEAST = 1.0
-"""Smallest length of the wedge in widths of the base: surfaces that would meet before are bent outwards, with
-corners.
-"""
+"""Smallest length of the wedge in widths of the base; surfaces that would meet before are bent."""
 _WEDGE_POINTS = 9  # on each side of a wedge
 
 
 def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
     """Return the curve of a blunt section with rounded corners of the base, and where the rounding ends.
 
-    The first point of the closed curve is the middle of the base, the second and the last are its corners.
-    The new curve also begins at the middle of the base. It is rounded from there up to the arc length that is
-    returned, and over the same length before its end.
+    Both closed curves begin at the middle of the base; second and last points of the given one are its
+    corners.
     """
     length, half = curve.length, float(curve.knots[1])
     across = min(_ACROSS * half, _CAP * chord)
@@ -77,13 +62,11 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
 
 
 def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
-    """Return, for each half of a rounded base, the distances (n + 1,) of its nodes from the middle.
+    """Return the distances (n + 1,) from the middle of the nodes on each half of a rounded base, lower first.
 
-    The first array is the lower half, the second the upper half. The node density follows length and turning
-    angle. The turning angle is averaged over two cells on each side, because the cells at the largest turns
-    are the most skewed cells of the grid. An oblique base turns more at one of its ends, and gets more cells
-    there. `curve` and `end` are results of `rounded_base`; `cells`, at least 3, is the number of cells of a
-    half that turns by 90 degrees.
+    Density follows length and the turn over four cells; cells at the largest turns are the most skewed of a
+    grid. `curve` and `end` are those of `rounded_base`; `cells`, at least 3, is the number on a half of 90
+    degrees.
     """
     per_cell = 64
     n = per_cell * cells  # on either half; index n is the middle
@@ -121,9 +104,8 @@ def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:
 def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> CleanSection:
     """Return a blunt section with a wedge added; the result starts at the tip of the wedge.
 
-    `tangents` are the unit directions (2,) of the lower and of the upper surface at the corners of the base.
-    The points of the wedge are not cleaned, because on a narrow base they may be closer than points of a
-    file.
+    `tangents` are unit directions (2,) of the lower and the upper surface at the base. Points of the wedge
+    may be closer than those of a file, and are not cleaned.
     """
     points, (lower, upper) = section.points, tangents
     gap = float(np.hypot(*(points[0] - points[-1])))
@@ -152,7 +134,7 @@ def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> Clean
 
 
 def opened_base(airfoil: Airfoil, gap: float) -> CleanSection:
-    """Return the section of an airfoil with a trailing edge opened to the thickness `gap`.
+    """Return an airfoil's section opened to a trailing edge of thickness `gap`.
 
     Points move in proportion to their distance from the nose.
     """

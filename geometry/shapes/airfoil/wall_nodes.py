@@ -19,15 +19,10 @@ if TYPE_CHECKING:
 def wall_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
     """Return the arc lengths (ni,) of the wall nodes, from 0 to the length of the curve.
 
-    Spacings: ``conformal`` has equal angles on the circle that the section is mapped to
-    (`meshonet.geometry.conformal.spacing`); ``tanh`` and ``auto`` stretch each side between the cell sizes at
-    its two ends; ``cosine`` is cosine spacing on each side, or, if a cell size is given or the trailing edge
-    is blunt, ``tanh`` with the same end cells; ``uniform`` has equal cells on each side; ``curvature`` uses
-    `meshonet.geometry.spacing.size_field`.
-
-    `le_spacing` and `te_spacing` are met within 1 %.
-
-    Raises InputError: too few nodes, or steps that cannot be met with them.
+    ``conformal`` has equal angles on the circle of the section's map (`geometry.conformal.spacing`); ``tanh``
+    and ``auto`` stretch each side between its end cells; ``cosine`` is ``tanh`` where a cell size is given or
+    the edge is blunt; ``curvature`` is that of `geometry.spacing.size_field`. `le_spacing` and `te_spacing`
+    are met within 1 %. Raises InputError: too few nodes, also for these steps.
     """
     least = 7 if body.half_base else 5
     if ni < least:

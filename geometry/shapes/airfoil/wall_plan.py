@@ -1,13 +1,7 @@
 """Wall cells of planned sizes around an airfoil: numbers of cells on base and sides, and sizes of end cells.
 
-::
-
-    half base | lower side                      nose   upper side                      | half base
-    0 ... lower ................................ nose ................................ upper ... length
-
-Both sides get the same number of cells. If the number of all cells is odd, one cell is centred on the nose,
-so that a symmetric section has symmetric nodes for every node count. The first cells of the sides are as
-large as the cells of the base next to them.
+Both sides get as many cells; of an odd number one is centred on the nose, so that nodes of a symmetric
+section are symmetric. First cells of the sides are as large as those of the base.
 """
 
 from __future__ import annotations
@@ -29,32 +23,24 @@ if TYPE_CHECKING:
     from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 _EDGE_STEP = 20.0
-"""Length of the cell at a sharp trailing edge, in mean cells, times the number of cells of a side. It is a
-compromise measured on O grids: with smaller cells grids are less orthogonal, with larger cells more grids
-fold at the edge.
+"""Length of the cell at a sharp trailing edge, in mean cells, times the number of cells of a side.
+
+Measured on O grids: with smaller cells grids are less orthogonal, with larger ones more grids fold there.
 """
 _EDGE_PART = 0.24
 """Length of the same cell for spacing by curvature, the default of marched grids, in mean cells."""
 _BASE_GROWTH = 1.06
-"""Largest ratio of neighbouring cells on a base. With it a base of 8 % of the chord has 46 of 400 cells,
-which also resolve its wake.
-"""
+"""Largest ratio of neighbouring cells on a base: 46 of 400 cells on one of 8 % of the chord."""
 _MANY = 192
-"""Smallest number of cells of a side for which half a base has at least four, so that a grid coarsened by
-four keeps the corners of the base.
-"""
+"""Fewest cells of a side for which half a base has four, which coarsening by four keeps."""
 _BASE_JUMP = 4.0
-"""Largest ratio of a prescribed cell beside a base to the cells on the base: at 16, cells at the corners
-fold.
-"""
+"""Largest ratio of a prescribed cell beside a base to those on it; at 16, cells fold."""
 _ROUND_CELLS = 14  # fewest cells on half a rounded base, if there are 16 times as many in total
 _CROWDED, _BASE_SHARE = 0.2, 0.3
 """Fraction of all cells on a base from which on they may grow by `_CROWDED_GROWTH`, and the largest one."""
 _CROWDED_GROWTH = 1.25
 _LEAN = math.radians(0.8)
-"""Largest angle between a surface at a corner of the base and its first cells, also in the grid coarsened
-by four.
-"""
+"""Largest angle between a surface at a corner of the base and its first cells, coarsened by four."""
 _COARSENED = 4  # two halvings, for a family of three grids
 _LONGER = 1.2  # factor on the length of that many cells, since they grow away from the corner
 _SMALLER = 64.0  # largest factor by which cells beside a base are smaller for this
@@ -104,8 +90,8 @@ def planned_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
 def arcs_to_corners(body: Airfoil, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
     """Return arc lengths (cells + 1,) of nodes from the lower to the upper corner of a base, by curvature.
 
-    Cells at the two corners have the length `first`, unless `te_spacing` is given, and grow by at most
-    `ratio`. Other corners of the curve are nodes.
+    Cells there have the length `first`, unless `te_spacing` is given, and grow by at most `ratio`. Corners
+    are nodes.
     """
     from meshonet.geometry.spacing.size_field import arcs_by_curvature
 
@@ -128,7 +114,7 @@ def arcs_to_corners(body: Airfoil, cells: int, sampling: Sampling, first: float,
 def half_of_base(cells: int, nodes: int, sampling: Sampling) -> int:
     """Return the number of cells on half of a base with `nodes` nodes.
 
-    Raises InputError: the middle of the base would not be a node, or too few cells are left for the sides.
+    Raises InputError: no node in the middle of the base; too few cells left for the sides.
     """
     base = nodes - 1
     if base % (2 * sampling.refined):
@@ -191,8 +177,8 @@ def _plan(body: Airfoil, cells: int, sampling: Sampling) -> WallCells:
 def _natural(body: Airfoil, plan: WallCells, sampling: Sampling) -> WallCells:
     """Return the plan with default cell sizes.
 
-    At the nose, that of equal angles on the circle of the section's conformal map, sqrt(r c / 2) π / n with
-    nose radius r and chord c; for a sharp edge see `_EDGE_STEP`.
+    At the nose it is sqrt(r c / 2) π / n, with nose radius r and chord c, as of equal angles on the conformal
+    map's circle; for a sharp edge see `_EDGE_STEP`.
     """
     n = plan.cells
     side = 0.5 * (body.upper_end - body.half_base)
@@ -208,7 +194,7 @@ def _natural(body: Airfoil, plan: WallCells, sampling: Sampling) -> WallCells:
 
 
 def _corner_step(body: Airfoil, step: float, cells: int, sampling: Sampling) -> float:
-    """Return the length of cells beside a base: `step`, or less where a surface turns away from its end."""
+    """Return the length of cells beside a base, at most `step`, less where a surface turns."""
     if sampling.spacing != "curvature" or body.base_is_round:
         return step
     coarser = min(_COARSENED, sampling.corner_steps(cells)[0]) if sampling.refined == 1 else sampling.refined
@@ -218,7 +204,7 @@ def _corner_step(body: Airfoil, step: float, cells: int, sampling: Sampling) -> 
 
 
 def _straight_length(body: Airfoil, corner: float, most: float) -> float:
-    """Return the length, at most `most`, over which a surface leans by at most `_LEAN` off its `corner`."""
+    """Return the length, at most `most`, over which a surface leans by `_LEAN` at most."""
     sign = 1.0 if corner == body.half_base else -1.0
     lengths = geomspace(most / _SMALLER, most, 65)
     tiny = 1e-6 * lengths[0]
@@ -232,10 +218,9 @@ def _straight_length(body: Airfoil, corner: float, most: float) -> float:
 def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tuple[int, float]:
     """Return the number of cells of half a base and the size of the one at the corner.
 
-    At least 2, more for wider bases (measured: with fewer cells fold at the corners, with more the solver is
-    slow), and as many as `step` requires with a growth of 15 % towards the middle. If the cell size next to
-    the base is `fixed`, cells on it are not much smaller: cells fold at a corner between very different
-    sizes.
+    The number is at least 2, more for wider bases, and as many as `step` needs with a growth of 15 %. With
+    fewer, cells fold at the corners; with more, the solver is slow. Beside a `fixed` size, cells are not much
+    smaller.
     """
     enough = cells >= 48
     fewest = 4 if cells >= _MANY else 2
@@ -252,10 +237,7 @@ def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tu
     from meshonet.geometry.spacing.tanh_law import TanhLaw
 
     def growth(half: int, step: float) -> float:
-        """Return the logarithm of the largest growth ratio, which occurs at the corner of the base.
-
-        The reason is that cell sizes vary like sech².
-        """
+        """Return the logarithm of the largest growth ratio, at the corner: sizes vary like sech²."""
         d = TanhLaw(2 * half * 0.5 * step / half_base, 2 * half * 0.5 * step / half_base).stretch
         return d / half * math.tanh(0.5 * d)
 
@@ -271,7 +253,7 @@ def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tu
 def _whole_base(
     half_base: float, step: float, count: int, half: int, steps: tuple[int, ...]
 ) -> tuple[int, float]:
-    """Return the cells of half a base, `count` or a multiple of a step, and the corner cell's size."""
+    """Return cells of half a base, `count` or a multiple of a step, and the corner cell."""
     every = first_within(steps, half)
     cells = count or max(every, round(half / every) * every)
     return cells, min(step, half_base / cells) if cells > 1 else half_base
