@@ -45,7 +45,7 @@ degrees in either direction about a point near the leading edge of the flap, in 
 25,000 cells with first-cell heights of 1e-5.
 
 - *deformations*: kind, with the number of deformations in brackets. Deformations whose new outline is not
-  valid are left out ({refused} here).
+  valid are left out; their number is {refused}.
 - *folded*: number of grids with folded cells and, if there are any, the largest number of folded cells in
   one grid.
 - *first cell*: largest relative change of a first-cell height, over all wall nodes and deformations.
@@ -62,8 +62,8 @@ degrees in either direction about a point near the leading edge of the flap, in 
 TAIL = """
 `meshonet deform` uses the method of Luke, Collins and Blades. Their paper has the exponents 3 and 5; for
 two-dimensional grids, as here, `deform` uses 2 and 4. To save time, `deform` combines distant boundary
-nodes in groups. If the result has folded cells, `deform` repeats the deformation in several steps; {steps}
-of the deformations needed several steps.
+nodes in groups. If the result has folded cells, `deform` repeats the deformation in several steps. Number
+of deformations that needed this: {steps}.
 """
 SEED = 20261122
 COLUMNS = "deformations", "method", "folded", "first cell", "angle", "CPU ms"

@@ -67,9 +67,9 @@ repeated with `--skip-existing`; *generated later* is the number of parts that i
 """
 TAIL = """
 Each worker writes its own part files, so grids are not transferred between processes; the main process
-lists the inputs and prints the reports. If a worker dies, only the part that it was writing is lost.
-Under MPI the command is not notified that a rank has died: mpiexec stops all ranks, and the parts written
-until then remain.
+lists the inputs and prints the reports. If a worker dies, only the part that it was writing is lost, and
+another worker makes it again. Under MPI the command is not notified that a rank has died: mpiexec stops
+all ranks, and the parts written until then remain.
 """
 POINTS = 161
 ENVIRONMENT = {

@@ -52,8 +52,7 @@ cube. The minimum of the objective is then 0, at the uniform grid, and the test 
 moves the nodes on the faces of a volume.
 
 The default functional (`--energy angles`) has another aim: angles near 90 degrees and gradual changes of
-edge length. It keeps the cell sizes that the compressed faces impose and does not penalise the aspect
-ratio.
+edge length. It keeps the cell sizes of the compressed faces and does not penalise large aspect ratios.
 """
 FIXED, SLIDING = "TMOP, boundary nodes fixed", "TMOP, boundary nodes slide in the faces"
 

@@ -33,7 +33,7 @@ from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
 
-HEAD = """# Layers
+HEAD = """# Grids in torch: accuracy and time
 
 <!-- made by python benchmarks/bench_layers.py; rows of about 32 grids with --count 32 -->
 
@@ -50,7 +50,8 @@ with sides rounded to single precision.
 - *Backward*: time of the gradient with respect to all boundary nodes, divided by the time of the grids.
 - Times are CPU times of one thread.
 
-Airfoils without a conformal map are left out: 2 of the first 1,000.
+The domains of `conformal` are airfoils, those of the other functions four-sided domains. Airfoils without
+a conformal map are left out: 2 of the first 1,000.
 """
 
 TAIL = """

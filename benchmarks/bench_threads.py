@@ -64,8 +64,8 @@ speed-up of about n.
 WHY = """
 Speed-ups are below 2 because one thread executes some parts alone: the computation of percentiles, and in
 hyperbolic marching the middle of each row of nodes, where the eliminations from both ends of the row meet.
-Where the memory limits the speed, a second thread gains less, because the cores share the memory
-bandwidth.
+Where the speed-up is about 1, one thread executes nearly everything. Where the memory limits the speed, a
+second thread gains less, because the cores share the memory bandwidth.
 """
 
 Work = Callable[[], Callable[[], object]]

@@ -56,8 +56,7 @@ spans downstream (sweep) and by -0.1 to 0.25 spans upwards (dihedral). The far f
 the first row of the table at 12 chords.
 
 - *valid*: grids without a folded cell, tested by the Jacobians at the eight corners of every cell and by
-  the Bezier coefficients of the Jacobian. If no valid grid were found, the command would end with an error
-  that names the place.
+  the Bezier coefficients of the Jacobian.
 - *first cell error*: largest relative error of the first-cell height over all wall nodes.
 - *minimum scaled Jacobian* (*SJ*), *largest angle* (of cell faces, degrees): median / worst over the
   grids.
