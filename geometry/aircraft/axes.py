@@ -16,19 +16,12 @@ FLAT = 1e-6
 
 @dataclass(frozen=True)
 class AircraftAxes:
-    """Which axes of a file point upwards and along the span; x is along the body.
+    """Which axes of a file point upwards and along the span; x is along the body."""
 
-    Parameters
-    ----------
-    up, span : int, optional
-        1 for y, 2 for z.
-    sign : int, optional
-        -1 if the file has the half with negative coordinates along the span, else 1.
-    """
-
+    # up, span: 1 for y, 2 for z
     up: int = 1
     span: int = 2
-    sign: int = 1
+    sign: int = 1  # -1 if the file has the half with negative span coordinates, else 1
 
     @property
     def description(self) -> str:

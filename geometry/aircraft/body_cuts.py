@@ -26,21 +26,14 @@ _ROUND = 1e-6  # largest difference of the radii of a cut through a body of revo
 
 @dataclass(frozen=True, eq=False)
 class BodyCuts:
-    """Cross-sections of the half z >= 0 of a body in planes of constant x.
+    """Cross-sections of the half z >= 0 of a body in planes of constant x."""
 
-    Parameters
-    ----------
-    x : (n,) ascending positions of the planes, without nose and tail.
-    points : (k, 2) y and z of each cut, from keel to crown.
-    nose, tail : x and y of the two ends.
-    notes : sentences about caps at ends that are not points.
-    """
-
-    x: Floats
-    points: tuple[Floats, ...]
+    x: Floats  # (n,) ascending positions of the planes, without nose and tail
+    points: tuple[Floats, ...]  # (k, 2) y and z of each cut, from keel to crown
+    # nose, tail: x and y of the two ends
     nose: tuple[float, float]
     tail: tuple[float, float]
-    notes: tuple[str, ...]
+    notes: tuple[str, ...]  # sentences about caps at ends that are not points
 
     @property
     def meridian(self) -> Floats | None:

@@ -9,28 +9,18 @@ from meshonet.geometry.aircraft.fin import Fin
 
 @dataclass(frozen=True)
 class AircraftDimensions:
-    """Dimensions of an aircraft and of its grid, in the unit of its file.
+    """Dimensions of an aircraft and of its grid, in the unit of its file."""
 
-    Parameters
-    ----------
-    length, width, height : of the body.
-    diameter : the larger of width and height.
-    spans : distance from tip to tip of each wing, by patch.
-    fins : y of the tip of each fin, by patch.
-    chord : longest chord of the first wing, the unit of first-cell height and far field.
-    first_cell : height of the cells at the walls.
-    far_field : radius of the outer boundary.
-    """
-
+    # length, width, height: extents of the body
     length: float
     width: float
     height: float
-    diameter: float
-    spans: dict[str, float]
-    fins: dict[str, float]
-    chord: float
-    first_cell: float
-    far_field: float
+    diameter: float  # the larger of width and height
+    spans: dict[str, float]  # distance from tip to tip of each wing, by patch
+    fins: dict[str, float]  # y of the tip of each fin, by patch
+    chord: float  # longest chord of the first wing, the unit of first-cell height and far field
+    first_cell: float  # height of the cells at the walls
+    far_field: float  # radius of the outer boundary
 
     kind: ClassVar = "aircraft"
 

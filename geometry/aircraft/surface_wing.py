@@ -29,17 +29,6 @@ class SurfaceWing:
     are cubic
     splines, with rising z along lines. The wing ends in a plane of constant z (`ending`).
 
-    Parameters
-    ----------
-    strips : tuple of array
-        (stations, n, 3) nodes of each strip.
-    height : float
-        z of the plane in which the wing ends.
-    name : str, optional
-        Name of the wing and of its patch.
-    notes : tuple of str, optional
-        Sentences on changes.
-
     Raises
     ------
     InputError
@@ -47,10 +36,10 @@ class SurfaceWing:
         thickness.
     """
 
-    strips: tuple[Floats, ...]
-    height: float
-    name: str = "wing"
-    notes: tuple[str, ...] = ()
+    strips: tuple[Floats, ...]  # (stations, n, 3) nodes of each strip
+    height: float  # z of the plane in which the wing ends
+    name: str = "wing"  # name of the wing and of its patch
+    notes: tuple[str, ...] = ()  # sentences on changes
     tip: Tip = "flat"
 
     def __post_init__(self) -> None:

@@ -22,69 +22,41 @@ Curve: TypeAlias = Callable[[Floats], Floats]
 
 @dataclass(frozen=True, eq=False)
 class CadEdge:
-    """A curve between two vertices.
+    """A curve between two vertices."""
 
-    Parameters
-    ----------
-    ends : indices of the first and the last vertex, equal for a closed curve or a pole.
-    points : function from parameters (n,), 0 to 1, to points (n, 3); None for a pole.
-    """
-
-    ends: tuple[int, int]
-    points: Curve | None
+    ends: tuple[int, int]  # indices of the first and the last vertex, equal for a closed curve or a pole
+    points: Curve | None  # function from parameters (n,), 0 to 1, to points (n, 3); None for a pole
 
 
 @dataclass(frozen=True, eq=False)
 class EdgeUse:
-    """An edge in the loop of a face.
+    """An edge in the loop of a face."""
 
-    Parameters
-    ----------
-    edge : index of the edge.
-    forward : whether the loop follows the edge's direction.
-    trace : function from parameters (n,) of the edge to coordinates (n, 2) on the face.
-    """
-
-    edge: int
-    forward: bool
-    trace: Curve
+    edge: int  # index of the edge
+    forward: bool  # whether the loop follows the edge's direction
+    trace: Curve  # function from parameters (n,) of the edge to coordinates (n, 2) on the face
 
 
 @dataclass(frozen=True, eq=False)
 class CadFace:
-    """A face with the loop around it.
+    """A face with the loop around it."""
 
-    Parameters
-    ----------
-    uses : edges of the outer loop, counter-clockwise in the coordinates on the face.
-    points : function from these coordinates (n, 2) to points (n, 3).
-    inside_out : whether the cross product of its derivatives points into the body.
-    holes : number of other loops.
-    """
-
-    uses: tuple[EdgeUse, ...]
-    points: Callable[[Floats], Floats]
-    inside_out: bool
-    holes: int
+    uses: tuple[EdgeUse, ...]  # edges of the outer loop, counter-clockwise in the coordinates on the face
+    points: Callable[[Floats], Floats]  # function from these coordinates (n, 2) to points (n, 3)
+    inside_out: bool  # whether the cross product of its derivatives points into the body
+    holes: int  # number of other loops
 
 
 @dataclass(frozen=True, eq=False)
 class CadModel:
-    """All faces of a CAD file; a `meshonet.geometry.shapes.shape.Shape` without four edges.
+    """All faces of a CAD file; a `meshonet.geometry.shapes.shape.Shape` without four edges."""
 
-    Parameters
-    ----------
-    vertices : (n, 3) positions in the unit of the file.
-    edges, faces : in the order of the file.
-    name : name of the file.
-    notes : sentences on changes.
-    """
-
-    vertices: Floats
+    vertices: Floats  # (n, 3) positions in the unit of the file
+    # edges, faces: in the order of the file
     edges: tuple[CadEdge, ...]
     faces: tuple[CadFace, ...]
-    name: str = ""
-    notes: tuple[str, ...] = ()
+    name: str = ""  # name of the file
+    notes: tuple[str, ...] = ()  # sentences on changes
 
     @property
     def size(self) -> float:

@@ -36,15 +36,10 @@ class MeridionalMap:
     """The conformal coordinate m' on a surface of revolution, dm' = dm / r.
 
     m is the arc length of the meridian, r the distance from the axis. Wu, NACA TN 2604 (1952).
-
-    Parameters
-    ----------
-    forward : function from s (n,) to m' (n,).
-    back : function from m' (n,) to s (n,).
     """
 
-    forward: CubicTable
-    back: CubicTable
+    forward: CubicTable  # function from s (n,) to m' (n,)
+    back: CubicTable  # function from m' (n,) to s (n,)
 
     @property
     def length(self) -> float:

@@ -21,32 +21,20 @@ _AXIAL = 0.2  # largest relative change of the radius along a blade whose solidi
 
 @dataclass(frozen=True)
 class RowDimensions:
-    """Dimensions of a row, lengths in the unit of its files.
+    """Dimensions of a row, lengths in the unit of its files."""
 
-    Parameters
-    ----------
-    blades : number of blades.
-    pitch : angle in degrees from blade to blade.
-    unit : name of the unit; empty if none was given.
-    axis : name of the axis from inlet to outlet, such as ``-z``; ``axis`` for another direction.
-    chord : chord at mid-span.
-    longest_chord : longest chord, the unit of first-cell heights and Reynolds numbers.
-    solidity : chord over the distance of neighbouring blades, at mid-span.
-    span : mean distance from hub to shroud at leading and trailing edge.
-    tip_gap, hub_gap : widths of the gaps.
-    leading_edge, trailing_edge : ends (x, r) of the edge, by ``hub`` and ``shroud``.
-    """
-
-    blades: int
-    pitch: float
-    unit: str
-    axis: str
-    chord: float
-    longest_chord: float
-    solidity: float
-    span: float
+    blades: int  # number of blades
+    pitch: float  # angle in degrees from blade to blade
+    unit: str  # name of the unit; empty if none was given
+    axis: str  # name of the axis from inlet to outlet, such as ``-z``; ``axis`` for another direction
+    chord: float  # chord at mid-span
+    longest_chord: float  # longest chord, the unit of first-cell heights and Reynolds numbers
+    solidity: float  # chord over the distance of neighbouring blades, at mid-span
+    span: float  # mean distance from hub to shroud at leading and trailing edge
+    # tip_gap, hub_gap: widths of the gaps
     tip_gap: float
     hub_gap: float
+    # leading_edge, trailing_edge: ends (x, r) of the edge, by ``hub`` and ``shroud``
     leading_edge: dict[str, tuple[float, float]]
     trailing_edge: dict[str, tuple[float, float]]
 

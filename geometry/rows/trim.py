@@ -25,16 +25,12 @@ _SAME = 1e-9  # of a curve's length
 
 @dataclass(frozen=True)
 class WallPlanes:
-    """The inlet and the outlet plane at which hub and casing are cut.
+    """The inlet and the outlet plane at which hub and casing are cut."""
 
-    Parameters
-    ----------
-    inlet, outlet : positions of the planes; None: at the ends of the curves.
-    axis, unit : names of the axis and of the unit, for messages.
-    """
-
+    # inlet, outlet: positions of the planes; None: at the ends of the curves
     inlet: Plane | None = None
     outlet: Plane | None = None
+    # axis, unit: names of the axis and of the unit, for messages
     axis: str = "x"
     unit: str = "m"
 

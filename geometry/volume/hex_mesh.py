@@ -29,18 +29,11 @@ POLE = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class HexMesh:
-    """Conforming hexahedra, in blocks.
+    """Conforming hexahedra, in blocks."""
 
-    Parameters
-    ----------
-    nodes : (n, 3) coordinates.
-    blocks : right-handed arrays (ni, nj, nk) of node indices.
-    connections : connections of the grid, without the periodic ones.
-    """
-
-    nodes: Floats
-    blocks: tuple[Indices, ...]
-    connections: tuple[Connection, ...]
+    nodes: Floats  # (n, 3) coordinates
+    blocks: tuple[Indices, ...]  # right-handed arrays (ni, nj, nk) of node indices
+    connections: tuple[Connection, ...]  # connections of the grid, without the periodic ones
 
     @property
     def cells(self) -> int:

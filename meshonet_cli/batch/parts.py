@@ -35,41 +35,25 @@ class PartTask:
 
 @dataclass
 class PartDone:
-    """Result for a part.
+    """Result for a part."""
 
-    Parameters
-    ----------
-    number, path : number of the part, and its file.
-    state : whether the file existed before.
-    lacks : number of failed members of a part that existed before.
-    members : a report or an error for each member.
-    """
-
+    # number, path: number of the part, and its file
     number: int
     path: str
-    state: State
-    lacks: int = 0
-    members: list[tuple[Item[Any], Timed | Exception]] = field(default_factory=list)
+    state: State  # whether the file existed before
+    lacks: int = 0  # number of failed members of a part that existed before
+    members: list[tuple[Item[Any], Timed | Exception]] = field(default_factory=list)  # reports or errors
 
 
 @dataclass(frozen=True)
 class PartMaker:
-    """Makes parts, in this process or another, and returns reports.
+    """Makes parts, in this process or another, and returns reports."""
 
-    Parameters
-    ----------
-    files : paths of the parts.
-    kind : grids or boundaries.
-    read : yields the content of an input.
-    work : computes the results of members.
-    skip_existing : whether an existing part with the same inputs and settings is kept.
-    """
-
-    files: PartFiles
-    kind: Kind
-    read: Callable[[Any], Iterator[Any]]
-    work: Make
-    skip_existing: bool = False
+    files: PartFiles  # paths of the parts
+    kind: Kind  # grids or boundaries
+    read: Callable[[Any], Iterator[Any]]  # yields the content of an input
+    work: Make  # computes the results of members
+    skip_existing: bool = False  # whether an existing part with the same inputs and settings is kept
 
     def __call__(self, part: PartTask) -> PartDone:
         """Make a part atomically.

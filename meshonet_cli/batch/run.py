@@ -34,30 +34,17 @@ def each(make: Callable[..., tuple[Any, Timed]], **settings: Any) -> Make:
 
 @dataclass(frozen=True)
 class BatchTask:
-    """What a command does with each input; `read` and `make` may run in other processes.
+    """What a command does with each input; `read` and `make` may run in other processes."""
 
-    Parameters
-    ----------
-    read : yields the content of an input.
-    make : computes the results of members.
-    kind : kind of the results.
-    put : writes to a path, in place of the format's own function.
-    nodes : approximate number of nodes of a result; None if unknown.
-    space : kind of blocks in space of all results; other formats are refused at once.
-    together : number of members that a process is given at a time.
-    assembled : sampling of the far field if all inputs form one domain.
-    joined : remedy if there are several inputs for an output of one result.
-    """
-
-    read: Callable[[Any], Iterator[Any]]
-    make: Make
-    kind: Kind = "grids"
-    put: Callable[[Path, Any], None] | None = None
-    nodes: int | None = None
-    space: Space | None = None
-    together: int = 1
-    assembled: Sampling | None = None
-    joined: str = ""
+    read: Callable[[Any], Iterator[Any]]  # yields the content of an input
+    make: Make  # computes the results of members
+    kind: Kind = "grids"  # kind of the results
+    put: Callable[[Path, Any], None] | None = None  # writes to a path, in place of the format's own function
+    nodes: int | None = None  # approximate number of nodes of a result; None if unknown
+    space: Space | None = None  # kind of blocks in space of all results; other formats are refused at once
+    together: int = 1  # number of members that a process is given at a time
+    assembled: Sampling | None = None  # sampling of the far field if all inputs form one domain
+    joined: str = ""  # remedy if there are several inputs for an output of one result
 
 
 @dataclass(frozen=True)

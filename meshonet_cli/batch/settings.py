@@ -16,21 +16,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Files:
-    """Output of a command, formats, and treatment of existing results.
+    """Output of a command, formats, and treatment of existing results."""
 
-    Parameters
-    ----------
-    output : a file, ``-``, or a pattern of files with ``{stem}``, ``{index}`` or ``{name}``.
-    from_format, to_format : formats that names and content do not determine.
-    skip_existing : whether inputs with existing results are skipped.
-    part_size : number of inputs in a part of a dataset.
-    """
-
-    output: str
+    output: str  # a file, ``-``, or a pattern of files with ``{stem}``, ``{index}`` or ``{name}``
+    # from_format, to_format: formats that names and content do not determine
     from_format: str | None = None
     to_format: str | None = None
-    skip_existing: bool = False
-    part_size: int | None = None
+    skip_existing: bool = False  # whether inputs with existing results are skipped
+    part_size: int | None = None  # number of inputs in a part of a dataset
 
 
 EngineName = Literal["processes", "dask", "mpi"]
@@ -40,18 +33,12 @@ EngineName = Literal["processes", "dask", "mpi"]
 class Engine:
     """Engine that works on the members of a batch.
 
-    Parameters
-    ----------
-    name : processes of this machine, a Dask cluster, or the ranks of MPI.
-    jobs : number of processes, or of workers of a local Dask cluster.
-    scheduler : address of an existing Dask scheduler.
-
     Raises InputError: settings that exclude each other.
     """
 
-    name: EngineName = "processes"
-    jobs: int = 1
-    scheduler: str | None = None
+    name: EngineName = "processes"  # processes of this machine, a Dask cluster, or the ranks of MPI
+    jobs: int = 1  # number of processes, or of workers of a local Dask cluster
+    scheduler: str | None = None  # address of an existing Dask scheduler
 
     def __post_init__(self) -> None:
         if self.scheduler is not None and self.name != "dask":

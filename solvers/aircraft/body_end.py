@@ -18,22 +18,13 @@ _POLE_CELL = 0.5  # ratio of the cells at nose and tail to the cells beside the 
 
 @dataclass(frozen=True, eq=False)
 class BodyEnd:
-    """The part of the grid at the nose or the tail, with equal s and theta on all levels.
+    """The part of the grid at the nose or the tail, with equal s and theta on all levels."""
 
-    Parameters
-    ----------
-    theta : (n,) angles of the lines from the pole, the tip of nose or tail.
-    core : block that covers the pole, in a plane with polar coordinates s, theta.
-    at : s at which the rows around the core end.
-    step : last step of s in these rows.
-    cells : number of cells from these rows to the next collar.
-    """
-
-    theta: Floats
-    core: PoleCore
-    at: float
-    step: float
-    cells: int
+    theta: Floats  # (n,) angles of the lines from the pole, the tip of nose or tail
+    core: PoleCore  # block that covers the pole, in a plane with polar coordinates s, theta
+    at: float  # s at which the rows around the core end
+    step: float  # last step of s in these rows
+    cells: int  # number of cells from these rows to the next collar
 
     @classmethod
     def of(cls, points: Points, sides: Sequence[Side]) -> Self:

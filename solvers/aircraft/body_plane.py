@@ -37,18 +37,11 @@ _EVEN = 1.6
 
 @dataclass(frozen=True, eq=False)
 class LevelPlan:
-    """Numbers of cells that are the same on all levels, and the ends of the body.
+    """Numbers of cells that are the same on all levels, and the ends of the body."""
 
-    Parameters
-    ----------
-    columns : plans of the columns, from nose to tail.
-    between : number of cells between each column and the next.
-    ends : nose and tail.
-    """
-
-    columns: tuple[ColumnPlan, ...]
-    between: tuple[int, ...]
-    ends: tuple[BodyEnd, BodyEnd]
+    columns: tuple[ColumnPlan, ...]  # plans of the columns, from nose to tail
+    between: tuple[int, ...]  # number of cells between each column and the next
+    ends: tuple[BodyEnd, BodyEnd]  # nose and tail
 
     @property
     def patches(self) -> int:

@@ -38,24 +38,14 @@ _SINE, _LINES = 0.15, 0.05  # smallest sines: in a collar, and between its lines
 
 @dataclass(frozen=True, eq=False)
 class Hole:
-    """The section of a wing on a level.
+    """The section of a wing on a level."""
 
-    Parameters
-    ----------
-    section : (n, 2) s and theta of its nodes.
-    scale : (2,) length in space of a unit of s, and of theta.
-    zeta : mean zeta of the section and of the level around it.
-    within : limits of s and theta for the collar.
-    fin : whether it belongs to a fin, whose middle is on the crown; half of its collar is in the grid.
-    below : theta at which the cells below the collar end.
-    """
-
-    section: Floats
-    scale: Floats
-    zeta: float
-    within: Within
-    fin: bool = False
-    below: float = 0.0
+    section: Floats  # (n, 2) s and theta of its nodes
+    scale: Floats  # (2,) length in space of a unit of s, and of theta
+    zeta: float  # mean zeta of the section and of the level around it
+    within: Within  # limits of s and theta for the collar
+    fin: bool = False  # whether it belongs to a fin, whose middle is on the crown: half of its collar is made
+    below: float = 0.0  # theta at which the cells below the collar end
 
     @cached_property
     def box(self) -> Rectangle:
@@ -78,28 +68,19 @@ class Hole:
 
 @dataclass(frozen=True, eq=False)
 class CollarPlan:
-    """Numbers of cells of a collar, the same on all levels.
+    """Numbers of cells of a collar, the same on all levels."""
 
-    Parameters
-    ----------
-    edge, nose : the counts of `corner_nodes`.
-    rows : cells across the collar.
-    low, top : cells from the keel to the collar, and from the collar to the crown or to a fin above.
-    first : height of the cells at the wing.
-    straight : weight of straight lines (`collar`).
-    sine : smallest sine of an angle in the collars.
-    widest : largest ratio of the cells above and below the collar to their mean.
-    """
-
+    # edge, nose: the counts of `corner_nodes`
     edge: int
     nose: int
-    rows: int
+    rows: int  # cells across the collar
+    # low, top: cells from the keel to the collar, and from the collar to the crown or to a fin above
     low: int
     top: int
-    first: float
-    straight: float = 0.0
-    sine: float = 1.0
-    widest: float = math.inf
+    first: float  # height of the cells at the wing
+    straight: float = 0.0  # weight of straight lines (`collar`)
+    sine: float = 1.0  # smallest sine of an angle in the collars
+    widest: float = math.inf  # largest ratio of the cells above and below the collar to their mean
 
 
 def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
@@ -139,21 +120,14 @@ def planned_collar(
 
 @dataclass(frozen=True, eq=False)
 class CollarLevel:
-    """The collar of a wing on one level, and the sizes of cells around it.
+    """The collar of a wing on one level, and the sizes of cells around it."""
 
-    Parameters
-    ----------
-    plan, hole : numbers of cells, and the section.
-    ring : (n, rows + 1, 2) nodes of the collar, in lengths in space.
-    between : smallest sine between its lines, before nodes are placed on them.
-    last : outermost cells in space: before, below, above and behind the section.
-    """
-
+    # plan, hole: numbers of cells, and the section
     plan: CollarPlan
     hole: Hole
-    ring: Floats
-    between: float
-    last: tuple[float, float, float, float]
+    ring: Floats  # (n, rows + 1, 2) nodes of the collar, in lengths in space
+    between: float  # smallest sine between its lines, before nodes are placed on them
+    last: tuple[float, float, float, float]  # outermost cells in space: before, below, above, behind
 
     @classmethod
     def of(cls, plan: CollarPlan, hole: Hole) -> CollarLevel:

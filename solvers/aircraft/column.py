@@ -43,16 +43,10 @@ _HALVINGS = 40  # steps of the bisection for the factor of the cells below a fin
 
 @dataclass(frozen=True, eq=False)
 class ColumnPlan:
-    """Numbers of cells of a column, the same on all levels.
+    """Numbers of cells of a column, the same on all levels."""
 
-    Parameters
-    ----------
-    collars : plans of the collars of the wing, of the fin, or of both, the fin last.
-    fin : whether there is a fin.
-    """
-
-    collars: tuple[CollarPlan, ...]
-    fin: bool
+    collars: tuple[CollarPlan, ...]  # plans of the collars of the wing, of the fin, or of both, the fin last
+    fin: bool  # whether there is a fin
 
     @property
     def patches(self) -> int:
@@ -111,19 +105,12 @@ def planned_column(
 
 @dataclass(frozen=True, eq=False)
 class ColumnLevel:
-    """A column on one level.
+    """A column on one level."""
 
-    Parameters
-    ----------
-    plan : numbers of cells.
-    levels : the collars: of the wing, of the fin, or of both, the fin last.
-    below : prescribed theta of the nodes from the keel to the first collar.
-    keel, crown : zeta there, if other than at the first collar.
-    """
-
-    plan: ColumnPlan
-    levels: tuple[CollarLevel, ...]
-    below: Floats | None = None
+    plan: ColumnPlan  # numbers of cells
+    levels: tuple[CollarLevel, ...]  # the collars: of the wing, of the fin, or of both, the fin last
+    below: Floats | None = None  # prescribed theta of the nodes from the keel to the first collar
+    # keel, crown: zeta there, if other than at the first collar
     keel: float | None = None
     crown: float | None = None
 

@@ -19,22 +19,13 @@ _SECTIONS = "give a first section inside the body, {}, and a last one outside"
 
 @dataclass(frozen=True, eq=False)
 class Loft:
-    """Lines along the span of a wing, one for each node around it.
+    """Lines along the span of a wing, one for each node around it."""
 
-    Parameters
-    ----------
-    line : function that returns the points (m, 3) of a line, by its number, at heights z (m,).
-    begin : (n,) heights at which the lines begin, inside the body.
-    tip : height at which all lines end, in a plane with a cant.
-    remedy : what the user should do if lines do not begin inside the body.
-    cant : angle in radians by which the normal of this plane is turned about x, from z to y.
-    """
-
-    line: Callable[[int, Floats], Floats]
-    begin: Floats
-    tip: float
-    remedy: str
-    cant: float = 0.0
+    line: Callable[[int, Floats], Floats]  # points (m, 3) of a line by number at heights z (m,)
+    begin: Floats  # (n,) heights at which the lines begin, inside the body
+    tip: float  # height at which all lines end, in a plane with a cant
+    remedy: str  # what the user should do if lines do not begin inside the body
+    cant: float = 0.0  # angle in radians by which the normal of this plane is turned about x, from z to y
 
 
 def section_loft(stack: Stack, unit: Floats) -> Loft:

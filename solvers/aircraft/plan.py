@@ -35,29 +35,18 @@ _ENOUGH = 1.15  # ratio of the number of cells to the requested number from whic
 
 @dataclass(frozen=True, eq=False)
 class AircraftPlan:
-    """A planned grid.
+    """A planned grid."""
 
-    Parameters
-    ----------
-    wings : lines along the span of each wing, from nose to tail; a fin follows the wing below it.
-    sections : (SAMPLES, n, 3) s, theta and zeta around each wing on the key levels.
-    holes : sections by column, wing and key level.
-    levels : numbers of cells that are the same on all levels.
-    tips : nodes (m, k, 3) of ring and core that fill the tip of each wing.
-    span, beyond : numbers of cells from the body to the tips, and beyond.
-    growth : largest growth ratio away from walls.
-    halves : 2 if the grid has both halves of the aircraft, else 1.
-    """
-
-    wings: tuple[WingLines, ...]
-    sections: tuple[Floats, ...]
-    holes: tuple[tuple[tuple[Hole, ...], ...], ...]
-    levels: LevelPlan
-    tips: tuple[tuple[Floats, Floats], ...]
+    wings: tuple[WingLines, ...]  # lines of each wing, from nose to tail; a fin follows the wing below it
+    sections: tuple[Floats, ...]  # (SAMPLES, n, 3) s, theta and zeta around each wing on the key levels
+    holes: tuple[tuple[tuple[Hole, ...], ...], ...]  # sections by column, wing and key level
+    levels: LevelPlan  # numbers of cells that are the same on all levels
+    tips: tuple[tuple[Floats, Floats], ...]  # nodes (m, k, 3) of ring and core that fill the tip of each wing
+    # span, beyond: numbers of cells from the body to the tips, and beyond
     span: int
     beyond: int
-    growth: float
-    halves: int
+    growth: float  # largest growth ratio away from walls
+    halves: int  # 2 if the grid has both halves of the aircraft, else 1
 
     @classmethod
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> Self:

@@ -48,22 +48,13 @@ class EvenAround(Around):
 
 @dataclass(frozen=True, eq=False)
 class WingLines:
-    """Lines of a wing along its span.
+    """Lines of a wing along its span."""
 
-    Parameters
-    ----------
-    loft : the lines, which begin inside the body.
-    name : name of the wing.
-    roots : (n,) heights z at which the lines leave the body.
-    notes : sentences on changes of the wing.
-    fin : whether this is a fin, with its span along y and only the lines of its half z >= 0.
-    """
-
-    loft: Loft
-    name: str
-    roots: Floats
-    notes: tuple[str, ...]
-    fin: bool = False
+    loft: Loft  # the lines, which begin inside the body
+    name: str  # name of the wing
+    roots: Floats  # (n,) heights z at which the lines leave the body
+    notes: tuple[str, ...]  # sentences on changes of the wing
+    fin: bool = False  # whether this is a fin, with its span along y and only the lines of its half z >= 0
 
     @classmethod
     def of(

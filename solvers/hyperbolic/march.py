@@ -57,20 +57,12 @@ AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a le
 
 @dataclass(frozen=True)
 class MarchLayers:
-    """Rows of cells that a march makes.
+    """Rows of cells that a march makes."""
 
-    Parameters
-    ----------
-    first : first-cell height, in the unit of the boundary.
-    growth : largest growth ratio; None: not limited.
-    free : whether their number follows from `growth`; it is then a multiple of `multiple`.
-    constant : number of rows with the first-cell height.
-    """
-
-    first: float
-    growth: float | None
-    free: bool
-    constant: int
+    first: float  # first-cell height, in the unit of the boundary
+    growth: float | None  # largest growth ratio; None: not limited
+    free: bool  # whether their number follows from `growth`; it is then a multiple of `multiple`
+    constant: int  # number of rows with the first-cell height
     multiple: int = 1
 
 

@@ -16,18 +16,11 @@ _FROM = -0.25  # least place: u = 0, the leading edge, is between others
 
 @dataclass(frozen=True, eq=False)
 class ChannelLines:
-    """Mean lines across the channel between two blades, normal to the outer edges of layers.
+    """Mean lines across the channel between two blades, normal to the outer edges of layers."""
 
-    Parameters
-    ----------
-    upper : (n,) places u (see `SectionPlane`) on the upper side of a blade, from 0 to 0.5.
-    lower : (n,) 1 - u of the opposite places, on the lower side of the next blade.
-    slant : (n,) tangent of the angle to the normal if an end moves by 1 in u; 0 where nothing is opposite.
-    """
-
-    upper: Floats
-    lower: Floats
-    slant: Floats
+    upper: Floats  # (n,) places u (see `SectionPlane`) on the upper side of a blade, from 0 to 0.5
+    lower: Floats  # (n,) 1 - u of the opposite places, on the lower side of the next blade
+    slant: Floats  # (n,) tangent of the lean if an end moves by 1 in u; 0 where nothing is opposite
 
     @classmethod
     def of(cls, planes: Sequence[SectionPlane]) -> ChannelLines:

@@ -22,33 +22,21 @@ _ROUNDS = 4
 
 @dataclass(frozen=True, eq=False)
 class GapEnds:
-    """Nodes inside the outline of the blade at both ends of a gap.
+    """Nodes inside the outline of the blade at both ends of a gap."""
 
-    Parameters
-    ----------
-    fill : numbering of the nodes; those of the outline come first.
-    low, high : (n, 2) s and theta at the lower and at the upper end.
-    """
-
-    fill: GapFill
+    fill: GapFill  # numbering of the nodes; those of the outline come first
+    # low, high: (n, 2) s and theta at the lower and at the upper end
     low: Floats
     high: Floats
 
 
 @dataclass(frozen=True, eq=False)
 class GapBlocks:
-    """The blocks in a gap, which fill the outline of the blade.
+    """The blocks in a gap, which fill the outline of the blade."""
 
-    Parameters
-    ----------
-    fill : numbering of the nodes; those of the outline come first.
-    outline : (k,) indices of the outline's nodes in a section of the row.
-    space : (levels, n, 3) x, y, z.
-    """
-
-    fill: GapFill
-    outline: Indices
-    space: Floats
+    fill: GapFill  # numbering of the nodes; those of the outline come first
+    outline: Indices  # (k,) indices of the outline's nodes in a section of the row
+    space: Floats  # (levels, n, 3) x, y, z
 
 
 def gap_ends(

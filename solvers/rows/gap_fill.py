@@ -44,16 +44,10 @@ UNEVEN = 3.3, 3.9
 
 @dataclass(frozen=True, eq=False)
 class GapFill:
-    """Blocks inside the outline of a blade.
+    """Blocks inside the outline of a blade."""
 
-    Parameters
-    ----------
-    outline : (k,) indices of nodes of the given outline, clockwise from side 0; they come first in `layout`.
-    layout : the five blocks, the core last.
-    """
-
-    outline: Indices
-    layout: Layout
+    outline: Indices  # (k,) indices in the given outline, clockwise from side 0; first nodes of `layout`
+    layout: Layout  # the five blocks, the core last
 
 
 def outline_sides(count: int, lead: int, aside: int) -> list[Indices]:

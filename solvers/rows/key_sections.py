@@ -38,29 +38,17 @@ STEEP, MARGIN = 3.0, 0.93
 
 @dataclass(frozen=True, eq=False)
 class SectionPlan:
-    """Data that all sections of a row share.
+    """Data that all sections of a row share."""
 
-    Parameters
-    ----------
-    growth : largest ratio of neighbouring cells.
-    columns : (k, rows + 1) nodes of the layers, clockwise, each column from the blade outwards.
-    outward : (k,) next node beyond each column.
-    ends : nodes at inlet and outlet.
-    held : (n,) mask of nodes in layers or at inlet and outlet.
-    moves : displacements of all other nodes from those of the held ones.
-    places : places u (see `SectionPlane`) of the first nodes of columns.
-    wake : theta at the outlet minus theta at the trailing edge along a straight wake, at half the height; and
-        its
-        derivative by the height.
-    """
-
-    growth: float
-    columns: Indices
-    outward: Indices
-    ends: tuple[Indices, Indices]
-    held: Bools
-    moves: HarmonicMoves
-    places: SpanPlaces
+    growth: float  # largest ratio of neighbouring cells
+    columns: Indices  # (k, rows + 1) nodes of the layers, clockwise, each column from the blade outwards
+    outward: Indices  # (k,) next node beyond each column
+    ends: tuple[Indices, Indices]  # nodes at inlet and outlet
+    held: Bools  # (n,) mask of nodes in layers or at inlet and outlet
+    moves: HarmonicMoves  # displacements of all other nodes from those of the held ones
+    places: SpanPlaces  # places u (see `SectionPlane`) of the first nodes of columns
+    # theta at the outlet minus theta at the trailing edge along a straight wake, at half the height; and its
+    # derivative by the height
     wake: tuple[float, float]
 
     def bent(self, plane: SectionPlane, nodes: Floats) -> Floats:
@@ -74,18 +62,11 @@ class SectionPlan:
 
 @dataclass(frozen=True, eq=False)
 class LayerColumns:
-    """Columns of the layers of a section, before their final nodes are distributed.
+    """Columns of the layers of a section, before their final nodes are distributed."""
 
-    Parameters
-    ----------
-    walls : (k,) arc lengths on the blade at which they begin.
-    lines : (k, m, 2) nodes along them.
-    ends : (k, 2) points on the outer edge of the layers at which they end.
-    """
-
-    walls: Floats
-    lines: Floats
-    ends: Floats
+    walls: Floats  # (k,) arc lengths on the blade at which they begin
+    lines: Floats  # (k, m, 2) nodes along them
+    ends: Floats  # (k, 2) points on the outer edge of the layers at which they end
 
     @classmethod
     def of(cls, plane: SectionPlane, places: Floats) -> LayerColumns:
@@ -98,36 +79,21 @@ class LayerColumns:
 
 @dataclass(frozen=True, eq=False)
 class KeySection:
-    """The nodes of a section.
+    """The nodes of a section."""
 
-    Parameters
-    ----------
-    plane : the section as a plane cascade.
-    layout : its blocks in (m', theta), with the domain of the middle section.
-    places : (k,) places u of the first nodes of columns.
-    """
-
-    plane: SectionPlane
-    layout: Layout
-    places: Floats
+    plane: SectionPlane  # the section as a plane cascade
+    layout: Layout  # its blocks in (m', theta), with the domain of the middle section
+    places: Floats  # (k,) places u of the first nodes of columns
 
 
 @dataclass(frozen=True, eq=False)
 class Beginning:
-    """The middle section, and the data for all others.
+    """The middle section, and the data for all others."""
 
-    Parameters
-    ----------
-    plan : data that all sections share.
-    columns : columns of the layers of each section; None for the middle one.
-    middle : the middle section.
-    following : makers of the sections towards the hub, and towards the casing.
-    """
-
-    plan: SectionPlan
-    columns: Sequence[LayerColumns | None]
-    middle: KeySection
-    following: tuple[NextSections, NextSections]
+    plan: SectionPlan  # data that all sections share
+    columns: Sequence[LayerColumns | None]  # columns of the layers of each section; None for the middle one
+    middle: KeySection  # the middle section
+    following: tuple[NextSections, NextSections]  # makers of the sections towards hub and casing
 
 
 def planned(

@@ -23,24 +23,14 @@ _IN_GAP = 5  # number of heights in a gap at which lines are measured
 
 @dataclass(frozen=True, eq=False)
 class NodeGroup:
-    """Some nodes of a row.
+    """Some nodes of a row."""
 
-    Parameters
-    ----------
-    row : the row.
-    zones : zones of the span, from hub to casing.
-    ids : (m,) indices of the nodes.
-    lines : s and theta of the nodes as functions of the height.
-    around : places u at which columns of layers begin, as functions of the height; None without columns.
-    first : height of first cells at the blade.
-    """
-
-    row: Row
-    zones: Sequence[Zone]
-    ids: Indices
-    lines: SpanLines
-    around: SpanLines | None
-    first: float
+    row: Row  # the row
+    zones: Sequence[Zone]  # zones of the span, from hub to casing
+    ids: Indices  # (m,) indices of the nodes
+    lines: SpanLines  # s and theta of the nodes as functions of the height
+    around: SpanLines | None  # places u of columns of layers, by height; None without columns
+    first: float  # height of first cells at the blade
 
     @property
     def columns(self) -> int:

@@ -28,22 +28,13 @@ _STEP = 1e-5  # steps of u and of the height from which tangents of the blade ar
 
 @dataclass(frozen=True, eq=False)
 class Rise:
-    """Displacements of nodes in the layers next to one end of the blade.
+    """Displacements of nodes in the layers next to one end of the blade."""
 
-    Parameters
-    ----------
-    end : height at which the blade ends.
-    up : 1 if the gap is above it, -1 below.
-    gap : height of the gap.
-    deep : (k,) height below the end at which displacements of each column become 0.
-    moves : (k, 3) displacement in space of the node of each column at the end.
-    """
-
-    end: float
-    up: float
-    gap: float
-    deep: Floats
-    moves: Floats
+    end: float  # height at which the blade ends
+    up: float  # 1 if the gap is above it, -1 below
+    gap: float  # height of the gap
+    deep: Floats  # (k,) height below the end at which displacements of each column become 0
+    moves: Floats  # (k, 3) displacement in space of the node of each column at the end
 
     @classmethod
     def of(cls, row: Row, zone: Zone, blade: Zone, around: SpanLines, lines: SpanLines) -> Rise:

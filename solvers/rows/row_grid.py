@@ -84,17 +84,12 @@ def turned_by(angle: float) -> Motion:
 
 @dataclass(frozen=True, eq=False)
 class ZoneSection:
-    """The blocks on one level of a zone.
+    """The blocks on one level of a zone."""
 
-    Parameters
-    ----------
-    plane, layout : those around the blade, as a planar grid and as a layout.
-    inside : those inside its outline, in a gap.
-    """
-
+    # plane, layout: those around the blade, as a planar grid and as a layout
     plane: Grid
     layout: Layout
-    inside: GapBlocks | None
+    inside: GapBlocks | None  # those inside its outline, in a gap
 
 
 def _joined(

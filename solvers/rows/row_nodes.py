@@ -9,13 +9,7 @@ from meshonet.geometry.arrays import Floats
 
 @dataclass(frozen=True, eq=False)
 class RowNodes:
-    """Nodes of all levels.
+    """Nodes of all levels."""
 
-    Parameters
-    ----------
-    space : (levels, n, 3) x, y, z.
-    beside : (levels, k, 2, 3) s, theta, h of each node of the blade, clockwise, and of the node next to it.
-    """
-
-    space: Floats
-    beside: Floats
+    space: Floats  # (levels, n, 3) x, y, z
+    beside: Floats  # (levels, k, 2, 3) s, theta, h of the blade's nodes, clockwise, and of those next to them

@@ -41,19 +41,12 @@ class SectionPlane:
     A place u around the blade is 0 at the leading edge, 0.5 at the trailing edge after the upper side, and 1
     after the
     lower side.
-
-    Parameters
-    ----------
-    height : height h in the channel, 0 at the hub to 1 at the casing.
-    map : map between s and m'.
-    cascade : the cascade in (m', theta).
-    places : (n,) ascending places u of the points of the cascade's blade.
     """
 
-    height: float
-    map: MeridionalMap
-    cascade: Cascade
-    places: Floats
+    height: float  # height h in the channel, 0 at the hub to 1 at the casing
+    map: MeridionalMap  # map between s and m'
+    cascade: Cascade  # the cascade in (m', theta)
+    places: Floats  # (n,) ascending places u of the points of the cascade's blade
 
     @classmethod
     def of(cls, row: Row, height: float, first: float, growth: float, share: float = 1.0) -> SectionPlane:

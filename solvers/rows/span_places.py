@@ -27,16 +27,10 @@ _NEAR_EDGE = 0.1  # places from an edge up to which corners are its own
 
 @dataclass(frozen=True, eq=False)
 class SpanPlaces:
-    """Places u (see `SectionPlane`) of nodes clockwise around a blade, from hub to casing.
+    """Places u (see `SectionPlane`) of nodes clockwise around a blade, from hub to casing."""
 
-    Parameters
-    ----------
-    ends : places u (k,) at the hub and at the casing.
-    gaps : whether the blade ends there in a gap; then each node at u has one at 1 - u.
-    """
-
-    ends: tuple[Floats, Floats]
-    gaps: tuple[bool, bool]
+    ends: tuple[Floats, Floats]  # places u (k,) at the hub and at the casing
+    gaps: tuple[bool, bool]  # whether the blade ends there in a gap; then each node at u has one at 1 - u
 
     @classmethod
     def of(

@@ -118,16 +118,10 @@ def _fourth(values: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Spacing:
-    """Results of `two_sided` in lengths of the line, tabulated for a range of lengths.
+    """Results of `two_sided` in lengths of the line, tabulated for a range of lengths."""
 
-    Parameters
-    ----------
-    lengths : shortest and longest line.
-    table : (cells + 1, m) relative arc lengths at m equally spaced lengths.
-    """
-
-    lengths: tuple[float, float]
-    table: Floats
+    lengths: tuple[float, float]  # shortest and longest line
+    table: Floats  # (cells + 1, m) relative arc lengths at m equally spaced lengths
 
     @classmethod
     def of(cls, lengths: tuple[float, float], ends: Ends, growth: float, cells: int) -> Spacing:
@@ -149,16 +143,10 @@ class Spacing:
 
 @dataclass(frozen=True, eq=False)
 class LineArcs:
-    """Arc lengths along n lines, by their parameter from 0 to 1.
+    """Arc lengths along n lines, by their parameter from 0 to 1."""
 
-    Parameters
-    ----------
-    lengths : (n,) lengths of the lines.
-    ahead : parameter minus relative arc length, by relative arc length.
-    """
-
-    lengths: Floats
-    ahead: SpanLines
+    lengths: Floats  # (n,) lengths of the lines
+    ahead: SpanLines  # parameter minus relative arc length, by relative arc length
 
     @classmethod
     def through(cls, samples: Floats) -> LineArcs:

@@ -21,21 +21,14 @@ GAP_ROWS = 17
 
 @dataclass(frozen=True)
 class Zone:
-    """A part of the span: a gap, or the blade.
+    """A part of the span: a gap, or the blade."""
 
-    Parameters
-    ----------
-    low, high : heights in the channel, 0 to 1.
-    ends : first and last cells along the span, in the unit of the row.
-    cells : number of cells along the span.
-    gap : whether the zone is a gap.
-    """
-
+    # low, high: heights in the channel, 0 to 1
     low: float
     high: float
-    ends: tuple[float, float]
-    cells: int
-    gap: bool
+    ends: tuple[float, float]  # first and last cells along the span, in the unit of the row
+    cells: int  # number of cells along the span
+    gap: bool  # whether the zone is a gap
 
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:

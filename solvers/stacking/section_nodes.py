@@ -31,23 +31,14 @@ LEAST_AROUND, MOST_AROUND = 33, 10_001  # nodes
 
 @dataclass(frozen=True)
 class Around:
-    """Distribution of nodes around every section.
-
-    Parameters
-    ----------
-    cells : number of cells on each side.
-    base : even number of cells on the base, the blunt trailing edge.
-    gap : smallest height of the base in chords.
-    edge : length of the cells next to the base in chords; None: 1.2 cells of the base.
-    nose : length of the cells at the nose in chords; None: by curvature (`nose_cell`).
-    """
+    """Distribution of nodes around every section."""
 
     follows_nose: ClassVar[bool] = True
-    cells: int
-    base: int
-    gap: float
-    edge: float | None = None
-    nose: float | None = None
+    cells: int  # number of cells on each side
+    base: int  # even number of cells on the base, the blunt trailing edge
+    gap: float  # smallest height of the base in chords
+    edge: float | None = None  # length of the cells next to the base in chords; None: 1.2 cells of the base
+    nose: float | None = None  # length of the cells at the nose in chords; None: by curvature (`nose_cell`)
 
     @property
     def nodes(self) -> int:

@@ -35,18 +35,11 @@ _NOSE, _EDGE = 0.35, 0.3  # and at least so many thicknesses of the section ther
 
 @dataclass(frozen=True)
 class Cap:
-    """Settings of the cap of a tip.
+    """Settings of the cap of a tip."""
 
-    Parameters
-    ----------
-    short : number of cells on each side of trailing edge and nose that face a short side of the core.
-    rows : number of rows of the ring; they grow by one ratio.
-    bulge : height of the cap in local half thicknesses; 0 is flat.
-    """
-
-    short: int = 4
-    rows: int = ROWS
-    bulge: float = 1.0
+    short: int = 4  # cells on each side of trailing edge and nose that face a short side of the core
+    rows: int = ROWS  # number of rows of the ring; they grow by one ratio
+    bulge: float = 1.0  # height of the cap in local half thicknesses; 0 is flat
 
     def cells(self, nodes: int) -> int:
         """Return the number of cells, for `nodes` nodes around a section with the repeated first node."""

@@ -31,18 +31,11 @@ _NEAR = 1e-3  # part of the last panel over which the slope of grid lines at the
 
 @dataclass(frozen=True)
 class WingSurface:
-    """Node counts of the surface of a wing, checked on construction.
+    """Node counts of the surface of a wing, checked on construction."""
 
-    Parameters
-    ----------
-    around : odd number of nodes around a section, with the repeated first node.
-    span : number of nodes from the root to the last section.
-    base : smallest height of trailing edges in chords.
-    """
-
-    around: int = DEFAULT_AROUND
-    span: int = DEFAULT_SPAN
-    base: float = GAP
+    around: int = DEFAULT_AROUND  # odd number of nodes around a section, with the repeated first node
+    span: int = DEFAULT_SPAN  # number of nodes from the root to the last section
+    base: float = GAP  # smallest height of trailing edges in chords
 
     def __post_init__(self) -> None:
         if not LEAST_SPAN <= self.span <= MOST_SPAN:

@@ -40,16 +40,10 @@ class FiveBlocks(NamedTuple):
 
 @dataclass(frozen=True)
 class CrossSection:
-    """A closed curve whose inside is divided.
+    """A closed curve whose inside is divided."""
 
-    Parameters
-    ----------
-    arcs : nodes on four sides that meet at corners of blocks.
-    first : first-cell height at the wall; None: about that of the core's cells.
-    """
-
-    arcs: Sides
-    first: float | None = None
+    arcs: Sides  # nodes on four sides that meet at corners of blocks
+    first: float | None = None  # first-cell height at the wall; None: about that of the core's cells
 
     def inner(self, core: float, radial: float) -> list[Floats]:
         """Return the nodes (n, 2) on the four sides of a core with this size and alignment."""

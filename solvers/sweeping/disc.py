@@ -23,23 +23,16 @@ _TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1,
 class Disc:
     """A circle and its division into cells.
 
-    Parameters
-    ----------
-    radius : radius in any unit.
-    cells : approximate number of cells; None: as few as `around` permits.
-    first_cell : first-cell height at the wall; None: about that of cells in the middle.
-    growth : largest ratio of neighbouring cells; None: 1.2.
-    around : number of cells along the circle, a multiple of four. None: as `cells` requires, at least 84; or
-        `AROUND`.
-
     Raises InputError: a value out of range; `around` is no multiple of four; both `cells` and `around` are
     given.
     """
 
-    radius: float
-    cells: int | None = None
-    first_cell: float | None = None
-    growth: float | None = None
+    radius: float  # radius in any unit
+    cells: int | None = None  # approximate number of cells; None: as few as `around` permits
+    first_cell: float | None = None  # first-cell height at the wall; None: about that of cells in the middle
+    growth: float | None = None  # largest ratio of neighbouring cells; None: 1.2
+    # number of cells along the circle, a multiple of four. None: as `cells` requires, at least 84; or
+    # `AROUND`
     around: int | None = None
 
     def __post_init__(self) -> None:

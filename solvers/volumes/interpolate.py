@@ -58,18 +58,11 @@ def _arcs(edges: list[Floats]) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Spline:
-    """A tensor product of cubic B-splines, evaluated at the nodes of a volume.
+    """A tensor product of cubic B-splines, evaluated at the nodes of a volume."""
 
-    Parameters
-    ----------
-    coefficients : (3, m1, m2, m3)
-    first : for each direction, (n,) index of the first of four coefficients at each node.
-    weights : weights of these coefficients, (n, 4) along xi and eta, (4, n) along zeta.
-    """
-
-    coefficients: Floats
-    first: tuple[NDArray[np.intp], ...]
-    weights: tuple[Floats, ...]
+    coefficients: Floats  # (3, m1, m2, m3)
+    first: tuple[NDArray[np.intp], ...]  # by direction, (n,) index of the first of four coefficients
+    weights: tuple[Floats, ...]  # weights of these coefficients, (n, 4) along xi and eta, (4, n) along zeta
 
 
 def interpolate(

@@ -27,17 +27,11 @@ class Transfer:
     """Transfer along one direction between a level and the next coarser one.
 
     Each operator has the first node and the weights of each result.
-
-    Parameters
-    ----------
-    up : (n, 2) linear interpolation to the fine nodes.
-    down : (m, terms) its transpose divided by the ratio of the steps.
-    at : (m, 4) cubic interpolation at the coarse nodes.
     """
 
-    up: tuple[NDArray[np.intp], Floats]
-    down: tuple[NDArray[np.intp], Floats]
-    at: tuple[NDArray[np.intp], Floats]
+    up: tuple[NDArray[np.intp], Floats]  # (n, 2) linear interpolation to the fine nodes
+    down: tuple[NDArray[np.intp], Floats]  # (m, terms) its transpose divided by the ratio of the steps
+    at: tuple[NDArray[np.intp], Floats]  # (m, 4) cubic interpolation at the coarse nodes
 
 
 class Level:

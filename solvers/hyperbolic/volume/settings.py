@@ -20,24 +20,15 @@ FEWEST = 3  # layers of nodes: two cells
 
 @dataclass(frozen=True)
 class VolumeMarch:
-    """A march from a surface; lengths are in the surface's unit.
+    """A march from a surface; lengths are in the surface's unit."""
 
-    Parameters
-    ----------
-    first_cell : height of the cells at the wall.
-    layers : number of nodes along each line, with the wall node; None: as `growth` requires.
-    far_field : distance of the far field; None: 15 times the longest extent of the surface.
-    symmetry : axis normal to planes of symmetry; ``none``: all open edges are free. None: planes with open
-        edges that
-        have the surface on one side.
-    growth : largest growth ratio along a line; None: 1.2, or as `layers` require.
-    """
-
-    first_cell: float
-    layers: int | None = None
-    far_field: float | None = None
+    first_cell: float  # height of the cells at the wall
+    layers: int | None = None  # nodes along each line, with the wall node; None: as `growth` requires
+    far_field: float | None = None  # distance of the far field; None: 15 extents of the surface
+    # axis normal to planes of symmetry; ``none``: all open edges are free. None: planes with open edges that
+    # have the surface on one side
     symmetry: Literal["x", "y", "z", "none"] | None = None
-    growth: float | None = None
+    growth: float | None = None  # largest growth ratio along a line; None: 1.2, or as `layers` require
 
     def __post_init__(self) -> None:
         for name in ("first_cell", "far_field"):
