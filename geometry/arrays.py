@@ -169,9 +169,9 @@ def percentiles_of(values: NDArray[Any], percents: Sequence[float]) -> list[floa
 
 
 def _two_in_order(values: NDArray[Any], k: int, last: int) -> tuple[float, float]:
-    """Return the values of ranks k and `last` = k + 1 or k of `values` (n,); of many in three passes.
+    """Return the values of ranks k and `last` = k + 1 or k of `values` (n,).
 
-    Those between two of a sample are sorted if both ranks are among them; else all are partitioned.
+    Of many, only those between two of a sample are sorted, if both ranks are there.
     """
     if len(values) > _MANY:
         sample = np.sort(values[:: len(values) // _SAMPLE])
@@ -192,9 +192,9 @@ def read_only(values: AnyArray) -> AnyArray:
 
 
 def array_like(values: NDArray[Any], like: Any, xp: Any) -> Any:
-    """Return `values` as an array of `xp` (numpy or torch), on the device and in the precision of `like`.
+    """Return `values` as an array of `xp`, numpy or torch, on the device and in the precision of `like`.
 
-    Complex values stay complex and real ones real, whatever `like` is.
+    Complex values stay complex, real ones real.
     """
     dtype = like.real.dtype
     if xp is np:

@@ -1,12 +1,8 @@
 """Elementary functions and matrix products that are bitwise the same on every processor.
 
-NumPy takes these from libraries whose rounding depends on the processor: a BLAS for matrix products,
-vectorised functions where there is AVX-512. Everything that nodes or decisions depend on uses the functions
-of this module instead. Sums, square roots, `np.hypot`, differences and quotients of NumPy are the same
-everywhere; `docs/reference/reproducibility.md` has the list.
-
-Functions take the arguments of NumPy's functions of the same name and return float64 (float32 for float32).
-Complex numbers are left to the C library, which NumPy calls for each one.
+NumPy's own depend on its libraries; `docs/reference/reproducibility.md` lists what does not. Arguments are
+those of
+NumPy's functions of the same name. Results are float64, or float32 for float32.
 """
 
 import math
@@ -52,18 +48,14 @@ def angle(z: Any) -> Any:
 
 
 def modulus(z: Any) -> Any:
-    """Return the modulus |z| of complex numbers, or the absolute value of real numbers.
-
-    Torch tensors are computed by torch.
-    """
+    """Return |z| of complex or real numbers; torch tensors are computed by torch."""
     return np.hypot(z.real, z.imag) if _is_complex(z) else abs(z)
 
 
 def times(a: Any, b: Any) -> Any:
-    """Return the product of complex numbers; each real product and each real sum in it is rounded.
+    """Return the product of complex numbers, with each real product and sum rounded (no fused multiply-add).
 
-    On some processors NumPy uses fused multiply-adds instead. Real numbers and tensors are multiplied as
-    usual.
+    Real numbers and tensors are multiplied as usual.
     """
     if not (_is_complex(a) and _is_complex(b)):
         return a * b
@@ -103,8 +95,7 @@ def functions_of(xp: Any) -> Any:
 def product(a: Any, b: Any) -> Any:
     """Return the matrix product ``a @ b`` in double precision, with sums in a fixed order.
 
-    If `b` is a stack of matrices (..., inner, columns), the inner terms are summed one by one, so they should
-    be few.
+    For a stack of matrices `b` (..., inner, columns), inner terms are summed one by one, and should be few.
     """
     left, right = np.asarray(a), np.asarray(b)
     if left.dtype.kind == "c" or right.dtype.kind == "c":
@@ -127,7 +118,7 @@ matmul = product
 
 
 def _stacked_product(left: Floats, right: Floats) -> Floats:
-    """Return the products of matrices (..., rows, inner), or one row (inner,), and (..., inner, columns)."""
+    """Return products of matrices (..., rows, inner), or one row (inner,), and (..., inner, columns)."""
     rows = left if left.ndim > 1 else left[None]
     stack = np.broadcast_shapes(rows.shape[:-2], right.shape[:-2])
     out = np.zeros((*stack, rows.shape[-2], right.shape[-1]))
@@ -151,7 +142,7 @@ def _function_of_two(kernel: Any, x: Any, y: Any) -> Any:
 
 
 def _doubles(values: Any) -> Floats:
-    """Return an array as the kernels need it, contiguous float64, whatever its memory layout is."""
+    """Return an array as contiguous float64."""
     answer = np.ascontiguousarray(values, np.float64)
     if answer.dtype.byteorder == "=" and answer.flags.aligned:
         return answer
@@ -161,7 +152,7 @@ def _doubles(values: Any) -> Floats:
 
 
 def _shaped(out: Floats, shape: tuple[int, ...], of: np.dtype[Any]) -> Any:
-    """Return results in `shape`, as float32 if they were computed from float32."""
+    """Return results in `shape`, as float32 if computed from float32."""
     answer = out.reshape(shape)
     answer = answer.astype(np.float32) if of == np.float32 else answer
     return answer if answer.ndim else answer[()]

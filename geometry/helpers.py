@@ -1,9 +1,7 @@
 """Threads that help each other: a thread without work takes jobs of other threads.
 
-::
-
-    run(jobs) --opens them--> whoever calls takes one after the other, and helpers do so too
-        --what a job runs in turn is open in the same way--> nobody waits while there is something to do
+Whoever calls `run` takes one job after the other, as do helpers; what a job runs in turn is open in the same
+way.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -73,7 +71,7 @@ class Helpers:
         return own.made
 
     def _take_part(self, own: _Jobs | None) -> None:
-        """Do open jobs until `own` are done, or None: until all is over."""
+        """Do open jobs until `own` are done; None: until all is over."""
         while taken := self._next(own):
             jobs, number = taken
             error = None
@@ -87,10 +85,7 @@ class Helpers:
                     self._change.notify_all()
 
     def _next(self, own: _Jobs | None) -> tuple[_Jobs, int] | None:
-        """Return the next job, of `own` or what was opened later, None at the end.
-
-        What was opened earlier would take longer than the wait for `own`.
-        """
+        """Return the next job, of `own` or opened later, None at the end; earlier ones would take longer."""
         with self._change:
             while not (self._over if own is None else own.left == 0):
                 first = 0 if own is None else self._open.index(own)

@@ -1,7 +1,6 @@
 """Linear algebra of small matrices, bitwise the same on every processor.
 
-The rounding of LAPACK and BLAS depends on the processor. These functions use sums, products, quotients and
-square roots in a fixed order, for matrices of a few rows, stacks of them, and systems of a few hundred rows.
+Sums, products, quotients and roots are in a fixed order, unlike those of LAPACK and BLAS.
 """
 
 import math
@@ -56,10 +55,9 @@ def inverse(matrix: Any) -> Floats:
 
 
 def symmetric_eigen(matrix: Any) -> tuple[Floats, Floats]:
-    """Return eigenvalues (..., m), ascending, and unit eigenvectors of symmetric matrices (..., m, m).
+    """Return ascending eigenvalues (..., m) and unit eigenvectors, in columns, of symmetric matrices (..., m, m).
 
-    The eigenvectors are the columns of an array (..., m, m). By cyclic Jacobi rotations (Golub & Van Loan,
-    Matrix Computations, 2013, section 8.5).
+    By cyclic Jacobi rotations (Golub & Van Loan, Matrix Computations, 2013, section 8.5).
     """
     a = np.array(matrix, np.float64)
     size = a.shape[-1]
@@ -86,10 +84,9 @@ def symmetric_eigen(matrix: Any) -> tuple[Floats, Floats]:
 
 
 def singular_values(matrix: Any) -> tuple[Floats, Floats, Floats]:
-    """Return u (n, m), s (m,) and v (m, m) with ``matrix = u @ diag(s) @ v`` (n, m), s descending.
+    """Return u (n, m), descending s (m,) and v (m, m) with ``matrix = u @ diag(s) @ v`` (n, m).
 
-    The rows of v are orthonormal, and so are the columns of u with s > 0; the others are 0. By one-sided
-    Jacobi rotations (Hestenes, J. SIAM 6, 1958).
+    Columns of u with s = 0 are 0. By one-sided Jacobi rotations (Hestenes, J. SIAM 6, 1958).
     """
     columns = np.array(matrix, np.float64)
     size = columns.shape[1]
@@ -124,8 +121,8 @@ def least_squares(matrix: Any, right: Any) -> Floats:
 def nearest_rotation(maps: Any) -> Floats:
     """Return the rotation nearest, in the Frobenius norm, to each matrix (..., d, d), with d 2 or 3.
 
-    In three dimensions its unit quaternion is the eigenvector with the largest eigenvalue of a 4 x 4 matrix
-    made from the given matrix, whose determinant may be zero or negative (Horn, J. Opt. Soc. Am. A 4, 1987).
+    In three dimensions by unit quaternions (Horn, J. Opt. Soc. Am. A 4, 1987); determinants may be zero or
+    negative.
     """
     m = np.asarray(maps, np.float64)
     if m.shape[-1] == 2:
@@ -153,10 +150,7 @@ def nearest_rotation(maps: Any) -> Floats:
 
 
 def gauss_legendre(count: int) -> tuple[Floats, Floats]:
-    """Return the ascending nodes and the weights of Gauss-Legendre quadrature on [-1, 1].
-
-    The nodes, zeros of the Legendre polynomial, are found by Newton's method.
-    """
+    """Return the ascending nodes and the weights of Gauss-Legendre quadrature on [-1, 1]."""
     nodes, weights = np.zeros(count), np.zeros(count)
     for k in range((count + 1) // 2):
         x, slope = math.cos(math.pi * (k + 0.75) / (count + 0.5)), 1.0

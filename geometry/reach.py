@@ -13,8 +13,11 @@ def check_reach(
 ) -> None:
     """Raise InputError if a request needs more than `most` things.
 
-    `count` is the number that it needs, `things` their name, such as cells, and `cause` the words for the
-    setting that needs them; `remedy` says what to change, and `parameter` is the Python name of the setting.
+    Parameters
+    ----------
+    count, things : number that it needs, and their name, such as cells.
+    cause, remedy : what needs them, and what to change.
+    parameter : Python name of the setting.
     """
     if not count <= most:
         problem = f"{cause} takes {count:.3g} {things}, more than {most:.3g}"

@@ -21,11 +21,11 @@ class Summary:
 
 @dataclass(frozen=True)
 class Quality:
-    """Quality of a grid: the numbers of all cells and of folded cells, and every metric by name.
+    """Quality of a grid: numbers of cells and of folded cells, and every metric by name.
 
-    `bezier_folded` is the number of cells of volumes for which a Bezier coefficient of the Jacobian is not
-    positive: cells with folded corners, and cells that may be folded inside. It is None in the plane and on
-    surfaces.
+    `bezier_folded`: cells of volumes with a Bezier coefficient of the Jacobian that is not positive, which
+    may be folded
+    inside; None in the plane and on surfaces.
     """
 
     cells: int
@@ -34,10 +34,7 @@ class Quality:
     bezier_folded: int | None = None
 
     def __getitem__(self, name: str) -> Summary:
-        """Return the statistics of one metric.
-
-        Raises KeyError: an unknown metric; the message lists the known ones.
-        """
+        """Return the statistics of a metric. Raises KeyError: an unknown one, with the known names."""
         if name not in self.metrics:
             known = f"{meant(str(name), self.metrics)}use one of {', '.join(self.metrics)}"
             raise KeyError(f"metric {name!r} is not known; {known}")

@@ -1,7 +1,4 @@
-"""The number of threads that kernels use for one grid. Results are bitwise the same for any number.
-
-`limited_to` sets the number temporarily, for the Python thread that calls it: other threads keep theirs.
-"""
+"""The number of threads that kernels use for one grid; results are bitwise the same for any number."""
 
 from __future__ import annotations
 
@@ -21,9 +18,7 @@ MOST = 64
 """Largest number of threads of a kernel (``TEAM_MOST`` of ``team.h``)."""
 
 NODES_EACH = 1 << 17
-"""Smallest number of nodes per thread: starting a thread takes as long as the fastest kernel takes for 5,000
-nodes.
-"""
+"""Smallest number of nodes per thread; starting one takes as long as a fast kernel for 5,000 nodes."""
 MANY_VISITS = 16
 """Smallest number of visits of each node by kernels that iterate, such as minimisations and marches."""
 
@@ -80,10 +75,9 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
 
 
 def over_blocks(work: Callable[[Item], Made], items: Sequence[Item], nodes: Sequence[int]) -> list[Made]:
-    """Return the results of `work` for each of `items`; `nodes` are the numbers of nodes of the items.
+    """Return the results of `work` for `items` with numbers of `nodes`.
 
-    Items with many nodes, whose kernels use all threads, are processed one after another; the other items are
-    processed several at a time.
+    Items with many nodes, whose kernels use all threads, are processed one by one, the others together.
     """
     many = [threads_for(count) > 1 for count in nodes]
     few = [item for item, alone in zip(items, many, strict=True) if not alone]

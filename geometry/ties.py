@@ -1,7 +1,6 @@
 """Choices that do not depend on rounding: the first of the candidates that are equal within `EQUAL`.
 
-Symmetric shapes have many equally good candidates. If two candidates differ only by rounding, which of them
-is better depends on how the shape is turned or moved, or on a library; their order does not.
+Which of two candidates that differ by rounding is better depends on how a symmetric shape is turned.
 """
 
 from collections.abc import Callable, Iterable
@@ -76,10 +75,9 @@ def nearest_whole(values: Floats) -> Floats:
 
 
 def made_unlike(costs: Floats) -> Floats:
-    """Return costs (..., n), perturbed so that sums of different costs are hardly ever equal.
+    """Return costs (..., n), perturbed by index so that sums of different costs are hardly ever equal.
 
-    A linear programme with these costs then has only one solution. The relative perturbation is far below
-    real differences; it depends only on the index, and is computed from the digits of square roots.
+    A linear programme then has one solution. The perturbation is far below real differences.
     """
     digits = np.mod(1e3 * np.sqrt(np.arange(costs.size) + 0.618), 1.0)
     return costs + _NOISE * np.abs(costs) * digits.reshape(costs.shape)

@@ -23,20 +23,14 @@ def check_tolerances(tol: float | None, max_cycles: int | None) -> None:
 
 
 def initial_nodes(boundary: Boundary, initial: Grid) -> Floats:
-    """Return a planar copy of the nodes of `initial` with the edges of `boundary`.
-
-    The seam of an O grid is kept.
-    """
+    """Return a planar copy of the nodes of `initial` with the edges of `boundary`; seams are kept."""
     nodes = initial.nodes.copy(order="K")
     put_edges(nodes, boundary)
     return nodes
 
 
 def put_edges(nodes: Floats, boundary: Boundary) -> None:
-    """Replace the edges of `nodes` (ni, nj, 2) by those of `boundary`, in place.
-
-    The seam of an O grid is closed.
-    """
+    """Put the edges of `boundary` into `nodes` (ni, nj, 2), and close the seam of an O grid, in place."""
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
     if boundary.periodic:
         nodes[-1] = nodes[0]

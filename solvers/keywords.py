@@ -1,4 +1,4 @@
-"""Requests from keyword parameters, and errors for parameters that do not apply to a kind of grid."""
+"""Requests from keyword parameters, and errors for parameters that do not apply."""
 
 from collections.abc import Mapping
 from dataclasses import fields
@@ -10,11 +10,11 @@ Request = TypeVar("Request")
 
 
 def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) -> Request:
-    """Return a request of class `kind`; ``wall_spacing`` is another name of the field ``first_cell``.
+    """Return a request of class `kind`; ``wall_spacing`` is ``first_cell``.
 
-    `what` is the name of the grid in messages, such as ``a row``.
+    `what` is the kind of grid in messages, such as ``a row``.
 
-    Raises InputError: the errors of `kind`; a parameter that `kind` does not have.
+    Raises InputError: as `kind`; a parameter that `kind` does not have.
     """
     named = {"first_cell" if name == "wall_spacing" else name: each for name, each in parameters.items()}
     known = {each.name for each in fields(kind)}  # type: ignore[arg-type]

@@ -12,18 +12,11 @@ from meshonet.solvers.sparse import SparseMatrix, SparsePattern
 
 @dataclass(frozen=True)
 class Residuals:
-    """Residuals of one kind, linearised at the current unknowns.
+    """Residuals of one kind, linearised at the current unknowns."""
 
-    Parameters
-    ----------
-    derivatives : (k, m) derivatives of each residual with respect to its m unknowns.
-    weight : (k,) second derivatives of the total sum with respect to each residual.
-    slope : (k,) first derivatives of the total sum with respect to each residual.
-    """
-
-    derivatives: Floats
-    weight: Floats
-    slope: Floats
+    derivatives: Floats  # (k, m) derivatives of each residual with respect to its m unknowns
+    weight: Floats  # (k,) second derivatives of the total sum with respect to each residual
+    slope: Floats  # (k,) first derivatives of the total sum with respect to each residual
 
 
 class NormalEquations:
@@ -63,8 +56,10 @@ class NormalEquations:
     def step(self, residuals: Sequence[Residuals], diagonal: Floats, slope: Floats) -> Floats:
         """Return the changes of the unknowns, (n,) or (2 n,).
 
-        `diagonal` and `slope`, of the same shape, are the second and the first derivatives of those terms
-        that depend on a single unknown. Raises SolverError: the equations are singular.
+        `diagonal` and `slope`, of the same shape, are second and first derivatives of terms with a single
+        unknown.
+
+        Raises SolverError: the equations are singular.
         """
         size, block = self._shape
         values, right = np.zeros(self.pattern.entries * block**2), -slope.reshape(size, block)

@@ -97,10 +97,7 @@ class History:
         )
 
     def of(self, solution: Solution) -> tuple[HistoryRow, ...]:
-        """Return the rows of the method of `solution`.
-
-        A method without cycles has a single row, with its result.
-        """
+        """Return the rows of the method of `solution`; one, with its result, for a method without cycles."""
         rows = tuple(row for row in self._rows if row.method == solution.method)
         if rows:
             return rows

@@ -1,7 +1,4 @@
-"""Reports the stages of a long computation, and their steps, to watchers.
-
-Without watchers this costs no time.
-"""
+"""Reports the stages of a long computation and their steps to watchers, if there are any."""
 
 import contextlib
 import time
@@ -69,10 +66,9 @@ def stage(name: str, seconds: Timings) -> Iterator[None]:
 
 @contextlib.contextmanager
 def filling(name: str, unit: str, marks: Floats) -> Iterator[None]:
-    """Return a context in which a kernel overwrites the values of `marks` (steps,) one after another.
+    """Return a context in which a kernel overwrites `marks` (steps,), set to NaN, one after another.
 
-    Values that are not yet overwritten are NaN; watchers are called with the number of overwritten values.
-    The context does not read `marks` after its end.
+    Watchers are called with the number of overwritten values.
     """
     if not (watchers := _watchers.get()):
         yield

@@ -23,16 +23,13 @@ OPTIONS: dict[str, bool | int | float | str] = {
 }
 """Options of HiGHS: one thread, a fixed seed and no time limit, so that results are reproducible."""
 STEPS = (1.0, 1.05, 1.1, 1.2, 1.4, 1.6, 2.0, 2.0, np.inf)
-"""Factors by which a number increases or decreases in each step, by at least 1."""
+"""Factors of each step up or down, by at least 1."""
 Row = tuple[Mapping[int, float], float, float]
 """Coefficients of a sum of numbers, and its lower and upper bound."""
 
 
 def difference(first: Iterable[int], second: Iterable[int], low: float = 0.0, high: float = 0.0) -> Row:
-    """Return the constraint that bounds the difference between the sums of two sets of numbers.
-
-    `first` and `second` are the indices of the numbers in the two sets; an index in both cancels.
-    """
+    """Return the constraint that bounds the difference of the sums of two sets of numbers."""
     row: dict[int, float] = {}
     for run, sign in ((first, 1.0), (second, -1.0)):
         for number in run:
@@ -43,8 +40,7 @@ def difference(first: Iterable[int], second: Iterable[int], low: float = 0.0, hi
 def whole_numbers(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices:
     """Return integers n (k,) of at least `least` (k,) that satisfy the constraints.
 
-    They minimise the sum of n / wanted + wanted / n. For small differences, this is a constant plus the sum
-    of the squared logarithms of n / wanted.
+    They minimise the sum of n / wanted + wanted / n, nearly that of squared logarithms of n / wanted.
 
     Raises SolverError: there is no solution, or none was found.
     """
@@ -62,7 +58,7 @@ def whole_numbers(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices
 
 
 def _solved(programme: Any, lengths: Floats) -> Floats:
-    """Return the steps (b, k) taken, whole ones: mostly those of the relaxed programme are already."""
+    """Return the steps (b, k) taken; those of the relaxed programme are mostly whole."""
     from highspy import Highs, HighsVarType
 
     solver: Any = Highs()  # type: ignore[no-untyped-call]
@@ -81,7 +77,7 @@ def _solved(programme: Any, lengths: Floats) -> Floats:
 
 
 def _steps(wanted: Floats, least: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """Return where steps start from (k,), and signs (b,), lengths (b, k) and costs (b, k) of the steps."""
+    """Return where steps start from (k,), and their signs (b,), lengths (b, k) and costs (b, k)."""
     size = np.maximum(wanted, 0.5)
 
     def cost(n: Floats) -> Floats:
@@ -108,10 +104,10 @@ def _steps(wanted: Floats, least: Floats) -> tuple[Floats, Floats, Floats, Float
 
 
 def _model(steps: tuple[Floats, Floats, Floats, Floats], rows: Sequence[Row]) -> Any:
-    """Return the programme in steps: n = base + those up - those down, each step dearer than the one before.
+    """Return the programme in steps, each dearer than the one before: n = base + up - down.
 
-    The cost is then linear between whole numbers and not below them, and relaxed solutions are whole, or
-    nearly so: each arc is in two rows with coefficients +-1 (bidirected networks have half-integral corners).
+    Costs are linear between integers. Relaxed solutions are nearly whole, as each arc is in two rows with
+    +-1.
     """
     from highspy import HighsLp, MatrixFormat
 
