@@ -70,7 +70,7 @@ last grid. The script omits this table if Zarr is not installed (`pip install za
 """
 TAIL = """
 HDF5 reads the list of all parts when a virtual dataset is opened, and searches it at each read. This
-takes a few milliseconds for a thousand parts and grows with their number. Parts are therefore large: up
+takes about ten milliseconds for a thousand parts and grows with their number. Parts are therefore large: up
 to 1,000 inputs or 256 MiB. A part holds at most 500 grids of 200 x 100 nodes, so a million of them are
 2,000 parts.
 

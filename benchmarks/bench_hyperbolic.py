@@ -63,7 +63,7 @@ around blunt trailing edges have one block, with the base closed by a wedge (`--
 - Rows for groups of shapes give the median / the 90th percentile over the shapes. *files* are airfoil files,
   with a sharp or a blunt trailing edge; a blunt edge is *rounded* (`--te round`) or kept (*exact*).
 - *procedural* airfoils are random airfoils, whose wall nodes are distributed by every law of `--spacing`. In
-  some of these grids, adjacent cells along the wall differ in length by a factor of three, and cells at the
+  some of these grids, adjacent cells along the wall differ in length by a factor of four, and cells at the
   trailing edge are hardly longer than they are high.
 - *CPU ms*: CPU time from the file (for procedural airfoils: from the boundary) to nodes in memory, best
   of {repeat} runs (procedural: one run), one thread of {machine}, while other programs used the machine.
