@@ -58,6 +58,7 @@ Grids have {around} nodes around the wing and {span} along the span, and a far f
 - *growth*: share of the pairs of consecutive edges along all grid lines, across blocks too, whose lengths
   differ by a factor of at most 1.3.
 - *normals*: 95th percentile of the angle between a grid line that leaves a wall and the normal of the wall.
+- *best*, *median* and *worst* are over the grids.
 - *CPU s*: one thread of {machine}, while other programs used the machine.
 
 A grid was made for {made} of the {count} aircraft; {folded} of these grids have folded cells.

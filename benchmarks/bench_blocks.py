@@ -226,7 +226,7 @@ are, and how long it takes.
 - *refused*: exit code 2 or 3 with a message. *silent*: exit code 0, but the grid is not valid.
 - *blocks*, *irregular*: number of blocks, and of interior vertices at which more or fewer than four cells
   meet. *mean*: mean deviation of cell corner angles from 90 degrees. *99 %*: 99th percentile of the largest
-  deviation in each cell. These four columns are medians over the valid grids.
+  deviation in each cell. These four columns are medians over the valid grids. *90 %*: 90th percentile.
 """
 VALID = """
 | domains | number | valid | refused | silent | CPU s: median / 90 % / max | elapsed s: median / 90 % \
@@ -238,8 +238,9 @@ BESIDE = """
 Gmsh gets the same domains, with a spline through the points between two corners. It uses one thread and the
 options for quadrilaterals only. The time of Gmsh is the time of `generate(2)`; the time of meshonet is the
 time of the whole process. Gmsh's algorithm 11 generates quasi-structured quadrilaterals, algorithm 8 is
-Delaunay for quadrilaterals, algorithm 9 packing of parallelograms. *with triangles*: number of Gmsh's meshes
-that contain triangles. The columns after it give two medians over the domains: meshonet / Gmsh.
+Delaunay for quadrilaterals, algorithm 9 packing of parallelograms. *meshed*: number of domains that Gmsh
+meshes; *with triangles*: number of these meshes that contain triangles. The other columns give two medians
+over the domains: meshonet / Gmsh.
 
 | algorithm | domains | meshed | with triangles | irregular | mean | 99 % | CPU time, s | cells |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
