@@ -65,6 +65,5 @@ shape of each kind only, with 500 steps; the column *ms* includes this training.
        python benchmarks/yardstick judge build/yardstick
 
 With another `--seed` you see whether a result depends on these shapes. The entry `gmsh_transfinite.py` has 80 lines; start
-from it. `python benchmarks/yardstick entries build/yardstick` makes the table above, and keeps the trained networks in
-`build/yardstick/trained`.
+from it. `python benchmarks/yardstick entries build/yardstick` makes the table above.
 """
