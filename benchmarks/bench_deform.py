@@ -38,11 +38,15 @@ Use this page to compare `meshonet deform` with two published methods: folded ce
 angles and CPU time. Like `deform`, both methods use inverse-distance weighting (IDW). [Deforming
 grids](../guide/deform.md) explains how to use `deform`.
 
-The deformations are random (seed {seed}). *airfoils*: the thickness is multiplied by 0.9 to 1.1 and the
-camber changed by -2 to 2 % of the chord, in C grids of 250 x 100 nodes with first cells of y+ = 1 at
-Reynolds number 6e6. *flap*: the flap of an airfoil with slat and main element is rotated by up to 10
-degrees in either direction about a point near the leading edge of the flap, in a multi-block grid of about
-25,000 cells with first-cell heights of 1e-5.
+The deformations are random (seed {seed}).
+
+- *airfoils*: the thickness is multiplied by 0.9 to 1.1, and the camber is changed by -2 to 2 % of the
+  chord. The grids are C grids of 250 x 100 nodes with first cells of y+ = 1 at Reynolds number 6e6.
+- *flap*: the flap of an airfoil with slat and main element is rotated by up to 10 degrees in either
+  direction, about a point near the leading edge of the flap. The grid has several blocks, about 25,000
+  cells and first-cell heights of 1e-5.
+
+The columns and methods of the table are:
 
 - *deformations*: kind, with the number of deformations in brackets. Deformations whose new outline is not
   valid are left out; their number is {refused}.

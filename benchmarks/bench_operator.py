@@ -314,8 +314,8 @@ WHICH = """
 ## Consequences for the defaults of `infer`
 
 - **O grids around airfoils**: the default is the conformal map with Picard iteration, without the network.
-  It takes less time than with the network, and its grids are as close to the solution, with equally good
-  angles. `--model airfoil-o` or `--polish off` selects the network.
+  With the network a grid takes more time; its distance to the solution and its angles are about the same.
+  `--model airfoil-o` or `--polish off` selects the network.
 - **Four-sided domains**: the default is the variational method. If fewer nodes resolve all sides, the
   method solves on fewer nodes and interpolates. For a single grid this solver is better than any network.
   For batches, `--model quad-general` is many times faster than any solver

@@ -217,8 +217,8 @@ HEAD = """# Four-sided domains: TFI, Winslow and variational grids
 <!-- made by python benchmarks/bench_variational.py --page docs/benchmarks/variational.md -->
 
 Use this page to choose between `tfi`, `solve-pde --method winslow` and `solve-pde --method variational`.
-It also shows how much time `--coarse N` saves, which solves on N x N nodes and interpolates, and how much
-the angles change. [Elliptic grids](../theory/elliptic.md) and [variational
+The option `--coarse N` solves on N x N nodes and interpolates; the tables show how much time this saves
+and how much the angles change. [Elliptic grids](../theory/elliptic.md) and [variational
 grids](../theory/variational.md) describe the methods. The neural operator has [its own
 page](quad-operator.md).
 
@@ -244,11 +244,10 @@ not an iteration error: it does not change if both solutions are converged to 1e
 """
 PAPER = """
 ## What the MeshONet paper reports
-
 Xiao et al., arXiv 2501.11937, compare methods by colour maps of the largest included angle, without
-numbers. They report that the angles of MeshONet are better than those of their PDE solver and of TFI on
-arches and hexagons, equal to those of TFI on wrenches, and not always better on semicircles. The table
-gives their times in seconds. Their programs are in Python and ran on another machine, MeshONet on a GPU.
+numbers. On arches and hexagons, they report, MeshONet gives better angles than their PDE solver and TFI.
+On wrenches it is equal to TFI, and on semicircles not always better. The table gives their times in
+seconds. Their programs are in Python and ran on another machine, MeshONet on a GPU.
 
 | nodes | PDE | TFI | MeshONet |
 | --- | --- | --- | --- |
