@@ -55,7 +55,7 @@ def inverse(matrix: Any) -> Floats:
 
 
 def symmetric_eigen(matrix: Any) -> tuple[Floats, Floats]:
-    """Return ascending eigenvalues (..., m) and unit eigenvectors, in columns, of symmetric matrices (..., m, m).
+    """Return ascending eigenvalues (..., m) and unit eigenvectors, in columns, of matrices (..., m, m).
 
     By cyclic Jacobi rotations (Golub & Van Loan, Matrix Computations, 2013, section 8.5).
     """

@@ -1,15 +1,14 @@
-/* One row of cells of a block: the functional's terms at the eight corners of each, and forces on its nodes. The shape
-   functional (power SHAPES) is also evaluated at the eight points of Gauss' rule, with most of the weight. It is thus nearly
-   the integral over the trilinear cell, and still infinite if the Jacobian of a corner is 0. */
+/* One row of cells of a block: the functional's terms at the corners of each, and forces on its nodes. The shape
+   functional (power SHAPES) is also evaluated at the eight Gauss points, with most of the weight: it is nearly the
+   integral over the trilinear cell, and still infinite if a corner's Jacobian is 0. */
 #pragma once
 #include "corner3.h"
 #include "energy.h"
 
-/* Rows of nodes around a row of cells: (i, j), (i, j+1), (i+1, j), (i+1, j+1), of planes of coordinates `nodes` apart;
-   one over the lengths that its edges along each direction should have; bits of the corners that do not count. */
 typedef struct {
-    const double *at[2][2], *over[3];
-    const int64_t *skip; /* as wide as the numbers, so that as many fit into a vector */
+    const double *at[2][2]; /* rows of nodes around the cells, by (i, j), in planes of coordinates `nodes` apart */
+    const double *over[3];  /* one over the target lengths of edges along each direction */
+    const int64_t *skip;    /* bits of corners that do not count; as wide as doubles, for vectors */
     ptrdiff_t nodes, cells;
     Factors3 factors;
 } CellRow;
@@ -31,7 +30,7 @@ typedef struct {
     Vector u00, u10, u01, u11, v00, v10, v01, v11, w00, w10, w01, w11;
 } Edges3;
 
-/* The terms of corner `number`, nothing of one that does not count. */
+/* The terms of corner `number`, 0 if it does not count. */
 MESHONET_INLINE Corner3 term3(Vector u, Vector v, Vector w, const Factors3 *f, int64_t skip, int number, const int power,
                               const int regular)
 {
@@ -45,7 +44,7 @@ MESHONET_INLINE Corner3 term3(Vector u, Vector v, Vector w, const Factors3 *f, i
     };
 }
 
-/* The terms of the eight points whose edges these are; their derivatives by the edges, and the smallest Jacobian. */
+/* The sum of the terms at eight points, their derivatives by the edges, and the smallest Jacobian. */
 MESHONET_INLINE double eight_terms(const Edges3 *e, const Factors3 *f, int64_t skip, Edges3 *by, double *low,
                                    const int power, const int regular)
 {
@@ -70,7 +69,7 @@ MESHONET_INLINE double eight_terms(const Edges3 *e, const Factors3 *f, int64_t s
            ((c001.energy + c101.energy) + (c011.energy + c111.energy));
 }
 
-/* Of the share `near` from a point itself and the rest from its neighbour, along two directions. */
+/* The bilinear interpolation of four edges at a Gauss point nearest to `own`. */
 MESHONET_INLINE Vector blend(Vector own, Vector one, Vector two, Vector both)
 {
     const double near = 0.78867513459481288225, far = 1.0 - near; /* (1 + 1/sqrt(3)) / 2 */
@@ -79,7 +78,7 @@ MESHONET_INLINE Vector blend(Vector own, Vector one, Vector two, Vector both)
                      p * own.z + q * (one.z + two.z) + r * both.z};
 }
 
-/* The edges at the points of Gauss' rule; and its own transpose. */
+/* The edges at the Gauss points; this matrix is symmetric. */
 MESHONET_INLINE Edges3 at_gauss(const Edges3 *e)
 {
     return (Edges3){

@@ -1,12 +1,12 @@
-/* What steps.c needs of the functional over hexahedra: moves, values and a preconditioner, which is the stiffness of each
-   node, and in one block D M⁻¹ D (spectrum.h). */
+/* The functional over hexahedra for steps.c: moves, values, and a preconditioner: the nodes' stiffness, or D M⁻¹ D in one
+   block (spectrum.h). */
 #include "descent.h"
 #include "clones.h"
 #include <math.h>
 #include <string.h>
 
-#define CLOSER 0.4 /* part of the smallest Jacobian that a step may leave: a node near the barrier holds up all others */
-#define ALONE 4096 /* places up to which more threads would wait more than they work */
+#define CLOSER 0.4 /* smallest ratio of the smallest Jacobian after a step to that before */
+#define ALONE 4096 /* largest number of places for one thread */
 
 void hex_descent_sizes(const HexDescent *d, size_t *doubles, size_t *floats)
 {

@@ -4,9 +4,8 @@
 #include "energy/steps.h"
 #include "spectrum.h"
 
-/* Unknowns are the coordinates of `count` nodes, x of those of node `free[k]` of the table, then y and z. Its forces are
-   those of the places `place[start[k]]` to `place[start[k+1] - 1]`. Of the `sliding_count` unknowns in `sliding`, nodes
-   move only as `projection` (9 each) lets them. */
+/* Unknowns are x of the nodes `free[k]`, then y and z. The force on node k is the sum over the places `place[start[k]]` to
+   `place[start[k+1] - 1]`; for the nodes `sliding` it is multiplied by `projection` (9 each). */
 typedef struct {
     HexMesh mesh;
     HexWeights weights;
@@ -24,12 +23,11 @@ typedef struct {
     Steps steps;
 } HexDescent;
 
-/* Doubles and floats that a descent needs, and places in them; the rest is set before. */
+/* Doubles and floats that a descent needs, and their division; all else is set before. */
 void hex_descent_sizes(const HexDescent *d, size_t *doubles, size_t *floats);
 void hex_descent_place(HexDescent *d, double *doubles, float *floats);
 
-/* Begin a descent at x; `hex_descent_renew` makes the preconditioner for where the nodes are and forgets earlier steps,
-   and `hex_descent_end` leaves the best nodes in x. */
+/* Begin at x; make the preconditioner anew and forget earlier steps; store the best nodes in x. */
 void hex_descent_start(HexDescent *d);
 void hex_descent_renew(HexDescent *d);
 void hex_descent_end(HexDescent *d);

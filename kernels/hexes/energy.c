@@ -3,14 +3,13 @@
        E = mean over cells of mean over corners of a S / χ + b (g h q / χ²)^p [+ t (χ + 1/χ) / 2]
          + β N^(2/3) / N sum over pairs of edges of w (Δ log (l / target))²
 
-   Edges of a corner are parts of the lengths that its cell should have, so that layers keep theirs. N is the number
-   of cells. Pairs are edges that face each other across a face of a cell, w half of the cells at that face, and edges
-   that follow each other through a face between two cells, a fourth for each face that they bound. That is the mean
-   square of the gradient of log l, across interfaces as inside of blocks.
+   Edges of a corner are in units of their target lengths. N is the number of cells. Pairs are opposite edges of a face,
+   with w half the number of cells at the face, and consecutive edges, with w a fourth for each face that they bound: the
+   last sum is the mean square of the gradient of log l, also across interfaces.
 
-   A block adds up the forces of its own cells and of its own edges, for which it looks one edge across its sides; what
-   blocks share is added by whoever wants it, in the order of blocks. Members of a team work on whole planes of places:
-   on every second plane of cells, then on those between, so that no two write to the same plane of nodes.
+   A block sums the forces of its own cells and edges, and reads one edge across its sides; shared nodes are summed later,
+   in the order of blocks. Members of a team work on whole planes: first on even planes of cells, then on odd ones, so
+   that no two write to the same plane of nodes.
 
    Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov, ACM Trans. Graph. 40 (2021) 154 (unfolding with volumes). */
 #include "energy.h"
@@ -27,7 +26,7 @@ typedef struct {
     const HexWeights *weights;
     const double *x;
     double *room;
-    int stiffness;
+    int stiffness, odd; /* whether forces or the stiffness are wanted, and which planes of cells */
 } Task;
 
 static ptrdiff_t row_width(const HexMesh *mesh)
@@ -124,15 +123,15 @@ static Factors3 factors_of(const HexWeights *w)
                       eps2 > 0.0 ? 1.0 / eps2 : 0.0};
 }
 
-/* The cells between planes i and i + 1, of which i is odd or even. */
-static void cell_plane(const Task *t, const HexBlock *b, ptrdiff_t i, int odd)
+/* The cells between planes i and i + 1, if i is odd or even as the task says. */
+static void cell_plane(const Task *t, const HexBlock *b, ptrdiff_t i)
 {
     const HexMesh *mesh = t->mesh;
     const ptrdiff_t P = mesh->places, n3 = b->n[2], cells = n3 - 3, width = row_width(mesh);
     const int count = t->stiffness ? 1 : 3;
     int64_t *skip = (int64_t *)(t->room + (FORCES + 1) * width);
     CellRow row = {.skip = skip, .nodes = P, .cells = cells, .factors = factors_of(t->weights)};
-    if ((i & 1) != odd || i < 1 || i > b->n[0] - 3)
+    if ((i & 1) != t->odd || i < 1 || i > b->n[0] - 3)
         return;
     for (ptrdiff_t j = 1; j < b->n[1] - 2; j++) {
         const ptrdiff_t number = b->rows + (i - 1) * (b->n[1] - 3) + j - 1, at = place(b, i, j) + 1;
@@ -156,16 +155,6 @@ static void cell_plane(const Task *t, const HexBlock *b, ptrdiff_t i, int odd)
     }
 }
 
-static void even_cells(const Task *t, const HexBlock *b, ptrdiff_t i)
-{
-    cell_plane(t, b, i, 0);
-}
-
-static void odd_cells(const Task *t, const HexBlock *b, ptrdiff_t i)
-{
-    cell_plane(t, b, i, 1);
-}
-
 /* ---- pairs of edges ---- */
 
 /* log (l / target) of a row of edges to the place `next` on, and one over l². */
@@ -181,7 +170,7 @@ static void length_row(const double *x, ptrdiff_t P, ptrdiff_t next, ptrdiff_t n
     }
 }
 
-/* Edges from the places of plane i, those beyond a side too: the rows of family d have them at both ends along d. */
+/* Edges from the places of plane i, also those one step beyond a side. */
 static void length_plane(const Task *t, const HexBlock *b, ptrdiff_t i)
 {
     const HexMesh *mesh = t->mesh;
@@ -200,20 +189,20 @@ static void length_plane(const Task *t, const HexBlock *b, ptrdiff_t i)
         }
 }
 
-/* How two edges differ: not at all where one of them is none. */
+/* The difference of two edges, 0 if one of them does not exist (NaN). */
 MESHONET_INLINE double apart(double a, double b)
 {
     const double difference = a - b;
     return difference == difference ? difference : 0.0;
 }
 
-/* Weights of the pairs of a row of edges with the one before and the one after along xi, eta and zeta, and the parts
-   of the energies that are its own. */
+/* Weights of the pairs of a row of edges with their neighbours along xi, eta and zeta, and the parts of their energies
+   that this row adds. */
 typedef struct {
     double by[3], before[3], after[3];
 } Pairs;
 
-/* What pulls at a row of n edges, times what `pull` is: derivatives by log l; returns the sum of its energies. */
+/* Multiply `pull` of a row of n edges by the derivatives by log l; return the sum of their energies. */
 MESHONET_CLONES
 static double pull_row(const double *l, const ptrdiff_t *next, const Pairs *p, const double *restrict part, ptrdiff_t n,
                        double *restrict pull)
@@ -233,7 +222,7 @@ static double pull_row(const double *l, const ptrdiff_t *next, const Pairs *p, c
     return energy + 0.5 * p->by[2] * (first * first - last * last);
 }
 
-/* Half for lines along a side of a block: another one, or nobody, has the rest. */
+/* Half for lines along a side of a block. */
 MESHONET_INLINE double part_of(ptrdiff_t at, ptrdiff_t n)
 {
     return at == 1 || at == n - 2 ? 0.5 : 1.0;
@@ -270,7 +259,7 @@ static void pull_plane(const Task *t, const HexBlock *b, ptrdiff_t i)
     }
 }
 
-/* Edges pull at the nodes of a row, by their pull over l² times the edge. */
+/* Add the forces of edges, their pull over l² times the edge, to the nodes of a row. */
 MESHONET_CLONES
 static void gather_row(const double *x, const double *pulls, ptrdiff_t P, const ptrdiff_t *next, ptrdiff_t n,
                        double *restrict g)
@@ -299,7 +288,7 @@ static void gather_plane(const Task *t, const HexBlock *b, ptrdiff_t i)
     }
 }
 
-/* What pairs of edges add: about the six that there are of an inner edge, at both of its ends. */
+/* Add the stiffness of pairs of edges, about six for each inner edge, at both of its ends. */
 static void stiff_plane(const Task *t, const HexBlock *b, ptrdiff_t i)
 {
     const ptrdiff_t P = t->mesh->places, next[3] = {b->n[1] * b->n[2], b->n[2], 1};
@@ -319,16 +308,16 @@ static void stiff_plane(const Task *t, const HexBlock *b, ptrdiff_t i)
 
 /* ---- all of it ---- */
 
-static void corners(const Task *t, Member member)
+static void corners(Task *t, Member member)
 {
     on_planes(t, fetch_plane, member);
-    on_planes(t, even_cells, member);
-    on_planes(t, odd_cells, member);
+    for (t->odd = 0; t->odd < 2; t->odd++)
+        on_planes(t, cell_plane, member);
 }
 
 void hex_energy(const HexMesh *mesh, const HexWeights *weights, const double *x, double *room, Member member)
 {
-    const Task t = {mesh, weights, x, room, 0};
+    Task t = {mesh, weights, x, room, 0, 0};
     corners(&t, member);
     if (weights->smoothness > 0.0) {
         on_planes(&t, length_plane, member);
@@ -340,7 +329,7 @@ void hex_energy(const HexMesh *mesh, const HexWeights *weights, const double *x,
 void hex_stiffness(const HexMesh *mesh, const HexWeights *weights, const double *x, int pairs, double *room,
                    Member member)
 {
-    const Task t = {mesh, weights, x, room, 1};
+    Task t = {mesh, weights, x, room, 1, 0};
     corners(&t, member);
     if (pairs && weights->smoothness > 0.0) {
         on_planes(&t, length_plane, member);

@@ -100,7 +100,7 @@ static void along_zeta(const Spectrum3 *s, const float *from, float *to)
         spectral_panel(from, s->pitch, s->packed + k * s->m[2], to + k, s->pitch, s->m[1], s->m[2], 0);
 }
 
-/* A panel of modes over M's symbol; its rows are along xi, its columns those from k on of row j. */
+/* Divide a panel of modes, rows along xi, columns from k on of row j, by the symbol of M. */
 MESHONET_CLONES
 static void divide(const Spectrum3 *s, ptrdiff_t j, ptrdiff_t k, float *panel)
 {
@@ -118,7 +118,7 @@ static void divide(const Spectrum3 *s, ptrdiff_t j, ptrdiff_t k, float *panel)
     }
 }
 
-/* Along xi there and back, with the division between. */
+/* Transform along xi, divide, and transform back. */
 static void along_xi(const Spectrum3 *s, float *w, ptrdiff_t j, ptrdiff_t k, float *panel)
 {
     const ptrdiff_t m = s->m[0], stride = s->m[1] * s->pitch;

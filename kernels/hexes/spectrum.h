@@ -19,7 +19,7 @@ typedef struct {
     float *panels;   /* of each member */
 } Spectrum3;
 
-/* Floats that it needs, 0 without nodes; their places in it, and the transforms. `m` and `threads` are set. */
+/* Floats that it needs, 0 without nodes; and their division, with the transforms. `m` and `threads` are set before. */
 size_t spectrum3_floats(const Spectrum3 *s);
 void spectrum3_place(Spectrum3 *s, float *floats);
 

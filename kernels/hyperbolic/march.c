@@ -7,31 +7,29 @@
    the level below: Steger and Chaussee, SIAM J. Sci. Stat. Comput. 1 (1980) 431; areas smoothed along the level
    and dissipation that grows with the level, where lines converge and at concave nodes: Chan and Steger, Appl.
    Math. Comput. 51 (1992) 181. d_xi is the central difference; C is a symmetric 2x2 matrix without trace.
-   D2 r = (c+ e+ - c- e-), with c = w/|e|, is the second difference along arc length: curvature, which lets uneven
-   spacing be. Between that and c = 1, which evens spacing out at the price of angles, `even` says how much of
-   either; more where neighbouring edges differ by more than `tolerated`, and than they do on the wall, as happens
-   where lines that leave a hollow spread. To eps comes a smoothing as wide as levels are high, bend s h/w² with h the height so far, without
-   which fine grids focus lines at concave corners: the others fade as cells become narrower. The periodic block-tridiagonal system is solved by elimination without the last node, whose
-   equation then closes it. Levels that do not close have ends that move along straight lines d:
-   dr = d (d . dr of the neighbour). Levels of many nodes are eliminated from both ends to the middle, by two threads
-   where there are some; the others share what is done node by node. */
+   D2 r = (c+ e+ - c- e-) is the second difference by arc length with c = w/|e|, which keeps uneven spacing; c = 1 evens it
+   out at the price of angles. `even` is the weight of the latter; it is larger where neighbouring edges differ by more
+   than `tolerated`, and more than on the wall. eps also has the smoothing bend s h/w², with the height h so far, without
+   which fine grids focus lines at concave corners.
+
+   The periodic block-tridiagonal system is solved by elimination without the last node, whose equation then closes it.
+   Ends of open levels move along straight lines d: dr = d (d . dr of the neighbour). Levels of many nodes are eliminated
+   from both ends to the middle, by two threads; the others share what is done node by node. */
 #include "march.h"
 #include "elementary.h"
 #include "team.h"
 #include <math.h>
 #include <string.h>
 
-/* The part of the levels over which higher first cells beside a wake even out: later, the front would rise along the
-   wake, and the lines that leave it lean towards the trailing edge and crowd there. */
+/* Part of the levels over which higher first cells beside a wake even out; with more, lines crowd at the trailing edge. */
 static const double OPENED = 0.5;
-/* The part of the levels over which the smoothing of areas sets in: next to the wall it would only change the heights
-   of the first cells where the spacing along the wall has a kink. */
+/* Part of the levels over which the smoothing of areas sets in; at the wall it would change first cells at kinks. */
 static const double CALM = 0.25;
-/* What `even` grows by for each unit that neighbouring edges differ too much. */
+/* Growth of `even` per unit of excess difference of neighbouring edges. */
 static const double EVENING = 15.0;
 
 #define WIDE 1024 /* nodes of a level from which on it is eliminated from both ends, and worked on in blocks */
-#define BLOCK 256 /* nodes: whatever the share, a loop runs over the same ones, and rounds them alike */
+#define BLOCK 256 /* nodes of a loop, for equal rounding with any number of threads */
 
 typedef struct {
     double a, b, c, d; /* a b / c d */

@@ -52,7 +52,7 @@ static ptrdiff_t bezier_not_positive(const SolidLines *lines, ptrdiff_t cells)
 
 static int is_point(Vector edge) { return edge.x == 0 && edge.y == 0 && edge.z == 0; }
 
-/* Whether cell k of a row passes neither the test nor, where edges have no length, what is left of it. */
+/* Whether cell k of a row fails the test, without corners at edges of no length if others are left. */
 static int fails(const SolidLines *lines, ptrdiff_t k, int test)
 {
     const SolidEdges e = solid_edges(lines, k);

@@ -86,8 +86,8 @@ typedef struct {
     double *u[2], *v[2], *w[2][2];
 } SolidLengths;
 
-/* All metrics of a row of cells into out[metric * stride + k]; `volumes` points at that of cell k = 0, whose neighbours
-   are so many values away. */
+/* All metrics of a row of cells into out[metric * stride + k]; `volumes` points at that of cell 0, `beside` are the
+   distances of its neighbours' volumes. */
 void solid_row(const SolidLines *lines, const SolidLengths *inverse, const double *volumes, const ptrdiff_t beside[2],
                ptrdiff_t cells, ptrdiff_t stride, double *out);
 

@@ -22,8 +22,8 @@ typedef struct {
     ptrdiff_t ni, nj, nk;
 } SolidNodes;
 
-/* Which test a cell has to pass: all of its eight corner Jacobians are positive, or all of the 27 Bezier coefficients
-   of its Jacobian. Corners at which an edge has no length are left out, as long as others are left. */
+/* The test of a cell: its eight corner Jacobians are positive, or the 27 Bezier coefficients of its Jacobian. Corners at
+   an edge of no length are left out if others are left. */
 enum { SOLID_CORNERS, SOLID_BEZIER };
 
 /* Rows of cells, (ni-1, nj-1): how many cells of each do not pass. */
@@ -52,8 +52,7 @@ typedef struct {
 /* Returns 0 when there is no memory. */
 int solids_run(const SolidRun *run, int threads);
 
-/* Grid lines through the nodes (i, j, k): how their steps grow, the larger over the smaller, and by how many degrees
-   they bend. For each plane i, axis and of these two the greatest, -1 without nodes, and the sum, (ni, 3, 2, 2), and
-   the node of the greatest, (ni, 3, 2, 3); `values`, if any, takes all, (3, 2, ni, nj, nk). Returns 0 when there is no
-   memory. */
+/* Growth of steps and bend in degrees of grid lines at their nodes. `summary` (ni, 3, 2, 2): maximum (-1 without nodes) and
+   sum, for each plane i, axis, and growth or bend; `where` (ni, 3, 2, 3): the node of the maximum; `values`, if any, all of
+   them (3, 2, ni, nj, nk). Returns 0 without memory. */
 int solids_lines(const SolidNodes *nodes, int threads, double *summary, int64_t *where, float *values);

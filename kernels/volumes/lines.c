@@ -14,7 +14,7 @@ typedef struct {
 
 enum { ROWS = 8 }; /* a line's x, y, z, arc length, steps, shares of the change; its new x; spare */
 
-/* Steps times their change, and what is then missing of the whole length spread over those that change little. */
+/* Change the steps at both ends, and distribute the rest of the length over steps that change little. */
 static void change_steps(const Lines *l, double *steps, double *share, double length, double first, double last)
 {
     const ptrdiff_t cells = l->n - 1;
@@ -28,7 +28,7 @@ static void change_steps(const Lines *l, double *steps, double *share, double le
         sum += steps[k], free_sum += share[k];
     }
     const double factor = free_sum > 0.0 ? (length - sum) / free_sum : 0.0;
-    for (ptrdiff_t k = 0; k < cells; k++) /* no step is to vanish where little is free */
+    for (ptrdiff_t k = 0; k < cells; k++) /* keeps steps positive */
         steps[k] = factor > -0.9 ? steps[k] + factor * share[k] : steps[k] * length / sum;
 }
 
@@ -69,7 +69,7 @@ static void respace(const Lines *l, double *x, ptrdiff_t plane, double first, do
                                         t * u * (u * d0 - t * d1);
         }
     }
-    for (int end = 0; end < 2; end++) { /* chords, not arcs, are what is asked for */
+    for (int end = 0; end < 2; end++) { /* prescribed lengths are those of chords */
         const double wanted = end ? last : first;
         const ptrdiff_t from = end ? n - 1 : 0, to = end ? n - 2 : 1;
         double d[3], size = 0.0;

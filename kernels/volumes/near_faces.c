@@ -1,16 +1,16 @@
 /* Half-spaces that an inner node next to faces must be in, and whether they have a point in common.
 
-   At a node q of a face the corners of four cells have one edge inside, to the node p next to it, and two in the face, with
-   the normal n: they are open where n·(p - q) > 0. By Helly's theorem half-spaces have no point in common exactly when
-   four of them have none; by Farkas' lemma four have none when λ >= 0 with Σ λ n = 0 has Σ λ n·q >= 0, and λ of four
-   normals are the determinants of three of them. */
+   At a node q of a face, corners of four cells have one edge to the inner node p and two in the face, with the normal n.
+   They are valid if n·(p - q) > 0. By Helly's theorem such half-spaces have no common point exactly if four of them
+   have none. By Farkas' lemma four have none if λ >= 0, Σ λ n = 0 and Σ λ n·q >= 0; λ of four normals are the
+   determinants of three of them. */
 #include "near_faces.h"
 #include "corner3.h"
 #include "team.h"
 
 #define ROUNDING 1e-12 /* relative */
-#define PLAINLY 0.05 /* product of the sum of four unit normals with each of them: they have a common side */
-#define FLAT 1e-4    /* sum of four determinants below which normals are too nearly in a plane to tell anything */
+#define PLAINLY 0.05 /* products of normals with their sum above which half-spaces have a common point */
+#define FLAT 1e-4    /* sum of four determinants below which normals are nearly in a plane */
 #define CHUNK 256    /* nodes that a thread takes at a time */
 
 typedef struct {

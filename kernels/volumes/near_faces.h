@@ -8,6 +8,6 @@ typedef struct {
     int axis, end;
 } Wall3;
 
-/* Which inner node from first to last (excluded), numbered in order, is the first that has no place where the corners of
-   all cells beside it on some walls, at most three, across different directions, are open; -1 if all have one. */
+/* The number of the first inner node, from first to last (excluded), for which no position gives all corners of cells at
+   the walls beside it, at most three across different directions, positive Jacobians; -1 if there is none. */
 ptrdiff_t closed_node(const Wall3 *walls, int count, const ptrdiff_t *first, const ptrdiff_t *last, int threads);

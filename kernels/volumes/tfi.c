@@ -26,7 +26,7 @@
 #include <emmintrin.h>
 #endif
 
-#define WRITTEN_AROUND ((size_t)1 << 23) /* doubles from which on nodes would push all else out of the caches */
+#define WRITTEN_AROUND ((size_t)1 << 23) /* doubles above which nodes are written past the caches */
 #define HELD 60000                       /* doubles of faces that stay in the second cache */
 
 enum { ALONG = 3, SIDES = 3, ROWS = ALONG + 3 * SIDES + 3 }; /* ξ η ζ; three a coordinate; results */
@@ -44,7 +44,7 @@ typedef struct {
     int around, separable;
 } Interpolation;
 
-/* A row to memory, past the caches where that is quicker: what is written whole need not be read first. */
+/* Write a row to memory, past the caches if `around`. */
 MESHONET_INLINE void write_row(double *restrict to, const double *restrict row, ptrdiff_t n, int around)
 {
 #if defined(__SSE2__)
@@ -104,7 +104,7 @@ MESHONET_INLINE void add_spline(const Spline3 *s, const double *restrict plane, 
     }
 }
 
-/* What the sides miss of a node of bottom or top, in ξ and η; k is its place in rows. */
+/* A node of bottom or top minus the interpolation of the sides, in ξ and η; k is its place in rows. */
 MESHONET_INLINE Bilinear missing(double face, const double *west, const double *east, const double *rows,
                                  ptrdiff_t width, ptrdiff_t k)
 {

@@ -11,14 +11,14 @@ typedef struct {
     const double *west, *east, *south, *north, *bottom, *top;
 } Faces;
 
-/* For each direction four laws from 0 to 1, (4, n): of the edges at the low and high ends of the two other directions,
-   the first of these fastest: (low, low), (high, low), (low, high), (high, high). */
+/* For each direction four laws (4, n) from 0 to 1, of the edges at the (low, low), (high, low), (low, high) and
+   (high, high) ends of the two other directions. */
 typedef struct {
     const double *xi, *eta, *zeta;
 } Laws;
 
-/* A tensor product of cubic B-splines that is added inside, or none: coefficients three planes of (m1, m2, m3), and for
-   each node along a direction the first of four coefficients that reach it and their weights. */
+/* A tensor product of cubic B-splines that is added inside: coefficients (3, m1, m2, m3), and for each node along a
+   direction the first of four coefficients and their weights. */
 typedef struct {
     const double *coefficients;
     ptrdiff_t m1, m2, m3;

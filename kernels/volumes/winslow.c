@@ -3,9 +3,8 @@
        a11 x_11 + a22 x_22 + a33 x_33 + 2 (a12 x_12 + a13 x_13 + a23 x_23) = f,    x = (x, y, z),
        a11 = g22 g33 - g23², a12 = g13 g23 - g12 g33, and so on: the adjugate of the metric g_de = x_d · x_e,
 
-   by central differences with steps 1 / (n - 1) on 19 nodes; coefficients are those of the latest nodes. Lines of
-   nodes are relaxed together, all lines of a plane at once and planes in two colours: in each plane residuals come
-   first, so that its lines do not see each other. x, y and z share their factors. */
+   by central differences with steps 1 / (n - 1) on 19 nodes, with coefficients of the latest nodes. All lines of a plane
+   are relaxed at once, from residuals computed before, and planes in two colours. x, y and z share their factors. */
 #include "winslow.h"
 #include "clones.h"
 #include "team.h"

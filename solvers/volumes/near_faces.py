@@ -20,11 +20,7 @@ Ranges = list[tuple[int, int]]
 def closed_place(faces: SixFaces) -> Place | None:
     """Return indices i, j, k of an inner node that has no valid position, or None.
 
-    Each corner of a cell at a node q of a face asks n · (p - q) > 0 of the inner node p, with the normal n of
-    the corner's
-    two edges in the face. By Helly's theorem such half-spaces have a common point unless four of them have
-    none, which
-    Farkas' lemma decides.
+    Half-spaces, four for each face next to a node, must have a common point: kernels/volumes/near_faces.c.
     """
     for sides, ranges in next_to_faces(faces.counts):
         walls = tuple((np.ascontiguousarray(getattr(faces, side)), *PLACES[side]) for side in sides)
