@@ -1,8 +1,7 @@
 """Elementary functions and matrix products that are bitwise the same on every processor.
 
 NumPy's own depend on its libraries; `docs/reference/reproducibility.md` lists what does not. Arguments are
-those of
-NumPy's functions of the same name. Results are float64, or float32 for float32.
+those of NumPy's functions of the same name. Results are float64, or float32 for float32.
 """
 
 import math

@@ -24,8 +24,7 @@ class Quality:
     """Quality of a grid: numbers of cells and of folded cells, and every metric by name.
 
     `bezier_folded`: cells of volumes with a Bezier coefficient of the Jacobian that is not positive, which
-    may be folded
-    inside; None in the plane and on surfaces.
+    may be folded inside; None in the plane and on surfaces.
     """
 
     cells: int

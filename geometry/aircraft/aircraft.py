@@ -22,8 +22,7 @@ class Aircraft:
         The fuselage: a body of revolution, or a `LoftedBody`.
     wing : Stack or SurfaceWing
         Sections of the wing from inside the body to the tip, or its surface. Its longest chord is the unit of
-        first-cell
-        height and far field.
+        first-cell height and far field.
     name : str, optional
         Name of the aircraft.
     half : bool, optional

@@ -38,8 +38,7 @@ class Body:
     ------
     InputError
         Fewer than 4 points; x that does not increase; radii that are negative, or not 0 at both ends; points
-        so far apart
-        that a spline through them turns back or bulges; control characters in a name.
+        so far apart that a spline through them turns back or bulges; control characters in a name.
 
     Examples
     --------

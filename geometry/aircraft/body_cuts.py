@@ -50,8 +50,7 @@ def body_cuts(patches: Sequence[Floats], name: str) -> BodyCuts:
     """Return cuts through the half z >= 0 of a body with the surface patches `patches` (ni, nj, 3).
 
     Cuts are at the x of nodes in the plane of symmetry, and beside corners of keel and crown. An end that is
-    not a point
-    gets a cap: half an ellipsoid, half as long as the end is high.
+    not a point gets a cap: half an ellipsoid, half as long as the end is high.
 
     Raises InputError: a surface with holes, or with fewer than 4 nodes in the plane of symmetry.
     """
@@ -116,14 +115,14 @@ def _with_others(x: Floats, at: Floats, step: float) -> Floats:
 
 
 def _cap(cut: Floats, at: float, length: float) -> tuple[list[float], list[Floats]]:
-    """Return x and points of cuts through a cap on a cut (k, 2), without its point."""
+    """Return x and points of the cuts through a cap that begins at a cut (k, 2), without its tip."""
     turns = np.linspace(0.0, 0.5 * np.pi, _CAP + 1)[:-1]
     middle = np.array([0.5 * (cut[0, 0] + cut[-1, 0]), 0.0])
     return (at + length * sin(turns)).tolist(), [middle + float(c) * (cut - middle) for c in cos(turns)]
 
 
 def _edges(lattice: Indices) -> Indices:
-    """Return the edges (m, 2) of a lattice of nodes that have a length."""
+    """Return the edges (m, 2) of a lattice of nodes, without those of no length."""
     along = [np.stack([lattice[:-1].ravel(), lattice[1:].ravel()], axis=1)]
     along.append(np.stack([lattice[:, :-1].ravel(), lattice[:, 1:].ravel()], axis=1))
     edges = np.concatenate(along)

@@ -44,8 +44,7 @@ class BodySection:
     ------
     InputError
         A width without a height; sizes or an exponent out of range; points that do not begin and end at z =
-        0, have a sharp
-        corner, or are met twice by a ray from the middle.
+        0, have a sharp corner, or are met twice by a ray from the middle.
 
     Examples
     --------

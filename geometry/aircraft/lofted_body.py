@@ -25,10 +25,9 @@ class LoftedBody(Body):
     """A body given by cross-sections, with a spline surface through them.
 
     The points of the surface are (x, middle - up * shape * cos(theta), across * shape * sin(theta)), at the
-    arc length s of
-    the meridian and the angle theta; for across, up and middle see `sizes`. ``meridian`` and ``y`` are those
-    of a similar
-    body of revolution, whose radius is the mean of half the width and half the height.
+    arc length s of the meridian and the angle theta; for across, up and middle see `sizes`. ``meridian`` and
+    ``y`` are those of a similar body of revolution, whose radius is the mean of half the width and half the
+    height.
 
     Parameters
     ----------
@@ -41,8 +40,7 @@ class LoftedBody(Body):
     ------
     InputError
         Fewer than 4 sections; x that does not increase; ends that are not points, or other points; a very
-        flat section;
-        sections so different and far apart that the surface bulges between them.
+        flat section; sections so different and far apart that the surface bulges between them.
 
     Examples
     --------
@@ -125,7 +123,7 @@ class LoftedBody(Body):
 
     @cached_property
     def _flatness(self) -> LimitedSpline:
-        """Half the width over the radius; at nose and tail that of the next section."""
+        """Half the width over the radius of sections; at nose and tail that of the section beside."""
         inner = self._sizes[1, 1:-1] / self.meridian[1:-1, 1]
         return LimitedSpline(np.concatenate([inner[:1], inner, inner[-1:]]), self.arc)
 

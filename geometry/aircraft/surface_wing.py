@@ -26,8 +26,7 @@ class SurfaceWing:
     """A wing given by strips of nodes from root to tip, with straight lines along the span.
 
     Strips follow each other from the trailing edge over the upper side to the nose and back. Rows of a strip
-    are cubic
-    splines, with rising z along lines. The wing ends in a plane of constant z (`ending`).
+    are cubic splines, with rising z along lines. The wing ends in a plane of constant z (`ending`).
 
     Raises
     ------

@@ -1,8 +1,7 @@
 """Faces of a CAD file and the edges around them, independent of the library that reads it.
 
 A loop is counter-clockwise as seen from outside. An edge belongs to two faces, to one at an open end, twice
-to one that
-closes on itself; without length it is a pole.
+to one that closes on itself; without length it is a pole.
 """
 
 from collections.abc import Callable

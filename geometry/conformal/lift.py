@@ -8,8 +8,8 @@ Winslow's equations are invariant under it. Three maps take the wall of a body n
     ((v-p)/(v-q))^(1/k) = (v'-P)/(v'-Q)            straightens a corner with exterior angle k pi
     zeta' = pole + exp(w)                          unrolls the plane around the body
 
-The wall is near psi = 0 and runs counter-clockwise (`mirrored`); phi grows by 2 pi once around.
-The code, with the choice of slit and corners, is kernels/conformal/lift.c.
+The wall is near psi = 0 and runs counter-clockwise (`mirrored`); phi grows by 2 pi once around. The code,
+with the choice of slit and corners, is kernels/conformal/lift.c.
 
 Theodorsen & Garrick, NACA Report 452 (1933); Karman & Trefftz, Z. Flugtech. Motorluftschiff. 9 (1918) 111.
 """
@@ -52,8 +52,7 @@ class Lift:
     """The conformal map between the plane z around a body and a strip w = psi + i phi (`lift_body`).
 
     `centre` and `quarter` have position, rotation and size of the body; `phase` puts the first wall node at
-    phi = 0.
-    Attributes are numbers or torch tensors.
+    phi = 0. Attributes are numbers or torch tensors.
     """
 
     centre: Any
@@ -84,9 +83,8 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
     """Return the lift of a body, its wall (n,) in the strip, and the indices of its trailing corners.
 
     `wall` (n,) runs counter-clockwise from the trailing edge, without its repeated first node. With `swap`
-    the second
-    corner of a blunt edge is removed first: the two removals do not commute, and a mirrored body needs the
-    other order.
+    the second corner of a blunt edge is removed first: the two removals do not commute, and a mirrored body
+    needs the other order.
 
     Raises InputError: fewer than 8 nodes, or a wall that does not wind once around the pole.
     """

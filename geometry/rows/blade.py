@@ -30,8 +30,7 @@ class BladeSurface:
     """Surface of a blade: maps (u, h), the place around the blade and the height, to (s, theta).
 
     u is 0 at the leading edge, 0.5 at the trailing edge, 1 at the leading edge again (`BladeProfile`); for s
-    and h see
-    `Channel`. Lines of equal u are splines through the profiles, and straight beyond them.
+    and h see `Channel`. Lines of equal u are splines through the profiles, and straight beyond them.
 
     Parameters
     ----------
@@ -42,8 +41,7 @@ class BladeSurface:
     Attribute `notes` has the changes.
 
     Raises InputError, with the number of the profile from 1: profiles in another order, crossing, or too far
-    from hub and
-    casing; also as `BladeProfile`.
+    from hub and casing; also as `BladeProfile`.
     """
 
     def __init__(self, profiles: Sequence[Floats], channel: Channel, blades: int) -> None:

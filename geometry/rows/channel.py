@@ -1,8 +1,7 @@
 """The annular channel of a blade row, and the surfaces of revolution between hub and casing.
 
 Straight lines join points of equal s on both. Along them h is 0 at the hub, `foot` and `tip` at gaps of
-constant width,
-1 at the casing.
+constant width, 1 at the casing.
 """
 
 from dataclasses import dataclass

@@ -30,8 +30,7 @@ class BladeProfile:
     """A profile of a blade in a channel: a closed curve around the blade.
 
     A place u on it is 0 at the leading edge, grows along the side of larger theta to 0.5 at the trailing
-    edge, and along
-    the other side to 1.
+    edge, and along the other side to 1.
 
     Parameters
     ----------

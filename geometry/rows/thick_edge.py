@@ -24,7 +24,7 @@ def pointed(profile: BladeProfile, trailing: bool) -> bool:
 
 
 def thick_edged(profile: BladeProfile, trailing: bool) -> BladeProfile:
-    """Return a profile with a pointed edge made round, 0.01 chords thick."""
+    """Return a profile with its pointed leading or trailing edge made round, 0.01 chords thick."""
     curve, length = profile.curve, profile.curve.length
     begin, edge = profile.leading, profile.trailing
     if not trailing:

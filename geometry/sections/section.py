@@ -39,8 +39,7 @@ class Section:
         Centre of the twist, in chords from the leading edge.
     cant : float or 'panel', optional
         Angle in degrees by which the plane is rotated about the leading edge's line along x, positive like
-        dihedral.
-        ``panel``: the dihedral of the adjacent panels (`Stack.cants`).
+        dihedral. ``panel``: the dihedral of the adjacent panels (`Stack.cants`).
     nodes : int, optional
         Number of nodes along the span from the previous section to this one, with both; None: from the whole
         stack.

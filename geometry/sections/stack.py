@@ -188,8 +188,8 @@ class Stack:
         """Return nodes (m, n, 3) of the sections at the heights `z` (m,) of the leading edge.
 
         `unit` (sections, n, 2) are nodes of the given sections at unit chord. Shape, chord, twist and
-        position are interpolated
-        separately. Nodes with `weight` (n,) 0 are not twisted, and scaled by the longest chord.
+        position are interpolated separately. Nodes with `weight` (n,) 0 are not twisted, and scaled by the
+        longest chord.
         """
         fade = None if weight is None else Fade(weight, self.chord)
         placements = np.stack([section.placement for section in self.sections])

@@ -118,7 +118,10 @@ def exchange(
 
 
 def hex_mesh_of(grid: Grid) -> HexMesh:
-    """Return the mesh of the volume blocks of a grid. Raises InputError: no volumes, or left-handed."""
+    """Return the mesh of the volume blocks of a grid.
+
+    Raises InputError: a block that is no volume, or left-handed.
+    """
     for number, block in enumerate(grid.blocks):
         if len(block.counts) != 3:
             sizes = " x ".join(map(str, block.counts))

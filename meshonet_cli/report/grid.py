@@ -30,8 +30,7 @@ class Report(Timed):
     """Report of one grid.
 
     `wake` is the number of cells along the wake of a C grid, else 0. `seconds` are wall-clock seconds by
-    stage: read,
-    boundary, load (modules and models), grid, guard, quality, write, and total.
+    stage: read, boundary, load (modules and models), grid, guard, quality, write, and total.
     """
 
     method: str

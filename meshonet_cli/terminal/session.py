@@ -37,8 +37,7 @@ class Session:
     """Prints messages, and keeps the largest exit code.
 
     Tables and results for programs go to standard output, everything else to standard error. A terminal also
-    shows a
-    line of progress.
+    shows a line of progress.
 
     Parameters
     ----------

@@ -36,8 +36,7 @@ class BodyMap:
     """The map from (s, theta, zeta) to the space around a `body`, up to the distance `far`.
 
     s is 0 at the nose and the body's length at the tail, theta 0 at the keel (bottom) and pi at the crown
-    (top), zeta 0 on
-    the body and 1 in the far field.
+    (top), zeta 0 on the body and 1 in the far field.
     """
 
     def __init__(self, body: Body, far: float) -> None:

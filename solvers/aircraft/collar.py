@@ -1,8 +1,7 @@
 """The collar of a wing on a level around a body: a ring of cells between its section and a rectangle.
 
 Lines are those of an elliptic grid, turned to the normals of the section. Lines from nodes near nose and
-trailing
-edge end at the corners of the rectangle.
+trailing edge end at the corners of the rectangle.
 """
 
 import math
@@ -68,9 +67,8 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
     """Return the numbers of steps along a `root` to the nodes whose lines lead to the corners of `box`.
 
     The first is counted from the middle of the trailing edge, the second from the nose, both upwards and
-    downwards. They
-    are at least `fewest`, and cells beside a corner have similar lengths. Normals point most directly to the
-    corners.
+    downwards. They are at least `fewest`, and cells beside a corner have similar lengths. Normals point most
+    directly to the corners.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)

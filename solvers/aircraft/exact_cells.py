@@ -15,8 +15,7 @@ def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Flo
     """Return the places (..., 3) at the distance `first` from `wall` on lines towards `beside` (..., 3).
 
     Places are s, theta, zeta. Distances near the wall are a power of the fraction t of the line; the
-    exponent, 1 except at
-    a pointed nose or tail, is estimated from the last two trial values of t.
+    exponent, 1 except at a pointed nose or tail, is estimated from the last two trial values of t.
     """
     away, foot = beside - wall, space.points(wall)
     scale = inverse = np.ones(away.shape[:-1])

@@ -53,8 +53,7 @@ class AircraftPlan:
         """Return the plan for `around` nodes around each wing; the default growth is the first of `GROWTHS`.
 
         Raises InputError: a wing does not begin inside the body or does not leave it; wings are too close to
-        each other; a
-        root is too close to keel or crown.
+        each other; a root is too close to keel or crown.
         """
         chord = aircraft.wing.chord
         first, growth = request.height() * chord, request.growth or GROWTHS[0]

@@ -18,8 +18,7 @@ def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
     """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,) from the tip on.
 
     First cells are `first` (n,). Cells are (h^4 + c)^(1/4) with sizes h of constant growth from the least
-    first cell; c is
-    the constant that gives the prescribed first cell.
+    first cell; c is the constant that gives the prescribed first cell.
     """
     least = float(first.min())
     more = (np.square(np.square(first / least)) - 1.0)[:, None]

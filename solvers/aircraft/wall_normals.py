@@ -74,8 +74,7 @@ def across_tip(
     """Return the nodes `low` below and `high` beyond a tip, moved so that cells at its edge are less oblique.
 
     In the collar `ring` (n, m) the level is turned towards a right angle to the lines there, with
-    displacements that fade
-    to 0 at the ends of the lines. First cells stay `first` high.
+    displacements that fade to 0 at the ends of the lines. First cells stay `first` high.
     """
     level = high[0, ring]
     along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]

@@ -1,8 +1,7 @@
 """The front of a march, which is the wall, or wake, wall and wake; and the distance to march.
 
 The far field of an ``o`` front is a circle, that of a ``c`` front half a circle with two straight sides, both
-of the
-area of the boundary's far field.
+of the area of the boundary's far field.
 """
 
 import math
@@ -129,10 +128,8 @@ def distance_to_march(
     """Return the sum of steps by which a march from the body reaches the far field.
 
     Around a circle of n nodes a step s leads from radius r to r + s (1 - e)/(1 + f s/r + 2 e s/r): f is the
-    weight of the
-    flux along a level, e = 2π ε q/n + b h/r the dissipation, q its reduction where lines diverge. Constants
-    fitted on
-    airfoils correct this for other bodies.
+    weight of the flux along a level, e = 2π ε q/n + b h/r the dissipation, q its reduction where lines
+    diverge. Constants fitted on airfoils correct this for other bodies.
     """
     distance = front.outer - front.inner
     around = 2.0 * math.pi * settings.dissipation / len(front.start())

@@ -1,8 +1,7 @@
 """Hyperbolic grids for boundary layers, marched from the wall, with exact first-cell height.
 
 The distance to march is corrected until the far field is reached; folded cells are marched again with more
-dissipation.
-The equations are in ``kernels/hyperbolic/march.c``.
+dissipation. The equations are in ``kernels/hyperbolic/march.c``.
 """
 
 import math
@@ -74,8 +73,7 @@ def hyperbolic(
     """Return an O or C grid marched from the wall of `boundary`, whose wall nodes are kept bitwise.
 
     The far field of the solution is where the march ended. The ends of C rows move along the sides west and
-    east, which
-    are assumed to be straight. If all attempts have folded cells, so has the grid.
+    east, which are assumed to be straight. If all attempts have folded cells, so has the grid.
 
     Parameters
     ----------
@@ -86,8 +84,7 @@ def hyperbolic(
     constant : number of rows with the first-cell height.
 
     Raises InputError: a four-sided boundary; spacing or growth out of range; too few rows. Raises
-    SolverError: no attempt
-    gave finite nodes.
+    SolverError: no attempt gave finite nodes.
     """
     check_layers(wall_spacing, growth)
     if boundary.topology == "quad":

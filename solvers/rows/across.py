@@ -40,8 +40,7 @@ class ChannelLines:
         """Return how much more lines lean with places `u` (k,) than with `start` (k,).
 
         That is the increase of tangents of angles to the normal, linearised at `u`, times `weight`. `pairs`
-        (p, 2) are the
-        indices of the places that lines join.
+        (p, 2) are the indices of the places that lines join.
         """
         one = u[pairs[:, 0]]
         slope = np.interp(one, self.upper, np.gradient(self.lower, self.upper))

@@ -28,9 +28,8 @@ def even_behind(sections: Sequence[KeySection], columns: Indices) -> tuple[KeySe
     """Return the sections, at `key_heights`, with nodes behind the blade on polynomials of the height.
 
     The polynomials are those of the nodes' `SectionPlane.shares`, and of theta minus that of the trailing
-    edge. The nodes
-    `columns` (k, m) of layers are fixed; nodes near them move by a fraction, and all move less if cells would
-    get too small.
+    edge. The nodes `columns` (k, m) of layers are fixed; nodes near them move by a fraction, and all move
+    less if cells would get too small.
     """
     mesh = sections[0].layout.mesh
     values = []

@@ -47,8 +47,7 @@ def gap_ends(
     Parameters
     ----------
     beside : function of the height that returns (k, 2, 3) s, theta, h of the blade's nodes, clockwise, and of
-        those next
-        to them.
+        those next to them.
     lead : index of the node at the leading edge.
     zone : the gap.
     first, growth : height of the cells inside the outline, and largest ratio of neighbours.

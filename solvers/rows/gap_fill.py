@@ -1,8 +1,7 @@
 """Five blocks inside the outline of a blade, in a gap: a ring of four, and a core.
 
 Ring blocks count i along the outline and j inwards, the core i along side 0 and j from side 0 to side 2.
-Sides 1 and 3
-go around the edges of the blade.
+Sides 1 and 3 go around the edges of the blade.
 """
 
 from __future__ import annotations

@@ -13,8 +13,7 @@ class HarmonicMoves:
     """Displacements of nodes that are harmonic except where prescribed.
 
     A free node moves by the mean of its neighbours' moves, weighted by inverse square distances. Periodic
-    partners move
-    alike. One object serves all meshes with the same quads and prescribed nodes.
+    partners move alike. One object serves all meshes with the same quads and prescribed nodes.
 
     Parameters
     ----------

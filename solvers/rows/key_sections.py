@@ -210,8 +210,7 @@ def _carried(
     """Return a neighbour's layout with the layers and ends of a section, and u of nodes at the blade.
 
     Nodes keep their share of the way along the passage, and follow the blade's middle line in theta. The rest
-    of the moves
-    is harmonic.
+    of the moves is harmonic.
     """
     nodes = before.layout.mesh.nodes
     shares = before.plane.shares(nodes)

@@ -47,8 +47,7 @@ def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
     """Return the key sections of a row, with about `cells` cells each.
 
     `first` and `growth` are first-cell height and growth ratio of the layers. Raises InputError: no room for
-    layers, inlet
-    or outlet. Raises NoValidGridError: cells are folded.
+    layers, inlet or outlet. Raises NoValidGridError: cells are folded.
     """
     planes, coarse = _planes(row, first, growth)
     gaps = row.hub_gap > 0.0, row.tip_gap > 0.0

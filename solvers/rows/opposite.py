@@ -14,10 +14,8 @@ def opposite_places(places: Floats, pairs: Indices, lines: ChannelLines) -> Floa
     """Return places u (k,) of nodes clockwise around a blade, with a node at 1 - u for each at u.
 
     k is even, and both edges have a node, so that blocks in a gap are not skewed. `pairs` (p, 2) are nodes on
-    the upper and
-    the lower side that lines across the channel join, from the leading edge. The node at the leading edge is
-    the one with
-    which `lines` lean least.
+    the upper and the lower side that lines across the channel join, from the leading edge. The node at the
+    leading edge is the one with which `lines` lean least.
     """
     both = _both_sides(places)
     k, half = len(places), len(places) // 2
@@ -46,9 +44,9 @@ def _both_sides(places: Floats) -> Floats:
 
 
 def _leading_node(places: Floats) -> int:
-    """Return which of nodes at places u (k,), clockwise, shall be at the leading edge.
+    """Return which of the nodes at places u (k,), clockwise, shall be at the leading edge.
 
-    From it on, half of them are nearest to the upper side.
+    The half of the nodes that begins there is nearest to the upper side.
     """
     k = len(places)
     off = np.abs(wrapped(places))

@@ -39,8 +39,7 @@ class SectionPlane:
     """A section of a blade row, mapped to a plane cascade.
 
     A place u around the blade is 0 at the leading edge, 0.5 at the trailing edge after the upper side, and 1
-    after the
-    lower side.
+    after the lower side.
     """
 
     height: float  # height h in the channel, 0 at the hub to 1 at the casing

@@ -37,7 +37,7 @@ class SpanLines:
         return cls(_times(kept, values))
 
     def of(self, columns: slice | Indices) -> SpanLines:
-        """Return some of the functions."""
+        """Return the functions with these indices."""
         return SpanLines(self.coefficients[:, columns])
 
     def at(self, heights: Floats) -> Floats:

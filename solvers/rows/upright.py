@@ -31,8 +31,7 @@ def upright(
     """Return places u (k,) at hub and casing with which lines across the channel lean less.
 
     No node moves beyond an edge of the blade, and none if no line in the half of the span at a free end leans
-    by more than
-    `LEAN`.
+    by more than `LEAN`.
 
     Parameters
     ----------

@@ -21,8 +21,7 @@ def span_heights(
     """Return z (nodes,) from the first of the `sections` to the last, with a node at each.
 
     Cells decrease towards the tip to `last`, or are nearly equal. `panels` are given numbers of cells between
-    sections,
-    else None; the other panels share the remaining cells.
+    sections, else None; the other panels share the remaining cells.
 
     Raises InputError: more sections than nodes; numbers of cells that do not fit.
     """

@@ -1,8 +1,7 @@
 """The cap of a wing tip: a ring along the edge of the last section, and a core inside it.
 
 m cells on each side of trailing edge and nose face the short sides of the core, all others its long sides.
-Without a
-core, cells would have angles near 180 degrees. A round cap is as high as half the local thickness.
+Without a core, cells would have angles near 180 degrees. A round cap is as high as half the local thickness.
 """
 
 import math
@@ -49,8 +48,7 @@ class Cap:
         """Return nodes of the ring (n, rows + 1, 3) and of the core (n // 2 - 2 short + 1, 2 short + 1, 3).
 
         The closed `loop` (n, 3) is in a plane of constant z and runs from the trailing edge along the upper
-        side first. Both
-        normals point to +z, where the cap is.
+        side first. Both normals point to +z, where the cap is.
         """
         made = {(1.0, 1.0): self._placed(loop, 1.0, 1.0)}
         best = 1.0, 1.0

@@ -18,8 +18,7 @@ def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -
     """Return steps (k, rows) that fill `lengths` (k,) and end in cells of length `sizes` (k,).
 
     They begin with `first`; None: all ratios along a line are equal. Beyond the ratio `LARGEST` they do not
-    fill the
-    length (see `largest_ratio`).
+    fill the length (see `largest_ratio`).
     """
     most = math.log(LARGEST)
     low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)

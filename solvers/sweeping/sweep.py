@@ -68,12 +68,10 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
     """Return the volume grid of a planar section swept along a path.
 
     The first plane is the patch ``inlet``, the last ``outlet``; a closed path has neither. Outer patches
-    without a name are
-    called ``wall``, and those without a kind are walls.
+    without a name are called ``wall``, and those without a kind are walls.
 
     Raises InputError: the section is not planar, or is periodic; a bend is too tight for the section; the
-    path needs too
-    many planes; also as `frames_along`.
+    path needs too many planes; also as `frames_along`.
     """
     settings = settings or Sweep()
     check_planes(section, settings.planes)

@@ -23,8 +23,7 @@ def uniform_laws(counts: tuple[int, int, int]) -> Laws:
     """Return laws with equal steps along directions with `counts` nodes.
 
     The laws of a direction are (4, n) parameters from 0 to 1, for the edges at the (low, low), (high, low),
-    (low, high) and
-    (high, high) ends of the other two directions.
+    (low, high) and (high, high) ends of the other two directions.
     """
     xi, eta, zeta = (np.tile(np.linspace(0.0, 1.0, n), (4, 1)) for n in counts)
     return xi, eta, zeta
@@ -71,8 +70,7 @@ def interpolate(
     """Return nodes (ni, nj, nk, 3) by interpolation along three directions at `laws`, plus a `spline`.
 
     They are stored in `out` (3, ni, nj, nk) if given; allocation costs as much as the computation. Gordon and
-    Hall, Int. J.
-    Numer. Methods Eng. 7 (1973) 461-477.
+    Hall, Int. J. Numer. Methods Eng. 7 (1973) 461-477.
     """
     planes = np.empty((3, *faces.counts)) if out is None else out
     sides = tuple(np.moveaxis(face, -1, 0) for face in faces.faces)

@@ -1,8 +1,8 @@
 """Full approximation scheme for Winslow's equations in a volume, with semi-coarsening.
 
 Only the directions with the shortest steps are coarsened; line relaxation in three directions is then
-effective.
-Brandt, Math. Comp. 31 (1977) 333-390; Trottenberg, Oosterlee and Schüller, Multigrid (2001), section 5.1.
+effective. Brandt, Math. Comp. 31 (1977) 333-390; Trottenberg, Oosterlee and Schüller, Multigrid (2001),
+section 5.1.
 """
 
 from dataclasses import dataclass
@@ -75,8 +75,7 @@ class VolumeMultigrid:
         """Return x (3, ni, nj, nk) after a cycle on each level from the coarsest on, and two numbers.
 
         They are the largest difference of a coordinate between the two finest levels, about three
-        discretisation errors, and
-        the largest change of a coordinate in the last cycle.
+        discretisation errors, and the largest change of a coordinate in the last cycle.
         """
         last = len(self.levels) - 1
         x = self.levels[last].start.copy()

@@ -15,8 +15,7 @@ def tfi(faces: SixFaces, *, blending: Blending = "arclength") -> Solution:
     """Return the grid of a volume by transfinite interpolation between its six faces.
 
     Parameters of nodes are interpolated relative arc lengths of the edges (``arclength``), or index / number
-    of cells
-    (``linear``). Cells may fold where faces are bent.
+    of cells (``linear``). Cells may fold where faces are bent.
 
     Raises InputError: an edge without length; an unknown `blending`; a left-handed volume.
     """

@@ -52,8 +52,7 @@ def variational(
     energy : ``angles``, for right angles and gradual changes of lengths, or ``shape``, for cells like cubes.
 
     Raises InputError: cells are folded because of the faces, for any inner nodes (the error names the node);
-    an edge has
-    no length; a setting is not positive.
+    an edge has no length; a setting is not positive.
     """
     begun = time.perf_counter()
     _check(max_cycles, coarse, energy)

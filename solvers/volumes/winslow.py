@@ -26,13 +26,11 @@ def winslow(faces: SixFaces, *, tol: float | None = None, max_cycles: int | None
     """Solve Winslow's equations inside `faces`: computational coordinates are harmonic functions of x, y, z.
 
     ``a11 x_11 + a22 x_22 + a33 x_33 + 2 (a12 x_12 + a13 x_13 + a23 x_23) = 0``, with the adjugate a of the
-    metric, by
-    central differences and multigrid. Cells can fold where walls are re-entrant. Winslow, J. Comput. Phys. 1
-    (1966) 149-172.
+    metric, by central differences and multigrid. Cells can fold where walls are re-entrant. Winslow, J.
+    Comput. Phys. 1 (1966) 149-172.
 
     Cycles end when they change nodes by less than the discretisation error, or when the residual is `tol`
-    times that of the
-    transfinite interpolation.
+    times that of the transfinite interpolation.
 
     Raises InputError: cells are folded because of the faces; a setting is not positive; SolverError: cycles
     diverge.

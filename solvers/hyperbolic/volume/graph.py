@@ -1,8 +1,7 @@
 """The graph of a surface for the march: ordered neighbours, ghost nodes beyond open edges, two colours.
 
 Ghosts are mirror images in planes of symmetry, extrapolated at free edges. Red nodes are not neighbours of
-each other;
-``kernels/surfaces/graph.h`` has the arrays.
+each other; ``kernels/surfaces/graph.h`` has the arrays.
 """
 
 from __future__ import annotations

@@ -30,8 +30,7 @@ def slower_steps(steps: Floats, last_growth: Floats, growth: float) -> Floats:
     """Return `steps` (m,) of the last march, changed to grow less where cells grew too much.
 
     `last_growth` (m - 1,) are the largest ratios of cells there. They exceed those of the steps by a factor,
-    on logarithms,
-    that is assumed to depend on the distance from the wall. `growth` is the limit.
+    on logarithms, that is assumed to depend on the distance from the wall. `growth` is the limit.
     """
     length, most = float(steps.sum()), math.log(growth)
     ratio = np.maximum(log(steps[1:] / steps[:-1]), _LEAST * most)

@@ -60,8 +60,7 @@ def march_surface(
     """Return the volume between a surface and a far field, with one block per patch.
 
     Blocks have i and j of their patches; k goes from the wall (``bottom``) to the far field (``top``). Sides
-    in planes of
-    symmetry are patches ``symmetry``, sides from free edges ``free``; the others are connected.
+    in planes of symmetry are patches ``symmetry``, sides from free edges ``free``; the others are connected.
 
     Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` lists the differences.
 
@@ -71,8 +70,7 @@ def march_surface(
     remedy : remedy for folded cells, in place of the usual one.
 
     Raises InputError: impossible settings; grids of two parts would overlap. Raises NoValidGridError, with
-    the worst
-    cells: in every attempt a corner Jacobian or a Bezier coefficient of a Jacobian is not positive.
+    the worst cells: in every attempt a corner Jacobian or a Bezier coefficient of a Jacobian is not positive.
     """
     steps, far = settings.steps(surface.size), settings.distance(surface.size)
     check_parts(surface, far)
@@ -103,8 +101,7 @@ def _best(
     """Return the first volume that is good enough, or the best one, and the number of attempts.
 
     Good volumes have no folded cells and, for a `wing`, no scaled Jacobian below 0.35. If cells grow by more
-    than `growth`,
-    the march is repeated with smaller steps.
+    than `growth`, the march is repeated with smaller steps.
     """
     best: _Volume | None = None
     most = (0, -math.inf, 0.0)

@@ -78,8 +78,7 @@ class Smoothing(NamedTuple):
     """The parameters of ``kernels/surfaces/march.h`` except `size`, and two of the graph.
 
     `outer` is the ratio of explicit smoothing far away to that near the wall: up to 6 levels around a sphere
-    stay spheres,
-    16 makes better cells behind swept wings.
+    stay spheres, 16 makes better cells behind swept wings.
     """
 
     explicit: float = 0.3

@@ -1,8 +1,7 @@
 """Planes of symmetry of a surface, and its open edges moved exactly into them.
 
 A plane that walls face is none if the march would reach it before the far field. In a plane of symmetry walls
-turn away
-from it, or end at right angles.
+turn away from it, or end at right angles.
 """
 
 from typing import NamedTuple
