@@ -103,7 +103,7 @@ def _corners(x: Floats, heights: Floats) -> Floats:
 
 
 def _with_others(x: Floats, at: Floats, step: float) -> Floats:
-    """Return positions with others beside some, `at` the distances `step`, twice that, and so on."""
+    """Return positions `x` and new ones beside those `at`, at 1, 2, 4… times `step` from them."""
     own = x.tolist()
     for k in np.searchsorted(x, at).tolist():
         for other in (k - 1, k + 1):
@@ -130,7 +130,7 @@ def _edges(lattice: Indices) -> Indices:
 
 
 def _cut(nodes: Floats, edges: Indices, x: float, name: str) -> Floats:
-    """Return y and z (k, 2), from keel to crown, of edges in a plane."""
+    """Return y and z (k, 2), from keel to crown, where edges cross the plane x."""
     begin, end = nodes[edges[:, 0]], nodes[edges[:, 1]]
     cross = ((begin[:, 0] <= x) != (end[:, 0] <= x)) | ((begin[:, 0] >= x) != (end[:, 0] >= x))
     begin, end = begin[cross], end[cross]

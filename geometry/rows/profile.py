@@ -71,7 +71,7 @@ class BladeProfile:
         self._stops = _ENDS, np.array([0.0, self._sides[0], curve.length])
 
     def cornered(self, counts: Sequence[int]) -> Self:
-        """Return the profile with `counts` (0, 1 or 2) of corners at its leading and its trailing edge.
+        """Return the profile with 0, 1 or 2 corners at its leading and at its trailing edge, by `counts`.
 
         They are the points with the largest turns there; a single corner becomes the edge itself.
         """

@@ -118,10 +118,7 @@ def _with_equal_lines(plans: Sequence[ColumnPlan]) -> tuple[ColumnPlan, ...]:
 
 
 def _level_with_fin(columns: Sequence[ColumnPlan], plans: Sequence[ColumnPlan]) -> list[ColumnPlan]:
-    """Return columns with as many lines below as the column of a wing with a fin behind them.
-
-    They keep at least the bands of `plans`.
-    """
+    """Return the columns; those ahead of a wing with a fin get as many lines below as it has."""
     out = list(columns)
     for k in range(len(out) - 1, 0, -1):
         own, after = out[k - 1], out[k]

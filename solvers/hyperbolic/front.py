@@ -96,8 +96,9 @@ class Front:
         return first * self.widening
 
     def _far(self, north: Floats) -> float:
-        """Return the radius R of a C up to `north`: half a circle and sides L have πR²/2 + 2RL."""
+        """Return the radius of a C as large as the area up to `north`."""
         area = abs(polygon_area(np.concatenate([self._south[[-1]], north[::-1], self._south[[0]]])))
+        # Half a circle and two sides L: πR²/2 + 2RL.
         b = 2.0 * self._behind / math.pi
         return math.sqrt(b * b + 2.0 * area / math.pi) - b
 

@@ -133,7 +133,7 @@ def planned(
 
 
 def _begun(plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySection) -> Beginning:
-    """Return the beginning by a plan, with the middle section's nodes at the plan's places."""
+    """Return the beginning for a plan; it has the middle section's nodes at the plan's places."""
     others = [plane for plane in planes if plane is not section.plane]
     columns = [partial(LayerColumns.of, plane, plan.places.at(plane.height)) for plane in others]
     following = [partial(NextSections, plan, section)] * 2

@@ -123,7 +123,7 @@ class SectionPlane:
         return self.places[list(self.cascade.blade.corners)]
 
     def from_corners(self, arcs: Floats) -> Floats:
-        """Return the distances of arc lengths (n,) on the blade from the nearest corner, if any."""
+        """Return the distances (n,) to the nearest corner from arc lengths on the blade, or infinity."""
         off = wrapped((arcs - self.wall_arcs(self.corners)[:, None]) / self._walls[-1])
         return np.asarray(self._walls[-1] * np.abs(off).min(axis=0, initial=np.inf))
 
@@ -199,7 +199,7 @@ class SectionPlane:
 
 @lru_cache(maxsize=8)
 def _lines(surface: BladeSurface) -> tuple[Floats, CubicTable]:
-    """Return the places of a section's points, with the blade's corners, and the lines there."""
+    """Return places around a section, corners among them, and the surface's lines there."""
     u = read_only(_with_corners(clustered(_AROUND), surface.corners))
     return u, surface.lines(u)
 

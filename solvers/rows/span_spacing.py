@@ -106,7 +106,7 @@ def _from_ends(ends: Ends, growth: float, cells: int) -> Floats:
 
 
 def _sizes(largest: Floats, from_ends: Floats) -> tuple[Floats, Floats]:
-    """Return sizes (n, cells) up to `largest` (n,), and their relative slopes by that."""
+    """Return sizes (n, cells) and how much each grows, relatively, with `largest` (n,), its limit."""
     middle = _fourth(1.0 / largest)[:, None]
     both = 1.0 / (from_ends + middle)
     return np.sqrt(np.sqrt(both)), both * middle

@@ -18,9 +18,9 @@ REACH = 12.0
 
 
 def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, ...]:
-    """Restore, in place, first cells of `planes` (3, ni, nj, nk) at faces with clustered nodes; return these.
+    """Restore first cells of `planes` (3, ni, nj, nk), in place; return the faces where it was done.
 
-    First-cell heights at a face are interpolated between those of its four edges.
+    These have clustered nodes. First-cell heights at a face are interpolated between its four edges'.
     """
     kept: list[str] = []
     for axis in range(3):

@@ -36,7 +36,7 @@ def arc_laws(faces: SixFaces) -> Laws:
 
 
 def mean_laws(laws: Laws) -> Laws:
-    """Return the mean of the four laws of each direction, four times."""
+    """Return laws of which each direction has four times the mean of its four."""
     xi, eta, zeta = (np.tile(law.mean(axis=0), (4, 1)) for law in laws)
     return xi, eta, zeta
 
