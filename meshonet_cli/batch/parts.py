@@ -37,9 +37,8 @@ class PartTask:
 class PartDone:
     """Result for a part."""
 
-    # number, path: number of the part, and its file
-    number: int
-    path: str
+    number: int  # of the part
+    path: str  # of its file
     state: State  # whether the file existed before
     lacks: int = 0  # number of failed members of a part that existed before
     members: list[tuple[Item[Any], Timed | Exception]] = field(default_factory=list)  # reports or errors

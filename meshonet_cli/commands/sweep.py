@@ -76,7 +76,7 @@ def sweep(
     )] = None,
     cell_size: Annotated[float | None, o.option_of(o.DOMAIN)(
         "--cell-size", metavar="H",
-            help="Edge length of cells in the section away from walls, in the unit of the section.",
+        help="Edge length of cells in the section away from walls, in the unit of the section.",
     )] = None,
     layout: Annotated[str | None, o.option_of(o.DOMAIN)(
         "--layout", metavar="LAYOUT.json", help="Use the blocks of this layout for the section.",
