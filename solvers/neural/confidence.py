@@ -1,9 +1,6 @@
-"""Expected errors of networks' answers, without knowledge of the solutions.
+"""Expected errors of networks' grids: relative L2 norms of what a few steps of the imitated solver change.
 
-A few steps of the solver that a network imitates, from the network's answer, move its nodes by about the
-distance to the solution: the residual of the equations, in the norm of an approximate inverse. The number is
-the root mean square of these distances over that of the distances of nodes from their mean, as the relative
-L2 error of `meshonet.geometry.quality.compare`.
+The norm is that of `meshonet.geometry.quality.compare`.
 """
 
 import math
@@ -32,14 +29,13 @@ ITERATIONS = 16  # of the minimisation of the variational functional
 
 @dataclass(frozen=True)
 class Confidence:
-    """Confidence in the answer of a neural operator.
+    """Confidence in the grid of a neural operator.
 
     Parameters
     ----------
-    expected_error : expected relative L2 distance from the solution that the operator imitates; infinite if
-        nothing is known.
-    threshold : expected error up to which answers without folded cells are accepted.
-    accepted : whether the answer is accepted.
+    expected_error : expected relative L2 distance from the imitated solution; infinite if it is unknown.
+    threshold : largest expected error of accepted grids.
+    accepted : whether the expected error is small enough and no cell is folded.
     """
 
     expected_error: float
@@ -48,9 +44,9 @@ class Confidence:
 
 
 def expected_error(grid: Grid, boundary: Boundary, goal: Goal) -> float:
-    """Return the expected relative L2 distance of `grid` from the grid that the method `goal` makes.
+    """Return the expected relative L2 distance of `grid` from the ``winslow`` or ``variational`` grid.
 
-    `goal` is ``winslow`` or ``variational``. The error is infinite if the solver cannot start from `grid`.
+    The error is infinite if the solver cannot start from `grid`.
     """
     counts = tuple(min(n, MOST) for n in (boundary.ni, boundary.nj))
     if counts != (boundary.ni, boundary.nj):

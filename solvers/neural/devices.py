@@ -40,11 +40,9 @@ def solve_on(
 ) -> list[Solution]:
     """Return a grid inside each boundary; boundaries with equal node counts are computed in one batch.
 
-    `polish` is the number of Picard steps of the strip operator; quad operators make no steps here and accept
-    only ``auto`` and ``off``. `instead` makes the grids of boundaries that cannot be solved on the device.
-
-    Raises InputError: torch or the device is missing; boundaries or polish that do not suit the operator.
-    Raises MemoryError: too little device memory.
+    `polish`: number of Picard steps of strip operators; for other operators ``auto`` or ``off``; `instead`:
+    makes the grids that cannot be computed on the device. Raises InputError: torch or the device is missing;
+    boundaries or polish that do not suit the operator. Raises MemoryError: too little device memory.
     """
     if not operator.batched:
         raise InputError(f"model {operator.name} has no grids on a device", "leave {device} out")

@@ -35,13 +35,12 @@ def infer_many(
 ) -> list[Solution]:
     """Return a grid inside each boundary by a shipped model, or by one that `meshonet train` made.
 
-    `model` is the name of a shipped model, the path of a ``.safetensors`` file, ``base`` for the conformal
-    solver, or None for the default of the topology. `polish` are steps after the network
-    (`operator.Operator.solve`). With a `device`, torch computes the grids, and polish ``auto`` means 3 Picard
-    steps of a strip operator and none of a quad operator; without a `device`, NumPy computes them. Each
-    solution has a `confidence` in the network's answer; with `fallback`, answers that are not accepted are
-    replaced by grids of the method that the network imitates. Raises InputError: a model that does not exist,
-    cannot be read or does not suit a boundary; no such device.
+    `model`: name of a shipped model, path of a ``.safetensors`` file, ``base`` for the conformal solver, or
+    None for the default of the topology; `polish`: steps after the network (`operator.Operator.solve`);
+    `device`: torch computes the grids on it, and ``auto`` polish means 3 Picard steps of strip operators,
+    none of quad operators; `fallback`: replaces grids without accepted `confidence` by those of the imitated
+    method. Raises InputError: no such model or device; a model that cannot be read or does not suit a
+    boundary.
     """
     named = None if model is None else load(model)
     solutions: dict[int, Solution] = {}

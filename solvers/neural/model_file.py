@@ -83,8 +83,8 @@ def write_model(
 ) -> None:
     """Write a model file for `read_model`, whole or not at all, with each array in its own precision.
 
-    `recipe`, `figures`: settings of the training, and errors on held-out shapes; `facts`: further entries of
-    the header, which depend on the kind of model.
+    `recipe`: settings of the training; `figures`: errors on held-out shapes; `facts`: further entries of the
+    header, which depend on the kind of model.
     """
     from safetensors.numpy import save
 

@@ -59,10 +59,7 @@ class Operator(ABC):
         return "winslow"
 
     def expected_error(self, boundary: Boundary, solution: Solution) -> float:
-        """Return the expected relative L2 error of a solution of `solve` (see `confidence`).
-
-        It is infinite if the solver that the operator imitates cannot start from the solution.
-        """
+        """Return the expected relative L2 error of a solution of `solve`; see `confidence.expected_error`."""
         return expected_error(solution.grid, boundary, self.goal)
 
     def check(self, boundaries: Sequence[Boundary]) -> None:

@@ -17,9 +17,7 @@ BASE = "base"  # the harmonic base with no network, where a strip operator can b
 DEFAULTS: dict[Topology, str] = {"o": "airfoil-o", "quad": "quad-general"}  # where none is named
 
 HEADS = {"quad-winslow": ("quad-general", 0), "hole-winslow": ("hole-o", 0)}
-"""Models that are the second output of a network: for each the name of the network's file, and the index of
-the output.
-"""
+"""Models that are a further output of a network: the name of its file, and the index of the output."""
 
 NEVER = {"airfoil-c": "leave {model} out: {topology} c is marched from wall and wake, better than by a model"}
 """Models that do not exist but users may expect, with the remedy in the error message."""

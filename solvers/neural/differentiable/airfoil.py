@@ -1,7 +1,4 @@
-"""Differentiable airfoil O grids in torch: lift, harmonic base, network, Picard steps, evaluation.
-
-The formulas are those of `meshonet.solvers.conformal.solve`; folded cells are not repaired.
-"""
+"""Differentiable airfoil O grids in torch, by the formulas of `meshonet.solvers.conformal.solve`."""
 
 from functools import partial
 from typing import Literal
@@ -31,12 +28,11 @@ CLOSED = 1e-2  # what is left of an angle's difference (radians) where a corner 
 
 
 class AirfoilGrids:
-    """The airfoil operator as a differentiable function.
+    """The airfoil operator as a differentiable function; folded cells are not repaired.
 
     `model`: a strip operator, its name or path, or ``base`` for the harmonic base without a network;
-    `polish`: number of Picard steps after the network, or ``converged`` for a converged solution, with
-    gradients by implicit differentiation; `device`: torch's name of the device. Raises InputError: no such
-    model, or one that cannot be read or is of another kind.
+    `polish`: number of Picard steps after the network, or ``converged``; `device`: torch's name of the
+    device. Raises InputError: no such model, or one that cannot be read or is of another kind.
     """
 
     def __init__(
@@ -139,11 +135,7 @@ class _Correction:
         self._scale = operator.scale
 
     def __call__(self, wall: Tensor, far: Tensor, hand: Tensor) -> Tensor:
-        """Return the residual of bodies.
-
-        Where `hand` is negative, the residual of the mirror image is computed and mirrored back; where it is
-        0, the mean of both.
-        """
+        """Return the residual; negative `hand`: by way of the mirror image; 0: the mean of both."""
         flip, even = (hand < 0)[:, None], hand == 0
         answer = self._answer(*(torch.where(flip, side.conj(), side) for side in (wall, far)))
         answer = torch.where(flip[..., None], answer.conj(), answer)

@@ -1,4 +1,4 @@
-"""Limits of fixed-point iterations for a batch of problems, by Anderson acceleration.
+"""Anderson acceleration of a batch of fixed-point iterations.
 
 Walker and Ni, SIAM J. Numer. Anal. 49 (2011) 1715-1735.
 """
@@ -20,13 +20,10 @@ def limit(
 
     Parameters
     ----------
-    step : callable
-        ``step(x, members)`` returns the next iterates of `x` (m, n), which are the iterates of `members`
-        (m,).
+    step : ``step(x, members)`` returns the next iterates of `members` (m,) from their iterates `x` (m, n).
     start : (batch, n) first values.
-    tol : (batch,) a member has converged if no value changes by more than this in a step.
-    most : int
-        Largest number of steps.
+    tol : (batch,) largest change of a value in a step of a converged member.
+    most : largest number of steps.
     """
     limits, far = start.clone(), torch.ones(len(start), dtype=torch.bool, device=start.device)
     moving, x = torch.arange(len(start), device=start.device), start
@@ -63,9 +60,9 @@ class _Past:
         return few
 
     def after(self, x: Tensor, change: Tensor) -> Tensor:
-        """Return the values after `x`: those from which a linear model predicts the smallest step.
+        """Return the values after `x` for which a linear model of recent steps predicts the smallest step.
 
-        `change` is the plain step from `x`. The linear model is fitted to the most recent steps.
+        `change` is the step from `x` without acceleration.
         """
         if self._count:
             self._add(x, change)

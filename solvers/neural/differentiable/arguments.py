@@ -9,10 +9,9 @@ from meshonet.geometry.errors import InputError
 
 
 def check_sides(least: int, nj: int = 2, **sides: Tensor) -> None:
-    """Raise InputError unless `sides` (..., n, 2) are the sides of a batch of grids.
+    """Raise InputError unless `sides` (..., n, 2), in pairs of opposite sides, are those of a batch of grids.
 
-    `sides` are given by name, in pairs of opposite sides; `least` is the smallest number of nodes of a side.
-    For bodies, `nj` is the number of nodes from one side to the other.
+    `least`: smallest number of nodes of a side; `nj`: for bodies, number of nodes from wall to far field.
     """
     names = list(sides)
     first = sides[names[0]]
@@ -48,10 +47,7 @@ _CLOSE = 1e-5
 
 
 def check_corners(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> None:
-    """Raise InputError, with the index of the member, for sides (..., n, 2) that do not meet at the corners.
-
-    Under `vmap`, where values are not known, nothing is checked.
-    """
+    """Raise InputError, with the member's index, for sides that do not meet at corners; not under `vmap`."""
     pairs = {
         "south and west": (south[..., 0, :], west[..., 0, :]),
         "south and east": (south[..., -1, :], east[..., 0, :]),
@@ -80,7 +76,7 @@ def batched(
     """Return nodes (..., ni, nj, 2) inside `sides` (..., n, 2), of their type and on their device.
 
     `make` takes sides (batch, n, 2) of type `dtype` on `device`, and returns nodes (batch, ni, nj, 2). For
-    bodies, `nj` is the number of nodes from one side to the other.
+    bodies, `nj` is the number of nodes from wall to far field.
     """
     if torch.is_inference_mode_enabled():  # solvers differentiate, which tensors of this mode do not allow
         with torch.inference_mode(False), torch.no_grad():
@@ -97,8 +93,7 @@ def batched(
 def unit_of(values: Tensor) -> Tensor:
     """Return powers of 2 near the extents of `values` (batch, ...), in a shape that broadcasts with them.
 
-    The division by a power of 2 is exact. Afterwards, fourth powers of the values neither overflow nor
-    vanish.
+    Values divided by them are exact, and their fourth powers neither overflow nor vanish.
     """
     flat = values.detach().flatten(1)
     power = torch.frexp(flat.amax(1) - flat.amin(1)).exponent

@@ -1,8 +1,6 @@
-"""The functional of variational grids in torch, and its Hessian: `meshonet.solvers.energy.functional`.
+"""The variational functional of `meshonet.solvers.energy.functional` and its Hessian in torch.
 
-The value is differentiable by torch. The Hessian is assembled from derivatives by edges: for u, v of a
-corner, g = |u|², h = |v|² and J = u × v, an angle and shape term is F(g, h, J); a term of lengths is a
-squared difference of the logarithms of two neighbouring edges.
+With g = |u|², h = |v|² and J = u × v of a corner's edges u, v, its term of angle and shape is F(g, h, J).
 """
 
 from collections.abc import Iterator
@@ -18,10 +16,9 @@ _SHARES = (1 / 12, 1 / 12, 1 / 12, 1 / 12, 2 / 3)  # of these places in the mean
 _AT = ((0, 0), (1, 0), (0, 1), (1, 1))  # the nodes
 
 Stencil = dict[tuple[int, int], Tensor]
-"""Second derivatives with respect to nodes (i, j) and (i + di, j + dj), by offset (di, dj).
+"""Second derivatives (batch, 2, 2, ni, nj) by nodes (i, j) and (i + di, j + dj), by offset (di, dj).
 
-Each array has the shape (batch, 2, 2, ni, nj). For two opposite offsets only the one with positive di is
-stored; if di is 0, the one with positive dj.
+Of two opposite offsets only one is stored: that with positive di, or, if di is 0, with positive dj.
 """
 
 
@@ -31,8 +28,7 @@ class Functional:
 
     Parameters
     ----------
-    shape : float
-        The weight w of the angle term, 0 to 1.
+    shape : weight w of the angle term, 0 to 1.
     smoothness : (batch,) weights β of the lengths' term.
     """
 
@@ -40,10 +36,9 @@ class Functional:
     smoothness: Tensor
 
     def value(self, nodes: Tensor, aspect: Tensor) -> Tensor:
-        """Return the value E (batch,) of the functional for `nodes` (batch, 2, ni, nj).
+        """Return the value E (batch,) for `nodes` (batch, 2, ni, nj) without folded cells.
 
-        Cells must not be folded. `aspect` (batch,) is the ratio a of the steps along eta to the steps along
-        xi (`aspect_of`).
+        `aspect` (batch,) is the ratio of the steps along eta to those along xi (`aspect_of`).
         """
         g, h, jacobian = _measures(*_corners(nodes))
         along, across = self._harmonic(aspect)
@@ -58,9 +53,8 @@ class Functional:
     def hessian(self, nodes: Tensor, aspect: Tensor, *, convex: bool = False) -> Stencil:
         """Return the second derivatives of E at valid `nodes`, with `aspect` constant.
 
-        With `convex`, the result is a positive definite matrix near the second derivatives: negative
-        eigenvalues of the matrices of cells are set to zero, and differences of log lengths are linearised
-        (Gauss-Newton).
+        With `convex` the matrix is positive definite: negative eigenvalues of cells are set to zero, and
+        differences of log lengths are linearised (Gauss-Newton).
         """
         zero = nodes.new_zeros(len(nodes), 2, 2, *nodes.shape[2:])
         offsets = ((0, 0), (0, 1), (0, 2), (1, -1), (1, 0), (1, 1), (2, 0))
@@ -188,10 +182,7 @@ def _assembly(like: Tensor) -> Tensor:
 
 
 def _changes(family: Tensor, axis: int) -> Iterator[tuple[Tensor, Tensor, int]]:
-    """Yield differences of log lengths to the next edges, their factors, and 0 along xi, 1 along eta.
-
-    The edges of the `family` are along `axis`.
-    """
+    """Yield differences of log lengths along `axis` to next edges, their factors, and 0 (xi) or 1 (eta)."""
     length = 0.5 * torch.log((family * family).sum(1))
     counts = [n if k == axis else n - 1 for k, n in enumerate(length.shape[1:])]
     for way, count in enumerate(counts):

@@ -1,7 +1,4 @@
-"""GMRES for a batch of linear systems, each with its own Krylov space.
-
-Vectors are made orthogonal once, by classical Gram-Schmidt; what rounding leaves is seen at a restart, which
-computes the residual anew.
+"""GMRES for a batch of linear systems; vectors are made orthogonal by classical Gram-Schmidt.
 
 Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856-869.
 """
@@ -20,9 +17,9 @@ def gmres(
 ) -> Tensor:
     """Return approximate solutions x (batch, n) of A x = `right` (batch, n).
 
-    `times(x)` returns A x. A member has converged if the Euclidean norm of its residual is at most `tol`
-    times that of its `right`. The iteration restarts when the Krylov space has the dimension `space`. After
-    at most `most` products with the matrix the last iterate is returned, converged or not.
+    `times(x)` returns A x; `tol`: norm of a converged residual relative to `right`; `most`: largest number of
+    products with A, after which the last iterate is returned; `space`: dimension of the Krylov space at which
+    the iteration restarts.
     """
     x, goal = torch.zeros_like(right), tol * right.norm(dim=1)
     rest, done = right, 0

@@ -122,7 +122,7 @@ def _four_sided(
 ) -> Tensor:
     """Return the nodes (..., ni, nj, 2); `make` takes sides (batch, 2, n) and returns (batch, 2, ni, nj).
 
-    `decides`: it takes decisions by the values of tensors, such as which members have `failed`.
+    `decides`: whether `make` takes decisions by the values of tensors, such as which members have `failed`.
     """
     check_sides(3, south=south, north=north, west=west, east=east)
     check_corners(south, north, west, east)

@@ -1,8 +1,6 @@
-"""Grids that solve equations, as functions of their boundary nodes: gradients by implicit differentiation.
+"""Gradients, by implicit differentiation, of grids x that solve R(x, b) = 0 for boundary nodes b.
 
-With R(x, b) = 0 for inner nodes x and boundary nodes b, a functional whose derivative with respect to x is g
-has the derivative -R_bᵀ λ with respect to b, where R_xᵀ λ = g. This needs the solution of a single linear
-system, whatever the number of iterations was.
+A functional with the derivative g by x has the derivative -R_bᵀ λ by b, where R_xᵀ λ = g.
 """
 
 from typing import Any, Protocol
@@ -29,10 +27,9 @@ class Equations(Protocol):
         ...
 
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivative of a functional of the solution `nodes` with respect to its boundary nodes.
+        """Return the derivative of a functional of the solution `nodes` by its boundary nodes, like `nodes`.
 
-        `gradient` is the derivative of the functional with respect to all nodes as independent variables. The
-        result has the shape of `nodes`; its values at inner nodes are ignored.
+        `gradient` is its derivative by all nodes as independent variables. Values at inner nodes are ignored.
         """
         ...
 

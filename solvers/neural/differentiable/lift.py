@@ -1,7 +1,6 @@
-"""The conformal lift in torch: `meshonet.geometry.conformal.lift` with gradients by the nodes of the wall.
+"""The lift of `meshonet.geometry.conformal.lift` in torch, with gradients by the nodes of the wall.
 
-Discrete decisions are taken by the NumPy function: which nodes are corners and tips, and which branch of a
-root or a logarithm applies at a node.
+The NumPy function decides which nodes are corners and tips, and which branch of a root or logarithm applies.
 """
 
 from dataclasses import dataclass, replace
@@ -18,9 +17,9 @@ from meshonet.solvers.neural.quad.unrolled import middles
 
 @dataclass(frozen=True)
 class TorchWalls:
-    """F (n,) on both walls of the strip of a body: the `wall` and the `far` field (see `StripWalls`).
+    """F (n,) on the `wall` and the `far` field in the strip of a body (see `StripWalls`).
 
-    `lift` holds the conformal lift as tensors, `numpy` the same as NumPy arrays.
+    `lift` holds the conformal lift as tensors, `numpy` as NumPy arrays.
     """
 
     lift: Lift

@@ -17,8 +17,7 @@ class MemberError(SolverError):
 
     Parameters
     ----------
-    reasons : dict
-        By index of a member (from 0): what is wrong with this member, and what a user can do.
+    reasons : by index of a member, from 0: problem and remedy.
     """
 
     members: tuple[int, ...]
@@ -55,10 +54,7 @@ def check_failed(failed: str) -> None:
 
 
 def without_failed(make: Callable[..., Tensor], counts: tuple[int, int], *sides: Tensor) -> Tensor:
-    """Return the nodes (batch, ni, nj, 2) that `make` returns for `sides`, NaN for members without a grid.
-
-    `counts`: ni, nj.
-    """
+    """Return what `make` returns for `sides`, NaN for members without a grid; `counts`: ni, nj."""
     left = torch.arange(len(sides[0]), device=sides[0].device)
     none = sides[0].new_full((len(left), *counts, 2), torch.nan)
     while len(left):

@@ -1,8 +1,4 @@
-"""Makes `torch.func` applicable to functions whose decisions depend on the values of tensors.
-
-`torch.func.vmap` cannot follow such decisions. The function is therefore called once for the whole batch, and
-gradients come from the operations that torch recorded in the forward pass.
-"""
+"""Functions that decide by the values of tensors, for `torch.func.vmap`, which cannot follow them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -21,7 +17,7 @@ def recorded(
 ) -> Tensor:
     """Return the value of `function`, from sides (batch, n, 2) to nodes (batch, ni, nj, 2).
 
-    With `counts`, ni and nj, members without a grid are NaN, in place of a MemberError.
+    With `counts`, ni and nj, the nodes of members without a grid are NaN; otherwise MemberError is raised.
     """
     call = partial(_of_unit_size, function)
     if counts is not None:

@@ -61,9 +61,9 @@ def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None 
 
 
 def inwards(planes: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-    """Return the blending weights (.., m, n) of south, north, west and east at nodes `planes` (.., 2, m, n).
+    """Return the blending weights (.., m, n) of south, north, west and east (`algebraic.resample.quad`).
 
-    They blend the mismatch of edges into the interior: `meshonet.solvers.algebraic.resample.quad`.
+    `planes` (.., 2, m, n) are the nodes.
     """
     south, north = _both(planes)
     west, east = (share.mT for share in _both(planes.mT))

@@ -5,12 +5,10 @@ from torch import Tensor
 
 
 class Separable:
-    """The inverse of the separable operator near α u_ξξ + γ u_ηη, for `alpha`, `gamma` (batch, 1, mi, mj).
+    """The inverse of a separable operator near α u_ξξ + γ u_ηη; `alpha`, `gamma`: (batch, 1, mi, mj).
 
-    Divided by α the operator has a single coefficient, γ/α, which is approximated by a product p(ξ) q(η).
-    Eigenvectors in both directions diagonalise u_ξξ / p + q u_ηη. The product represents cells that are
-    stretched along one direction or both, as near walls. Lynch, Rice and Thomas, Numer. Math. 6 (1964)
-    185-199.
+    γ/α is approximated by a product p(ξ) q(η); eigenvectors in both directions diagonalise u_ξξ / p + q u_ηη.
+    Lynch, Rice and Thomas, Numer. Math. 6 (1964) 185-199.
     """
 
     def __init__(self, alpha: Tensor, gamma: Tensor) -> None:

@@ -23,7 +23,7 @@ SHIPPED: dict[Topology, str] = {"quad": "quad-general", "o": "hole-o"}  # by top
 class NetworkGrids:
     """An operator of the quad network as a differentiable function.
 
-    `model`: name of a shipped operator, the path of a file, or an operator; `device`: torch's name of the
+    `model`: an operator, the name of a shipped one, or the path of a file; `device`: torch's name of the
     device; `dtype`: floating-point type of the arithmetic. Raises InputError: no such model, or one that
     cannot be read or makes grids of another topology.
     """

@@ -1,9 +1,6 @@
-"""Winslow's equations in the periodic strip, in torch: Picard's step, and its limit with gradients.
+"""Picard's step for Winslow's equations in the strip (`meshonet.solvers.conformal.strip`), and its limit.
 
-The formulas are those of `meshonet.solvers.conformal.strip`. Where nodes lie much closer than the circle's
-angles, thousands of plain steps would be needed; they are accelerated. Where phi on the wall even turns back
-between nodes, accelerated steps may stall far from the limit; there plain steps of the compiled code lead
-nearer to it first.
+Steps are accelerated. Where phi on the wall turns back between nodes, steps without acceleration come first.
 """
 
 from typing import Any
@@ -36,8 +33,7 @@ def picard(c: Tensor) -> Tensor:
 class Settled(torch.autograd.Function):
     """The modes (batch, modes, LEVELS) that solve Winslow's equations, as a function of initial modes.
 
-    The highest modes are damped, so that they remain near the start. A solution c satisfies c = start +
-    smoothing (Picard(c) - start), where Picard is a step without damping.
+    A solution c satisfies c = start + smoothing (Picard(c) - start): the highest modes remain near the start.
     """
 
     @staticmethod
@@ -129,10 +125,7 @@ class _Slope:
         self._second = [fields.scale * part for part in (fields.alpha, -2.0 * fields.beta, fields.gamma)]
 
     def transposed(self, share: Tensor, members: Tensor) -> Tensor:
-        """Return the product of the transposed derivative of a step with `share` (m, LEVELS - 2, modes).
-
-        `members` (m,) are the indices of the strips.
-        """
+        """Return a step's transposed derivative times `share` (m, LEVELS - 2, modes), of `members` (m,)."""
         grid, fields = across(), self._fields
         filtered = _product(grid.vectors.T, share) * fields.smooth[members]
         r = strip.to_columns(_product(grid.inverse.T, filtered), torch)

@@ -1,11 +1,6 @@
-"""The variational optimum in torch: converged grids of batches, and their gradients.
+"""The optimum of the variational functional in torch, by Newton's method, and its gradients.
 
-Newton's method starts from the grids of the compiled solver, which also chooses the weight of the edge
-lengths for each member. Where the Hessian is not positive definite, it is moved towards its convex part, cell
-by cell, no further than needed; where a step folds cells or does not lower the functional, it is halved.
-
-Nocedal and Wright, Numerical Optimization (2006), section 3.4; Teran, Sifakis, Irving, Fedkiw, Robust
-quasistatic finite elements and flesh simulation, SCA 2005 (the convex part).
+Nocedal and Wright, Numerical Optimization (2006), section 3.4; Teran et al., SCA 2005 (the convex part).
 """
 
 from typing import NamedTuple
@@ -107,8 +102,7 @@ class _Step(NamedTuple):
 class _Quadratic:
     """The functional near `nodes`, by its Hessian, or by a convex matrix where that is not positive.
 
-    `share` (batch,) is the index in `CONVEX` of the first share to try; the attribute is that of the share
-    that was taken.
+    `share` (batch,) is the index in `CONVEX` of the first share to try, then of the share that was taken.
     """
 
     def __init__(self, nodes: Tensor, functional: Functional, share: Tensor) -> None:
@@ -189,15 +183,10 @@ def _compiled(batch: Floats) -> list[tuple[Floats, float]]:
 
 
 class BlockCholesky:
-    """The factor of a stencil's matrix at the inner nodes.
+    """The factor of a stencil's matrix at the inner nodes; `positive` (batch,): whether it exists.
 
-    Two grid lines of inner nodes are one block, since the stencil reaches two lines. Lines run along the
-    direction with fewer nodes. The work for m x n nodes, n the smaller count, is about 300 m n³ operations,
-    in products of matrices of order 4n, for all members of a batch at once: Golub and Van Loan, Matrix
-    Computations (2013), section 4.5.
-
-    `positive` (batch,) says whether the matrix of each member is positive definite; if not, its factor cannot
-    be used.
+    Two grid lines along the direction with fewer nodes are one block. The work for m x n nodes, n the smaller
+    count, is about 300 m n³ operations. Golub and Van Loan, Matrix Computations (2013), section 4.5.
     """
 
     def __init__(self, stencil: Stencil) -> None:

@@ -1,7 +1,4 @@
-"""Winslow's equations in torch: converged grids of batches, and their gradients.
-
-Newton's method solves them, from coarse copies to the grid itself; GMRES solves its linear systems.
-"""
+"""Converged Winslow grids in torch, and their gradients, by Newton's method on successively finer grids."""
 
 import torch
 from torch import Tensor
@@ -94,8 +91,8 @@ def nested(nodes: Tensor) -> Tensor:
 def newton(nodes: Tensor, tol: float, *, strict: bool = True) -> Tensor:
     """Return the solution of Winslow's equations near `nodes` (batch, 2, ni, nj).
 
-    A member has converged if its preconditioned residual is at most `tol` times its extent. Raises
-    MemberError, if `strict`, with the members that have not converged.
+    `tol`: preconditioned residual of a converged member, relative to its extent. Raises MemberError, if
+    `strict`, with the members that have not converged.
     """
     nodes = nodes.clone()
     extent = (nodes.amax((2, 3)) - nodes.amin((2, 3))).amax(1)
@@ -148,10 +145,7 @@ class _Linearised:
         return self._inverse.solve(change).flatten(1)
 
     def transposed(self, rows: Tensor) -> Tensor:
-        """Return the product of the residual's transposed derivative with `rows` (batch, 2, mi, mj).
-
-        The derivative is that with respect to all nodes.
-        """
+        """Return the transposed derivative of the residual by all nodes, times `rows` (batch, 2, mi, mj)."""
         xi, eta, bend, twist, rise = self._here
         rows = self._inverse.solve_transposed(rows)
         by_alpha, by_beta, by_gamma = 2.0 * _dot(rows, bend), -2.0 * _dot(rows, twist), 2.0 * _dot(rows, rise)

@@ -36,7 +36,7 @@ class Task(nn.Module):
     def forward(self, rows: Tensor, step: int) -> Tensor:
         """Return the weighted parts of the loss, each a mean over the training shapes with indices `rows`.
 
-        `step` seeds random draws, so that a resumed run and every process draw the same numbers.
+        `step` seeds random draws, so that all processes and resumed runs draw the same numbers.
         """
 
     def differentiate(self, parts: Tensor, team: Team) -> None:  # noqa: ARG002 - for those who average themselves
@@ -69,9 +69,9 @@ class Run:
 class Progress:
     """Progress of a run: figures of the epochs since the last report.
 
-    `loss` and its `parts` are means over the steps; `held_out` are figures of the held-out shapes, if they
-    were evaluated; `rate` is the learning rate; `seen` counts shapes since the start, once per epoch;
-    `seconds`, `speed` (shapes per second) and `done` (epochs) are those of this process.
+    `loss` and its `parts`: means over the steps; `held_out`: figures of the held-out shapes, or nothing;
+    `rate`: learning rate; `seen`: shapes since the start, counted once per epoch; `seconds`, `speed` (shapes
+    per second) and `done` (epochs): of this process.
     """
 
     epoch: int
@@ -110,12 +110,11 @@ def fit(
 ) -> int:
     """Train `task` in place and return the epoch whose weights it has.
 
-    A checkpoint is written to `checkpoint` every `plan.checkpoint_every` epochs; `resume` starts from it.
-    With `plan.patience` the final weights are those with the least held-out loss. `facts`: settings
-    (including ``model``) that a checkpoint must have in common with this run; `report`: called every
-    `plan.log_every` epochs and at the end. Raises InputError: a checkpoint of another model or of other
-    settings; patience without held-out shapes. Raises SolverError: a loss or a weight that is not finite, not
-    enough memory; the last checkpoint is kept.
+    With `plan.patience` these are the weights with the least held-out loss. `checkpoint`: file that is
+    written every `plan.checkpoint_every` epochs, and from which `resume` starts; `facts`: settings, with
+    ``model``, that must equal those of the checkpoint; `report`: called every `plan.log_every` epochs and at
+    the end. Raises InputError: a checkpoint of other settings; patience without held-out shapes. Raises
+    SolverError: a loss or weight that is not finite; too little memory. The last checkpoint is kept.
     """
     trained = list(task.parameters())
     optimiser: torch.optim.Optimizer = torch.optim.Adam(trained, plan.rate, fused=True)
@@ -253,7 +252,7 @@ def save_checkpoint(path: Path, state: Mapping[str, Any]) -> None:
 def load_checkpoint(path: Path, facts: Mapping[str, Any]) -> dict[str, Any] | None:
     """Return the state that was saved, None when there is no file.
 
-    Raises InputError: the file is no checkpoint, or a checkpoint of another model or with other settings.
+    Raises InputError: the file is no checkpoint, or one of another model or other settings.
     """
     if not path.exists():
         return None

@@ -23,10 +23,9 @@ from meshonet.solvers.neural.samples import Samples
 class ModelTask(Task):
     """Training of a model of the paper.
 
-    `model`: the architecture; `training`: the training shapes; `targets`: (n, ni, nj, 2) the wanted outputs
-    for these shapes; `points`: numbers of points drawn for each step, inside and on the boundary (None takes
-    all); `seed`: of the initial weights and of the points. `samples`: the samples on which `figures`
-    evaluates the trained model, by their splits; initially those of training.
+    `targets`: (n, ni, nj, 2) the wanted outputs for the shapes `training`; `points`: numbers of points drawn
+    for each step, inside and on the boundary (None: all); `seed`: of initial weights and points. Attribute
+    `samples`: shapes with splits on which `figures` evaluates the model; initially `training`.
     """
 
     def __init__(
@@ -69,9 +68,8 @@ class ModelTask(Task):
 def judged(operator: PaperOperator, samples: Samples) -> dict[str, float]:
     """Return the errors of a model on `samples`, before edges are replaced; without samples, an empty dict.
 
-    `median` and `worst` are the median and the maximum of the relative L2 error with respect to the solved
-    grids. `boundary` is the largest distance of a predicted boundary node from the given one. `folded` is the
-    number of folded cells in all grids.
+    `median`, `worst`: of the relative L2 error against the solved grids; `boundary`: largest distance of a
+    boundary node from the given one; `folded`: number of folded cells in all grids.
     """
     boundary, errors, folded = 0.0, [], 0
     for nodes, edges in zip(samples.nodes, samples.boundaries(), strict=True):

@@ -1,9 +1,4 @@
-"""The networks in torch, for training and for gradients; inference in NumPy shares the order of their layers.
-
-The strip network is that of `meshonet.solvers.neural.strip.network`. The quad network, a U-Net on a small
-grid, is equivariant under the eight symmetries of a quad (`meshonet.solvers.neural.quad.network`). Around a
-body its layers are periodic along xi; for a quad they are padded with zeros.
-"""
+"""The networks of `neural.strip.network` and `neural.quad.network` as torch modules."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -40,7 +35,7 @@ class StripFNO(NamedParameters):
     """The strip network, from the inputs of `meshonet.solvers.neural.strip.encoding` to `outputs` channels.
 
     `inputs`, `scalars`, `outputs`: channel counts; `width`, `modes`: channels and Fourier modes of the hidden
-    state; `layers`: count of Fourier layers.
+    state; `layers`: number of Fourier layers.
     """
 
     def __init__(
@@ -66,10 +61,9 @@ def _first_of_strip(name: str, shape: tuple[int, ...], shapes: dict[str, tuple[i
 class QuadUNet(NamedParameters, UNet[Tensor]):
     """The quad network, from features of a grid to displacements of its nodes.
 
-    The network has several levels; each has half as many nodes per direction as the one before. `widths` are
-    the numbers of channels on each level, in sets of eight, the finest level first. `blocks` are the numbers
-    of residual blocks on each level, both on the way to coarser levels and on the way back. `around` says
-    that grids are O grids, periodic along xi.
+    `widths`: sets of eight channels on each level, the finest first; each level has half as many nodes per
+    direction as the one before; `blocks`: residual blocks on each level, on the way down and again on the way
+    back; `around`: whether grids are O grids, periodic along xi and not padded with zeros.
     """
 
     def __init__(self, widths: Sequence[int], blocks: Sequence[int], around: bool = False) -> None:
@@ -83,10 +77,10 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
             self.register_buffer(name, values, persistent=False)
 
     def forward(self, features: Tensor) -> Tensor:
-        """Return displacements (batch, heads, m, n), complex, for `features` (batch, m, n, FEATURES).
+        """Return displacements (batch, heads, m, n), complex and 0 on the boundary, for `features`.
 
-        They are zero on the boundary. In four-sided domains m equals n. Around bodies m must be divisible by
-        2 as many times as there are levels below the finest.
+        `features` (batch, m, n, FEATURES): in four-sided domains m equals n; around bodies m must be
+        divisible by 2 once for each level but the finest.
         """
         answer = self.through(features.movedim(-1, 1), self.counts)
         rim = torch.tensor(

@@ -34,10 +34,8 @@ class OperatorTask(ModelTask):
         loss = interior * mean |error|^2 inside + boundary * mean |error|^2 on the boundary
 
     over the points of a step, in squares of the unit of length; error = output - (grid - base). If the model
-    has a base, both terms are divided by the mean square of grid - base, so that the loss is of order 1.
-    `model`: the architecture; `training`, `held_out`: shapes to train on, and to monitor the loss; `points`:
-    numbers of points drawn for each step, inside and on the boundary (None takes all); `seed`: of the initial
-    weights and of the points.
+    has a base, both terms are divided by the mean square of grid - base. `held_out`: shapes on which the loss
+    is monitored; other parameters: `ModelTask`.
     """
 
     def __init__(
@@ -130,9 +128,8 @@ def run(
 ) -> Run:
     """Return the run that trains `model` on the training split of `data`, never on its test split.
 
-    `held_out`: number of training grids, spread evenly, that are held out to monitor the loss; `settings`: of
-    the model, in place of its defaults. Raises InputError: too few grids; settings that the model does not
-    have.
+    `held_out`: number of training grids, spread evenly, on which the loss is monitored; `settings`: of the
+    model, in place of its defaults. Raises InputError: too few grids; unknown settings.
     """
     made = architecture(model, data.topology, settings)
     rows = np.arange(len(data)) if made.physics else data.where("train")

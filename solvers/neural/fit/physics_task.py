@@ -17,8 +17,8 @@ from meshonet.solvers.neural.samples import Samples
 class PhysicsTask(ModelTask):
     """Networks of `MGNet` or `MeshNet` on the geometries of `samples`.
 
-    `points`: numbers of points drawn for each step, inside (anywhere, not only at nodes) and on the boundary
-    (at nodes); None takes every node.
+    `points`: numbers of points drawn for each step, anywhere inside and among the nodes of the boundary; None
+    takes every node.
     """
 
     model: MGNet

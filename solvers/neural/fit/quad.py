@@ -34,9 +34,8 @@ HELD_OUT = 600  # domains, so that one folded grid is a fraction of 0.2 %
 AVERAGED = 0.999  # decay per step of the exponential moving average of the weights, which the file holds
 
 PARTS = {"winslow": 0.2, "variational": 1.0, "angles": 5.0, "widest": 1.0, "folds": 0.8}
-"""Weights of the parts of the loss: the distances from Winslow's and from variational grids; the mean angle,
-the largest angle and the folds of the variational output. The first weight is small, because the Picard steps
-of the base almost give Winslow's grids.
+"""Weights of the parts of the loss: distances from Winslow's and variational grids; mean angle, largest angle
+and folds of the variational output.
 """
 
 FADE_IN = (0.1, 0.3)  # fractions of all steps between which angles and folds are faded into the loss
@@ -53,13 +52,10 @@ class QuadUNetSizes:
 
 
 class QuadTask(Task):
-    """Training of the quad network on the edges (node to node) of both target grids.
-
-    In later steps the loss also contains the angles of the network's grids.
+    """Training of the quad network on the edges (node to node) of both target grids, later also on angles.
 
     `training`, `held_out`: domains; `sizes`: of the network; `steps`: number of training steps in the whole
-    run; `device`: to compute on; `weights`: of the parts of the loss, by name; `initial`: initial weights of
-    the network, by name.
+    run; `weights`: of the parts of the loss, by name; `initial`: initial weights of the network, by name.
     """
 
     parts: tuple[str, ...] = tuple(PARTS)
@@ -182,9 +178,9 @@ def run(
 ) -> Run:
     """Return the run that trains the quad network; the last `held_out` domains are never trained on.
 
-    `initial`: quad operator that gives the initial weights and the sizes; `weights`: of parts of the loss, by
-    name, in place of those in `PARTS`. Raises InputError: fewer domains than one batch after those held out;
-    a weight of an unknown part, or a negative or non-finite one; an initial operator of another kind.
+    `initial`: quad operator that gives the initial weights and the sizes; `weights`: of parts of the loss, in
+    place of those in `PARTS`. Raises InputError: fewer domains than one batch after those held out; a weight
+    of an unknown part, or a negative or non-finite one; an initial operator of another kind.
     """
     sizes, kept = sizes or QuadUNetSizes(), plan.kept(len(data), held_out, "domains")
     if initial is not None:

@@ -21,10 +21,9 @@ Grids = NDArray[np.complexfloating[Any, Any]]
 def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: Grids) -> dict[str, Any]:
     """Return figures that compare the network's grids `answers` (m, heads, n, n) with targets (m, n, n).
 
-    Two figures of angles at cell corners are used: the largest angle of a grid, and the mean over all cells
-    of the largest angle of the cell. A gain is the improvement of such a figure over Winslow's grid, divided
-    by the improvement that the variational grid has. Gains leave out domains whose Winslow grid has folded
-    cells.
+    Figures of angles are the largest corner angle of a grid, and the mean over cells of each cell's largest.
+    A gain is the improvement of a figure over Winslow's grid, divided by that of the variational grid;
+    domains whose Winslow grid has folded cells are left out.
     """
     solved, best = angles(winslow), angles(variational)
     valid = solved[0] < 360.0
@@ -47,9 +46,9 @@ def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: G
 
 
 def angles(z: Grids) -> tuple[Floats, Floats]:
-    """Return the maximum and the mean (m,) of the largest angles of cells, for grids `z` (m, n, n).
+    """Return the maximum and the mean (m,) of cells' largest angles, in degrees, for grids `z` (m, n, n).
 
-    Both are in degrees, and 360 for a grid with folded cells.
+    Both are 360 for a grid with folded cells.
     """
     least, most = (np.degrees(value.numpy()) for value in extremes(torch.from_numpy(z)))
     folded = (least <= 0.0).any((1, 2)) | (most >= 180.0).any((1, 2))
@@ -71,10 +70,9 @@ def _share(values: Bools) -> float:
 def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
     """Return three measures (batch,) of how much worse grids `z` (batch, m, n), complex, are than `goal`.
 
-    The first two compare the mean and the maximum, over all cells, of the cell's largest angle: by how many
-    radians it is greater in `z` than in `goal`, or 0. The third is log(1 + s / `SLIGHT`), where s is the sum
-    over all cells of the amounts by which angles are outside the range from `NARROW` to `WIDE`; for each cell
-    this range is extended to include its angles in `goal`.
+    The first two are excesses, in radians or 0, of the mean and of the maximum over cells of the cell's
+    largest angle. The third is log(1 + s / `SLIGHT`), where s sums the parts of angles outside of `NARROW` to
+    `WIDE`, or outside of the angles that the same cell has in `goal`.
     """
     least, most = extremes(z)
     with torch.no_grad():
@@ -88,8 +86,7 @@ def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
 def extremes(z: Tensor) -> tuple[Tensor, Tensor]:
     """Return the smallest and the largest corner angle of each cell (batch, m - 1, n - 1), in radians.
 
-    Angles of folded corners are below 0, down to -90 degrees, or above 180, so that the loss has a gradient
-    there.
+    Angles of folded corners are below 0, down to -π/2, or above π, so that the loss has a gradient there.
     """
     u, v = z.diff(dim=1), z.diff(dim=2)
     south, north, west, east = u[:, :, :-1], u[:, :, 1:], v[:, :-1], v[:, 1:]

@@ -24,9 +24,8 @@ from meshonet.solvers.neural.samples import Samples, gathered
 class Quads:
     """m domains of unit size: `base`, `winslow` and `variational` grids (m, n, n), complex64.
 
-    `base` and `step`, the last Picard step to it, are what `approach` returns for transfinite grids. If
-    domains are `around` bodies, they are unrolled to strips (m, 65, n), and `approach` starts from equal
-    steps between wall and far field.
+    `base` and its last Picard `step` are results of `approach` from transfinite grids; `around` bodies the
+    grids are unrolled strips (m, 65, n), from equal steps between wall and far field.
     """
 
     base: Tensor
@@ -50,9 +49,8 @@ class Quads:
 def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
     """Return the normalised domains that datasets of Winslow's and of variational grids have in common.
 
-    The method of a dataset is that of its first grid; several datasets may have the same method. Raises
-    InputError: there are no grids, grids by only one of the two methods, or grids by other methods; also as
-    `quads`.
+    The method of a dataset is that of its first grid. Raises InputError: no grids by one of the two methods,
+    or grids by another method; also as `quads`.
     """
     groups: dict[str, list[Grid]] = {}
     for dataset in datasets:

@@ -42,10 +42,7 @@ class StripSizes:
 class StripTask(Task):
     """Training of the strip network on solved strips and their mirror images.
 
-    Strips with small residuals get larger weights.
-
-    `training`, `held_out`: strips for training, and for measuring errors; `sizes`: of the network; `device`:
-    on which to compute.
+    `held_out`: strips on which errors are measured; `sizes`: of the network.
     """
 
     parts: tuple[str, ...] = ("difference",)
@@ -67,11 +64,9 @@ class StripTask(Task):
         return (self.importance[rows] * (error**2).sum(1).mean(1)).mean()[None]
 
     def validate(self) -> dict[str, float]:
-        """Return quantiles over the held-out strips of the `distance` between the predicted and the exact R.
+        """Return ``loss`` (the median), ``p90`` and ``worst`` of held-out strips' `distance` from R.
 
-        R is the difference of Winslow's solution and the harmonic base.
-
-        Keys are ``loss`` (the median), ``p90`` (the 90th percentile) and ``worst`` (the maximum).
+        R is Winslow's solution minus the harmonic base.
         """
         pairs = zip(self.answers(), self.held_out.residual, strict=True)
         errors = [distance(answer, goal) for answer, goal in pairs]
@@ -86,10 +81,7 @@ class StripTask(Task):
         return list(decode(out.numpy().astype(np.float64), self.basis, self.scale, size))
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
-        """Return quantiles over the held-out strips of the distance to R, for the network and for zero.
-
-        R is the difference of Winslow's solution and the harmonic base.
-        """
+        """Return quantiles over the held-out strips of the distance to R, for the network and for zero."""
         test, errors = self.held_out, dict[str, list[float]]()
         for wall, far, goal, answer in zip(test.wall, test.far, test.residual, self.answers(), strict=True):
             base = harmonic(wall, far, across().eta)
@@ -137,10 +129,7 @@ def run(
 
 
 def distance(answer: Complexes, goal: Complexes) -> float:
-    """Return the root mean square of |answer - goal| over the strip, in radians.
-
-    Both are given by their modes (.., LEVELS).
-    """
+    """Return the root mean square over the strip of |answer - goal|, in radians, from modes (.., LEVELS)."""
     return float(np.sqrt((np.abs(answer - goal) ** 2).sum(axis=0).mean()))
 
 

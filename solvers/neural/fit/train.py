@@ -35,7 +35,7 @@ def train(
     report: Callable[[Progress], None] | None = None,
     **choices: Any,
 ) -> dict[str, Any]:
-    """Fit a model, write it to `output` with its recipe and its figures on held-out shapes; return these.
+    """Train a model, write its file, and return its figures on held-out shapes.
 
     Raises InputError: no such model; too few shapes; a checkpoint of another model, data or settings; choices
     that do not suit the model. Raises SolverError: as `meshonet.solvers.neural.fit.loop.fit`.
@@ -43,8 +43,8 @@ def train(
     Parameters
     ----------
     model : one of `models.architectures.MODELS`, or `OF_VOLUMES`.
-    data : `strip.dataset.Strips` for ``strip``, `fit.quad_grids.Quads` for ``quad``, a list of `SixFaces` for
-        `OF_VOLUMES`, else `samples.Samples`.
+    data : `Strips` for ``strip``, `Quads` for ``quad``, a list of `SixFaces` for `OF_VOLUMES`, else
+        `Samples`.
     output : path of the model file.
     plan : settings of the loop (see `standard`).
     team : the processes that train together.

@@ -1,14 +1,6 @@
-"""Training of 3DMeshNet on the six faces of volumes, all geometries at once.
+"""Training of 3DMeshNet: Peng, Chen & Liu, arXiv 2407.01560.
 
-::
-
-    loss = sum over both parts of exp(-s) L / 2 + s / 2
-    L_winslow = mean |sum_ij a_ij X_ij|^2        a the adjugate of the metric, central differences
-    L_faces   = mean |X - U|^2
-
-in units of each geometry's own size; s are trained with the network (the logarithm of the variance of each
-part). Gradients of the two parts that conflict are projected onto each other's normal plane. Peng, Chen &
-Liu, arXiv 2407.01560; Kendall, Gal & Cipolla, arXiv 1705.07115; Yu et al., arXiv 2001.06782.
+Kendall, Gal & Cipolla, arXiv 1705.07115 (weights); Yu et al., arXiv 2001.06782 (projected gradients).
 """
 
 from collections.abc import Mapping, Sequence
@@ -65,9 +57,13 @@ class VolumeTask(Task):
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the weighted parts of the loss over the geometries `rows`, then a term of the weights.
+        """Return the parts of the loss over the geometries `rows`, in units of each geometry's own size.
 
-        This term is half the sum of the logarithms of the inverse weights.
+        ::
+
+            loss = sum over both parts of exp(-s) L / 2 + s / 2        s trained, log of the part's variance
+            L_winslow = mean |sum_ij a_ij X_ij|^2        a the adjugate of the metric, central differences
+            L_faces   = mean |X - U|^2
         """
         rng = np.random.default_rng([self.seed, 1, step])
         inner = tensor(rng.uniform(-1.0, 1.0, (self.points[0], 3))).to(rows.device)
@@ -187,7 +183,7 @@ def run(
 ) -> Run:  # fmt: skip
     """Return the run that trains a network for each volume of `data`.
 
-    Raises InputError: volumes held out; settings that the model does not have.
+    Raises InputError: volumes held out; unknown settings.
     """
     if held_out:
         raise InputError("a network for one volume holds none out", "leave {held_out} out")

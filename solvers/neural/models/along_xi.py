@@ -1,13 +1,4 @@
-"""Operators along xi: eta is in the channels, and one-dimensional layers act on functions of xi.
-
-::
-
-    in    at every xi: x and y of south and north, of west and east at a few eta (the same for all), xi
-    out   x and y at every eta, for every xi
-
-This is the change that makes grids of an operator between functions of one variable. They are evaluated on
-the nodes of the training grids.
-"""
+"""Operators on functions of xi: the nodes of a grid line along eta are channels."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,9 +17,12 @@ PROJECT = 128  # width of the hidden layer that leads to the nodes
 
 @dataclass(frozen=True)
 class AlongXi(Architecture):
-    """An operator along xi.
+    """An operator from functions of xi to functions of xi, evaluated on the nodes of the training grids.
 
-    Input channels are mapped to `width` channels, these pass `hidden`, and are then mapped to outputs.
+    ::
+
+        in    at every xi: x and y of south and north, of west and east at a few eta (the same for all), xi
+        out   x and y at every eta, for every xi
     """
 
     width: int = 48  # channels of the hidden state

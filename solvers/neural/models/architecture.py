@@ -36,10 +36,7 @@ class Architecture:
 
     @property
     def native(self) -> bool:
-        """Whether the model can be evaluated only on the nodes of its training grids.
-
-        Grids with other nodes are then interpolated by splines.
-        """
+        """Whether the model has answers only at the nodes of its training grids, for splines between."""
         return False
 
     def shapes(self, frame: Frame) -> Shapes:
@@ -49,7 +46,7 @@ class Architecture:
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
         """Return constant arrays, by name, computed from the training set and not trained.
 
-        `targets` (n, ni, nj, 2) are the differences between the training grids and their base grids (`base`).
+        `targets` (n, ni, nj, 2) are the training grids minus their base grids (`base`).
         """
         return {}
 
@@ -65,10 +62,7 @@ class Architecture:
         return None
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return the trunk's input (p, features) at `points` (p, 2) in (xi, eta).
-
-        The input does not depend on trained parameters, so training computes it once for all nodes.
-        """
+        """Return the trunk's input (p, features) at `points` (p, 2) in (xi, eta), which is not trained."""
         return points
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:

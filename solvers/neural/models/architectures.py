@@ -28,14 +28,13 @@ ARCHITECTURES: dict[str, str] = {
 """Class of each model that is trained on solved grids, in the order of the help."""
 
 MODELS = ("strip", "quad", *ARCHITECTURES)
-"""Names of trainable models: the airfoil operator in the periodic strip, trained on boundaries; the operator
-for four-sided domains or bodies, on Winslow's and variational grids; those of the paper, on solved grids."""
+"""Names of trainable models: for airfoils, for four-sided domains or bodies, and those of the paper."""
 
 
 def architecture(name: str, topology: Topology, settings: Mapping[str, Any] | None = None) -> Architecture:
     """Return the model `name` of `ARCHITECTURES`, with `settings` instead of its defaults.
 
-    Raises InputError: there is no such model or setting, or a value has another type than the setting.
+    Raises InputError: no such model or setting, or a value of another type than the setting.
 
     >>> architecture("meshonet", "quad", {"sensors": 80}).sensors
     80

@@ -1,20 +1,6 @@
 """DeepONets: inner products of branch features (of the boundary) and trunk features (of points).
 
-With s the coordinates of m sensors, [:k] and [k:] the halves of features for x and y, and biases b::
-
-    MeshONet       x = branch_x(s_x) . trunk(lift(xi, eta)) + b            y = branch_y(s_y) . the same + b'
-    DeepONet       x = branch(s)[:k] . trunk(xi, eta)[:k] + b              y by [k:]
-    MIONet         x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b         y by [k:]
-    POD-DeepONet   (x, y) = mean + sum_k branch(s)_k * mode_k(xi, eta)
-
-MeshONet is exactly that of the paper, with the authors' published settings: branch 50-64-128-64-50, trunk
-12-50-50-50-50 with tanh after its last layer, powers to 4, 900 interior + 1000 boundary; 54,482 parameters.
-POD-DeepONet's trunk is the proper orthogonal decomposition of the training grids (x and y of a grid form one
-vector), scaled so that the branch's outputs are of the order of 1; it is evaluated on their nodes.
-
-Xiao et al., arXiv 2501.11937; Lu et al., Nature Machine Intelligence 3 (2021) 218; Computer Methods in
-Applied Mechanics and Engineering 393 (2022) 114778, sections 3.1.4 and 3.1.6; Jin, Meng & Lu, SIAM Journal on
-Scientific Computing 44 (2022) A3490.
+s: coordinates of m sensors; [:k], [k:]: halves of features for x and y; b: biases.
 """
 
 from dataclasses import dataclass
@@ -31,7 +17,11 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONet(Architecture):
-    """The operator of the MeshONet paper: two branches, one for x and one for y, and one trunk."""
+    """The operator of the MeshONet paper with the authors' settings; 54,482 parameters.
+
+    ``x = branch_x(s_x) . trunk(lift(xi, eta)) + b``, and y likewise with the same trunk; tanh after its last
+    layer. Xiao et al., arXiv 2501.11937.
+    """
 
     interior: ClassVar[float] = 900.0
     boundary: ClassVar[float] = 1000.0
@@ -59,7 +49,10 @@ class MeshONet(Architecture):
 
 @dataclass(frozen=True)
 class DeepONet(Architecture):
-    """One branch and one trunk; half of their features are for x, the other half for y."""
+    """One branch and one trunk; half of their features are for x, the other half for y.
+
+    ``x = branch(s)[:k] . trunk(xi, eta)[:k] + b``. Lu et al., Nature Machine Intelligence 3 (2021) 218.
+    """
 
     hidden: tuple[int, ...] = (64, 128, 64)  # widths of a branch's hidden layers
     features: int = 50  # of each coordinate
@@ -81,9 +74,10 @@ class DeepONet(Architecture):
 
 @dataclass(frozen=True)
 class MIONet(DeepONet):
-    """Two branches, one for x and one for y of the sensors, whose features are multiplied; one trunk.
+    """Two branches, for x and y of the sensors, whose features are multiplied, and one trunk.
 
-    Half of the features serve the x of the nodes, the other half the y.
+    ``x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b``, y by [k:]. Jin, Meng & Lu, SIAM Journal
+    on Scientific Computing 44 (2022) A3490.
     """
 
     def shapes(self, frame: Frame) -> Shapes:
@@ -99,7 +93,12 @@ class MIONet(DeepONet):
 
 @dataclass(frozen=True)
 class PODDeepONet(Architecture):
-    """A branch whose outputs are coefficients of fixed modes."""
+    """A branch whose trunk is the proper orthogonal decomposition of the training grids.
+
+    ``(x, y) = mean + sum_k branch(s)_k * mode_k(xi, eta)``, evaluated on the nodes of the training grids; x
+    and y of a grid form one vector. Modes are scaled so that the branch's outputs are of the order of 1. Lu
+    et al., CMAME 393 (2022) 114778, sections 3.1.4 and 3.1.6.
+    """
 
     hidden: tuple[int, ...] = (64, 128, 64)  # widths of the branch's hidden layers
     features: int = 16  # modes; fewer where the training set has fewer grids

@@ -1,14 +1,6 @@
-"""Fourier neural operators with two inputs and two outputs, along xi or on the computational square.
+"""Fourier neural operators, along xi or on the computational square: h <- gelu(K h + W h + b).
 
-::
-
-    FNO1D  along xi, as `meshonet.solvers.neural.models.along_xi`
-    FNO2D  in    at (xi, eta): x and y of south and north at xi and of west and east at eta; xi; eta
-           out   x and y there
-
-Fourier layers are h <- gelu(K h + W h + b), where K mixes the channels of the lowest modes of h. h is padded
-with zeros before the transform, since it is not periodic. Both are evaluated on the nodes of the training
-grids. Li et al., Fourier Neural Operator for Parametric Partial Differential Equations, arXiv 2010.08895.
+Li et al., Fourier Neural Operator for Parametric Partial Differential Equations, arXiv 2010.08895.
 """
 
 from collections.abc import Sequence
@@ -48,7 +40,8 @@ class FNO1D(AlongXi):
 def mix_modes(xp: Any, weight: Any, h: Any, modes: int, padding: int) -> Any:
     """Return h (batch, n, width) after the channels of each of its lowest modes are mixed by a matrix.
 
-    `weight`: the complex matrices (modes, width, width, 2), or (width, width, 2), the same for all modes.
+    `weight`: complex matrices (modes, width, width, 2), or (width, width, 2) for all modes; `padding`: zeros
+    appended before the transform, since h is not periodic.
     """
     n = h.shape[1]
     spectrum = xp.fft.rfft(h, n + padding, 1)
@@ -71,10 +64,9 @@ def _layer_shapes(layers: int, mixing: tuple[int, ...], width: int) -> Shapes:
 
 @dataclass(frozen=True)
 class FNO2D(Architecture):
-    """Two-dimensional Fourier neural operator.
+    """Two-dimensional Fourier neural operator, evaluated on the nodes of the training grids.
 
-    Its inputs at (xi, eta) are four boundary nodes: those with this xi on south and north, and those with
-    this eta on west and east.
+    Inputs at (xi, eta) are x and y of south and north at xi and of west and east at eta, xi and eta.
     """
 
     width: int = 12  # channels of the hidden state
@@ -148,15 +140,14 @@ def _waves(ni: int, nj: int, modes: int, padding: int) -> tuple[NDArray[Any], Fl
 class KNO(AlongXi):
     """Koopman neural operator along xi; `width` is the number of observables.
 
-    An encoder lifts the input at every xi to observables g, which evolve `steps` times by the same linear
-    operator: one matrix K that multiplies the observables of each of the lowest Fourier modes. ::
+    K multiplies the observables g of each of the lowest Fourier modes by one matrix. ::
 
         h <- h + K h    `steps` times, from h = tanh(g)
         g <- tanh(h + W g + b)    W adds what the modes left out
 
-    A second decoder must reconstruct the inputs from the observables (weight `reconstruction` in the loss),
-    so that these hold the whole boundary. Xiong et al., Koopman neural operator as a mesh-free solver of
-    non-linear partial differential equations, Journal of Computational Physics 513 (2024) 113194.
+    A second decoder reconstructs the inputs from the observables (weight `reconstruction` in the loss). Xiong
+    et al., Koopman neural operator as a mesh-free solver of non-linear partial differential equations,
+    Journal of Computational Physics 513 (2024) 113194.
     """
 
     modes: int = 16  # on which the operator acts

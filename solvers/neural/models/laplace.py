@@ -1,14 +1,6 @@
-"""The Laplace neural operator, along xi.
+"""The Laplace neural operator, along xi: h <- sin(K h + W h + b).
 
-Layers are h <- sin(K h + W h + b). K is the response of linear systems, from every channel to every channel,
-that start at rest at xi = 0. The transfer function of each has poles mu and residues beta; the input is a
-Fourier series with coefficients alpha and frequencies omega. The response has a steady and a transient part::
-
-    sum_l alpha_l H(i omega_l) exp(i omega_l xi) - sum_n beta_n A(mu_n) exp(mu_n xi)
-    H(s) = sum_n beta_n / (s - mu_n)        A(s) = sum_l alpha_l / (i omega_l - s)
-
-Poles are kept in the left half of the plane, where responses decay. Cao, Goswami & Karniadakis, LNO: Laplace
-neural operator for solving differential equations, arXiv 2303.10528 (2023).
+Cao, Goswami & Karniadakis, LNO: Laplace neural operator for solving differential equations, arXiv 2303.10528.
 """
 
 from dataclasses import dataclass
@@ -51,7 +43,11 @@ def respond(xp: Any, poles: Any, residues: Any, h: Any) -> Any:
     """Return the responses (batch, n, out) of linear systems to h (batch, n, in), at n times from 0 to 1.
 
     `poles`: (in, out * poles, 2), the logarithm of the decay rate, and the frequency in half turns;
-    `residues`: (in, out, poles, 2).
+    `residues`: (in, out, poles, 2). With poles mu, residues beta, and the Fourier coefficients alpha and
+    frequencies omega of h, the response at xi from rest is ::
+
+        sum_l alpha_l H(i omega_l) exp(i omega_l xi) - sum_n beta_n A(mu_n) exp(mu_n xi)
+        H(s) = sum_n beta_n / (s - mu_n)        A(s) = sum_l alpha_l / (i omega_l - s)
     """
     inputs, outputs, count, _ = residues.shape
     omega, waves, xi = (array_like(table, h, xp) for table in _frequencies(h.shape[1]))

@@ -1,7 +1,6 @@
-"""Layers for both NumPy and torch; `xp` is either module.
+"""Layers for NumPy and torch; `xp` is either module.
 
-A network is a mapping from names to arrays; ``name/0/weight`` (in, out) and ``name/0/bias`` (out,) are its
-first layer.
+The first layer of a network is ``name/0/weight`` (in, out) and ``name/0/bias`` (out,).
 """
 
 from collections.abc import Mapping, Sequence

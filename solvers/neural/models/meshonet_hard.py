@@ -1,18 +1,6 @@
-"""MeshONet with exact Dirichlet conditions by construction.
+"""MeshONet whose grids have the given boundary nodes for all weights.
 
-::
-
-    (x, y) = H + s * B(xi, eta) * branch(x_1, y_1 .. x_m, y_m) . trunk(lift(xi, eta))
-
-H is the harmonic extension of the boundary, and B is zero on the boundary, so that grids have the given
-boundary nodes whatever the weights. The network learns the difference from H, whose magnitude is s. For an O
-grid the lift, and so the grid, is periodic in xi.
-
-With `modes`, B trunk is replaced by modes of the training grids' differences from H (proper orthogonal
-decomposition of x and y together). These are small at sharp kinks of the boundary, and so are their errors;
-the errors of a trained trunk are smooth, and fold cells there. Lu et al., Computer Methods in Applied
-Mechanics and Engineering 393 (2022) 114778. With `within` the sensors are clipped to the range of the
-training shapes, since extrapolation may fold cells.
+Lu et al., Computer Methods in Applied Mechanics and Engineering 393 (2022) 114778 (modes).
 """
 
 from dataclasses import dataclass
@@ -29,7 +17,17 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONetHard(Architecture):
-    """One branch, whose inputs are all sensor coordinates, and a trunk that vanishes on the boundary."""
+    """MeshONet with exact Dirichlet conditions.
+
+    ::
+
+        (x, y) = H + s * B(xi, eta) * branch(x_1, y_1 .. x_m, y_m) . trunk(lift(xi, eta))
+
+    H is the harmonic extension of the boundary, B is zero on the boundary, s is the size of the differences
+    of the training grids from H. For an O grid the lift is periodic in xi. With `modes`, B trunk is replaced
+    by the proper orthogonal decomposition of these differences, whose errors at sharp kinks of the boundary
+    are small.
+    """
 
     base: ClassVar[Literal["none", "harmonic"]] = "harmonic"
     boundary: ClassVar[float] = 0.0
@@ -72,10 +70,7 @@ class MeshONetHard(Architecture):
         return {**fixed, "fixed/modes": _modes(targets, self.modes)} if self.modes else fixed
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return sines and cosines of `points`; the last column is a function that is 0 on the boundary.
-
-        With `modes`, the result is the points alone.
-        """
+        """Return sines, cosines and a function that is 0 on the boundary; with `modes`, `points`."""
         if self.modes:
             return points
         return xp.concatenate([self._lifted(xp, points), self._bubble(points)], -1)

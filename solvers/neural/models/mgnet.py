@@ -1,13 +1,6 @@
-"""MGNet: physics-informed networks, one for each geometry, trained on Winslow's equations and the boundary.
+"""MGNet: physics-informed networks, one for each geometry, at any resolution.
 
-::
-
-    (x, y) = N_g(phi(xi, eta))    phi = (2 xi - 1, 2 eta - 1); of an O grid (sin, cos of 2 pi xi, 2 eta - 1)
-    loss   = mean |alpha X_xx - 2 beta X_xe + gamma X_ee|^2 + boundary * mean |X - U|^2
-
-Lengths are relative to the size of each geometry. The networks of all geometries are stacked and trained
-together. A model file serves only the geometries that it was trained on, at any resolution. Chen et al.,
-MGNet, Engineering with Computers 38 (2022) 4409; an improved method with auxiliary lines is arXiv 2210.09546.
+Chen et al., MGNet, Engineering with Computers 38 (2022) 4409; arXiv 2210.09546 (auxiliary lines).
 """
 
 from collections.abc import Sequence
@@ -28,7 +21,16 @@ SAME = 1e-4  # largest distance of a sensor, over the geometry's size, at which 
 
 @dataclass(frozen=True)
 class MGNet(Architecture):
-    """Dense networks with tanh, one for each geometry."""
+    """Networks that are trained together on Winslow's equations and the boundary, with weights stacked.
+
+    ::
+
+        (x, y) = N_g(phi(xi, eta))    phi = (2 xi - 1, 2 eta - 1); of an O grid (sin, cos of 2 pi xi, 2 eta -
+        1)
+        loss   = mean |alpha X_xx - 2 beta X_xe + gamma X_ee|^2 + boundary * mean |X - U|^2
+
+    Lengths are relative to the size of each geometry.
+    """
 
     physics: ClassVar[bool] = True
 

@@ -77,8 +77,8 @@ class PaperOperator(Operator):
     def nodes(self, boundary: Boundary, *, paste: bool = True) -> tuple[Floats, float]:
         """Return the nodes (ni, nj, 2), and the largest distance of the network's edges from `boundary`.
 
-        With `paste`, the edges are then replaced by those of `boundary`. Without it, they remain those of the
-        network, except that both sides of the cut of an O grid are made equal.
+        With `paste`, the edges are then replaced by those of `boundary`. Otherwise only the two sides of the
+        cut of an O grid are made equal.
         """
         answer = self.difference(boundary)
         if self.model.base == "harmonic":

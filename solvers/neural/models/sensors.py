@@ -9,11 +9,10 @@ from meshonet.geometry.blocks.boundary import Boundary
 
 
 def sensors(boundary: Boundary, count: int) -> Floats:
-    """Return (count, 2) points of the boundary at fixed parameters xi or eta.
+    """Return (count, 2) points of the boundary at fixed parameters xi or eta, interpolated linearly.
 
     On four-sided boundaries sensors start at the south-west corner and run counter-clockwise, at equal steps
-    of xi and eta. On O boundaries half of the sensors, rounded up, are on the body and the others on the far
-    field. Sensors between nodes are interpolated linearly.
+    of xi and eta. On O boundaries half of them, rounded up, are on the body, the others on the far field.
     """
     if boundary.periodic:
         inner = count - count // 2

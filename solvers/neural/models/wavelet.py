@@ -1,13 +1,6 @@
-"""The wavelet neural operator, along xi.
+"""The wavelet neural operator, along xi: h <- gelu(K h + W h + b).
 
-Layers are h <- gelu(K h + W h + b). K transforms h to wavelet coefficients over `levels` levels, multiplies
-the channels of each approximation and detail coefficient of the last level by a matrix, which differs from
-coefficient to coefficient, keeps the coefficients of finer levels, and transforms back. Wavelets are those of
-Daubechies with four vanishing moments. They are periodic over the nodes and the zeros appended to the nodes.
-
-Tripura & Chakraborty, Wavelet neural operator for solving parametric partial differential equations in
-computational mechanics problems, CMAME 404 (2023) 115783. Daubechies, Ten Lectures on Wavelets (1992), table
-6.1.
+Tripura & Chakraborty, CMAME 404 (2023) 115783; Daubechies, Ten Lectures on Wavelets (1992), table 6.1.
 """
 
 from dataclasses import dataclass
@@ -70,9 +63,7 @@ class WNO(AlongXi):
 
 @cache
 def wavelets(n: int, levels: int) -> Floats:
-    """Return the orthonormal periodic scaling functions and wavelets of the last level.
-
-    The result has the shape (2 n / 2^levels, n).
+    """Return the orthonormal periodic scaling functions and wavelets of the last level (2 n / 2^levels, n).
 
     `n` is a multiple of 2^levels.
     """

@@ -53,12 +53,10 @@ class Canonical:
 def canonical(boundary: Boundary) -> Canonical:
     """Return a quad or O boundary in its canonical frame, or unchanged if rounding would merge its nodes.
 
-    Descent amplifies rounding errors: thirty steps around a corner turn 1e-16 into 1e-3. The steps must
-    therefore be bitwise the same if a domain is translated, rotated, scaled, mirrored, or has its sides
-    relabelled. To this end the edges are transformed to a frame that they define, and rounded there to 1e-9
-    of their size. In the frame of an O boundary the cut runs from 0 to 1; of the boundary and its mirror
-    image, the one whose bytes come first is taken. In the frame of a quad the corners define origin and unit;
-    of the eight relabellings, the one whose bytes come first is taken.
+    Descent amplifies rounding errors: thirty steps around a corner turn 1e-16 into 1e-3. A domain that is
+    translated, rotated, scaled, mirrored or relabelled therefore has bitwise the same edges here, rounded to
+    1e-9 of their size. The frame of an O boundary has the cut from 0 to 1, that of a quad is given by the
+    corners. Of mirror images or relabellings, the one whose bytes come first is taken.
     """
     return _of_body(boundary) if boundary.periodic else _of_quad(boundary)
 

@@ -1,14 +1,6 @@
 """Grids of four-sided domains by the quad network, in batches and at any resolution.
 
-::
-
-    edges -> 33 nodes on each edge -> transfinite grid -> position, rotation, size removed
-          -> steps towards Winslow's grid -> features -> network -> 33 x 33 grid with the given edges
-          -> (if it is folded: only a part of the correction) -> splines -> grid with all nodes of the edges
-
-If the network imitates Winslow's grids, its grid is first refined to at most 65 x 65 nodes, and a few Picard
-steps reduce the residual. The last step is `meshonet.solvers.algebraic.resample.quad`, as in
-`meshonet.solvers.pipeline.coarse`.
+The input is a transfinite grid of 33 nodes on each edge, in a frame without position, rotation and size.
 """
 
 from collections.abc import Callable, Sequence
@@ -67,8 +59,8 @@ def transfinite(sides: Sides) -> Floats:
 def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
     """Return the nodes (batch, 2, m, n) of the network's grids inside `sides`.
 
-    Grids have 33 x 33 nodes. Only grids of Winslow's head have as many nodes as the sides, but at least 33
-    and at most 65 per direction. `head` is an index into `encoding.HEADS`.
+    Grids have 33 x 33 nodes; those of Winslow's head as many as the sides, but at least 33 and at most 65 per
+    direction. `head` is an index into `encoding.HEADS`.
     """
     base = transfinite(thinned(sides, LATENT, LATENT))
     shares = None if head == WINSLOW else _shares
@@ -89,8 +81,8 @@ def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, a
     """Return grids `z` (batch, n, n), or strips (batch, m + 1, n) of bodies (`around`), moved by a network.
 
     `unit`: the same grids at unit size, and the factors (batch, 1, 1) that undo the scaling; `network`:
-    function from grids near Winslow's and their last Picard step to displacements; `shares`: function from
-    grids and displacements to the fraction (batch, 1, 1) of the displacements that is applied; None applies
+    returns displacements of grids near Winslow's, from these and their last Picard step; `shares`: returns
+    the fraction (batch, 1, 1) of displacements that is applied, from grids and displacements; None applies
     all; `xp`: numpy or torch, the module of the arrays.
     """
     sized, back = unit
@@ -104,10 +96,7 @@ def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, a
 
 
 def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
-    """Return grids `z` after the Picard steps that follow the network's Winslow output.
-
-    Parameters are those of `answered`.
-    """
+    """Return grids `z` after the Picard steps that follow Winslow's head; parameters as in `answered`."""
     sized, back = unit
     return z + times(approach(sized, xp, around, AFTER, harmonic=False)[0] - sized, back)
 

@@ -1,8 +1,4 @@
-"""Inputs of the quad network and scaling of its outputs, shared by training and inference.
-
-Features of a node are the grid in its own frame, its first and second differences, and the last Picard step.
-`xp` is numpy or torch, the module of the arrays.
-"""
+"""Inputs of the quad network and scaling of its outputs; `xp` is numpy or torch, the module of the arrays."""
 
 from typing import Any
 
@@ -34,9 +30,8 @@ def frame(z: Any, xp: Any) -> tuple[Any, Any]:
     """Return the centres (batch,) and the factors (batch,) to unit size of complex grids `z` (batch, n, n).
 
     ``(z - middle) * factor`` has area 1. Its x direction is that of the sum of two vectors: the mean vector
-    from west to east, and the mean vector from south to north rotated by a quarter turn. If the sides of a
-    domain are relabelled in one of the eight possible ways, the frame is rotated or mirrored in the same way.
-    The frame depends only on boundary nodes.
+    from west to east, and the mean vector from south to north rotated by a quarter turn. Only boundary nodes
+    are used; relabelled domains have rotated or mirrored frames.
     """
     south, north, west, east = z[:, :, 0], z[:, :, -1], z[:, 0], z[:, -1]
     outline = xp.concatenate(
@@ -58,10 +53,10 @@ def planes_of(z: Complexes) -> Floats:
 def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
     """Return the network's inputs (batch, n, n, FEATURES) for normalised complex grids `z` (batch, n, n).
 
-    `step`, of the shape of `z`, is the last Picard step (`picard.approach`). `around`: `z` are unrolled O
-    grids (batch, m + 1, n), whose last column is the first plus one period. Then differences along xi are
-    periodic, positions are relative to those with equal steps, and the result is (batch, m, n, FEATURES). The
-    features are in the order of `symmetry.SEEN`.
+    `step`: like `z`, the last Picard step (`picard.approach`); `around`: whether `z` are unrolled O grids
+    (batch, m + 1, n), whose last column is the first plus one period. For these the result is (batch, m, n,
+    FEATURES), and positions are relative to those with equal steps. Features are in the order of
+    `symmetry.SEEN`.
     """
     n = z.shape[-1]
     if around:

@@ -1,16 +1,6 @@
 """The quad network's forward pass: a U-Net that is equivariant under the relabellings of a quad.
 
-On n = 33, 17, 9 and 5 nodes along each axis, with channels in sets of eight (`symmetry`)::
-
-    h = lift(features)
-    h = blocks(h);  h = down(silu(h))          on each level but the coarsest, which has one set of blocks
-    h = blocks(skip + finer(up(h)))            back up, finer: linear interpolation
-    d = m · project(silu(h))                   two components for each head, m = 0 on the rim
-
-with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b and down. Expanded
-once, the kernels are those of an ordinary convolutional network, which is compiled
-(`kernels/neural/network.c`). `meshonet.solvers.neural.fit.networks` is the same in torch.
-Ronneberger et al., U-Net, MICCAI 2015.
+`meshonet.solvers.neural.fit.networks` is the same in torch. Ronneberger et al., U-Net, MICCAI 2015.
 """
 
 from collections.abc import Mapping, Sequence
@@ -82,8 +72,7 @@ def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...
 def rim_factor(m: int, n: int, around: bool) -> Floats:
     """Return the factor (m, n) of displacements: 0 on the boundary, inside the product of two d / (d + 2).
 
-    d is the distance from the boundary in nodes, along xi and along eta; with `around` (O grids) only along
-    eta.
+    d is the distance from the boundary in nodes, along xi and along eta; with `around` only along eta.
     """
     along, across = (np.minimum(np.arange(k), np.arange(k)[::-1]).astype(np.float64) for k in (m, n))
     rise = np.multiply.outer(np.ones(m) if around else along / (along + 2.0), across / (across + 2.0))
@@ -131,10 +120,17 @@ class UNet(Generic[Field]):
 
 
 class Network:
-    """The network of one set of weights, whose kernels are expanded once.
+    """The network of one set of weights, compiled (`kernels/neural/network.c`).
 
     `weights` and `blocks` as in `shapes`, in any precision; `dtype` (float32 or float64) of the arithmetic;
-    `around`: for unrolled O grids, periodic along xi.
+    `around`: for unrolled O grids, periodic along xi. On n = 33, 17, 9 and 5 nodes along each axis::
+
+        h = lift(features)
+        h = blocks(h);  h = down(silu(h))          on each level but the coarsest, which has one set of blocks
+        h = blocks(skip + finer(up(h)))            back up, finer: linear interpolation
+        d = m · project(silu(h))                   two components for each head, m = 0 on the rim
+
+    with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b and down.
     """
 
     def __init__(

@@ -1,14 +1,6 @@
 """O grids around bodies by the quad network, applied to the unrolled, periodic strip.
 
-::
-
-    walls -> 65 nodes of them -> strip -> even steps from wall to wall -> size out -> towards Winslow's grid
-          -> features -> network -> 65 x 33 grid, its walls those nodes
-          -> splines -> grid at the walls' own counts
-
-Rotation, translation and scaling of the body only shift the strip, so that the network's output does not
-change, up to rounding. The output is equivariant under reflection, and if the numbering of nodes starts one
-eighth of the circumference further on.
+The input is a strip of 65 x 33 nodes with equal steps from wall to wall, scaled to unit size.
 """
 
 from collections.abc import Sequence

@@ -1,16 +1,6 @@
 """Approximate Winslow grids for a batch: the harmonic grid, then a few Picard steps.
 
-Winslow's equations with the coefficients of the previous iterate::
-
-    alpha z_xixi - 2 beta z_xieta + gamma z_etaeta = 0,
-    alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2
-
-Each step inverts, by sine transforms, the operator with alpha / (alpha + gamma) and gamma / (alpha + gamma)
-at their means over the domain. Three quarters of the leading error of finite differences are corrected. Steps
-after the network would converge slowly or not at all; Anderson's method with one previous iterate accelerates
-them. For NumPy all steps are compiled (`kernels/neural/approach.c`); the formulas here serve torch, with
-gradients. Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 490-501; Anderson,
-J. ACM 12 (1965) 547-560.
+Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 490-501.
 """
 
 from functools import lru_cache
@@ -40,11 +30,20 @@ THIRD, FOURTH = np.array(
 def approach(
     z: Any, xp: Any, around: bool = False, steps: int = STEPS, *, harmonic: bool = True
 ) -> tuple[Any, Any]:
-    """Return grids nearer to Winslow's than `z`, with the same boundaries; and the last step, both like `z`.
+    """Return grids nearer to Winslow's than `z`, with the same boundaries, and the last step, both like `z`.
+
+    Each step inverts, by sine transforms, the operator with alpha / (alpha + gamma) and gamma / (alpha +
+    gamma) at their means over the domain. Three quarters of the leading error of differences are corrected.
+    ::
+
+        alpha z_xixi - 2 beta z_xieta + gamma z_etaeta = 0,
+        alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2        of the previous iterate
 
     `z`: (batch, n, n) complex grids of unit size, arrays of `xp` (numpy or torch); `around`: whether `z` are
     strips (batch, m + 1, n), whose last column is the first plus one period; `steps`: number of Picard steps;
-    `harmonic`: whether to start from the harmonic grid; otherwise from `z`, with acceleration.
+    `harmonic`: whether to start from the harmonic grid; otherwise from `z`, accelerated by Anderson's method
+    with one previous iterate, J. ACM 12 (1965) 547-560. For NumPy it is compiled
+    (`kernels/neural/approach.c`).
     """
     if xp is np:
         return _compiled(z, around, steps, harmonic)
@@ -86,10 +85,7 @@ def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
 
 
 def nodes_after(n: int) -> int:
-    """Return the number of nodes per direction of the grid on which the steps after the network are made.
-
-    `n` is the number of nodes per direction of the final grid.
-    """
+    """Return the node count of the grid for steps after the network, for `n` nodes of the final grid."""
     return min(max(n, LATENT), FINER)
 
 

@@ -16,12 +16,7 @@ MOST_SOLVED = 129  # nodes along a direction at the most of the grid that Winslo
 MOST_DESCENDED, LARGER_DESCENDED = 513, 257  # most nodes that descend in full; larger grids' nodes
 
 LAST = 2
-"""Largest number of steps at full resolution; earlier steps are taken on the network's coarse grid.
-
-Steps on the coarse grid improve mean angles the most, in particular Newton's method, which is used for
-four-sided domains. The steps at full resolution are a descent preconditioned by the Hessian of the coarse
-grid; they remove folds and kinks between coarse nodes.
-"""
+"""Largest number of steps at full resolution, which remove folds and kinks between coarse nodes."""
 
 STILL = 1e-4  # moves at which a descent stops sooner, as `meshonet.solvers.energy.variational.STILL`
 

@@ -1,14 +1,6 @@
-"""The eight relabellings of a quad, and convolutions that are equivariant under them.
+"""Convolutions that are equivariant under the eight relabellings of a quad, the dihedral group D4.
 
-A quad stays the same domain when its index axes are rotated by quarter turns or reflected: the dihedral group
-D4. A layer's channels come in sets of eight, one for each element h; all kernels between two sets are
-transforms of one small set of weights w::
-
-    K[h, g](p) = w[h^-1 g](h^-1 p)
-
-so the network's output for a relabelled domain is the relabelled output, up to rounding. Channels are ordered
-as (set, element), the element fastest; `xp` is numpy or torch, the module of the arrays. Cohen & Welling,
-Group Equivariant Convolutional Networks, ICML 2016.
+Cohen & Welling, Group Equivariant Convolutional Networks, ICML 2016.
 """
 
 from typing import Any, TypeAlias
@@ -81,9 +73,11 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 
 
 def table(size: int) -> Integers:
-    """Return, for each entry of the 8 x 8 kernels K[h, g], its index in one set of 8 size² weights.
+    """Return, for each entry of the kernels K[h, g] (8, 8, size²), its index in one set of 8 size² weights w.
 
-    The result has the shape (8, 8, size²).
+    A layer's channels come in sets of eight, one for each element h of the group, the element fastest::
+
+        K[h, g](p) = w[h^-1 g](h^-1 p)
     """
     count = size * size
     return np.asarray(RELATIVE[:, :, None] * count + TAPS[size].reshape(ORDER, 1, count))
@@ -92,7 +86,7 @@ def table(size: int) -> Integers:
 def convolution(weight: Any, places: Any, xp: Any) -> Any:
     """Return the kernel (8 out, 8 in, size, size) of `weight` (out, in, 8, size, size).
 
-    `places` is the result of `table`.
+    `places` is the result of `table`; `xp` is numpy or torch, the module of the arrays.
     """
     out, into, _, size, _ = weight.shape
     spread = weight.reshape(out, into, -1)[:, :, places]
@@ -105,9 +99,6 @@ def lift(weight: Any, seen: Any) -> Any:
 
 
 def projection(weight: Any, elements: Any, xp: Any) -> Any:
-    """Return the last layer's matrix (2 heads, 8 in) from `weight` (heads, 2, in).
-
-    It is a mean over the elements of the symmetry group.
-    """
+    """Return the last layer's matrix (2 heads, 8 in), a mean over the group, from `weight` (heads, 2, in)."""
     back = weight[:, None, :, :, None] * xp.moveaxis(elements, 0, -1)[:, :, None]
     return back.sum(2).reshape(2 * len(weight), -1) / ORDER

@@ -1,11 +1,6 @@
-"""O grids as periodic strips, by the complex logarithm around a centre of the body.
+"""O grids as periodic strips Z = i log(z - centre); 2 pi along the real axis is once around the body.
 
-::
-
-    Z = i log(z - centre)        xi runs along the real axis, 2 pi once around; eta along the imaginary one
-
-The map is conformal, so Winslow's equations and cell angles are the same in both; rotation, translation and
-scaling of a body only shift its strip. Equal steps in the strip are geometric growth outwards in the plane.
+`xp` is the module of the arrays, numpy or torch.
 """
 
 from collections.abc import Callable
@@ -21,10 +16,7 @@ TURN = 2.0 * np.pi  # once around, the period of a strip
 
 
 def middles(walls: Any, xp: Any = np) -> Any:
-    """Return the centroids (batch,) of the areas inside closed curves (batch, n), first node not repeated.
-
-    `xp` is the module of the arrays, numpy or torch.
-    """
+    """Return the centroids (batch,) of the areas inside closed curves (batch, n), first node not repeated."""
     off = walls - walls[:, :1]  # near the origin, against cancellation
     ahead = xp.roll(off, -1, 1)
     cross = times(off.conj(), ahead).imag
@@ -78,8 +70,5 @@ def factors(strips: Any, xp: Any = np) -> Any:
 
 
 def rolled(strips: Any, centres: Any = 0.0, xp: Any = np) -> Any:
-    """Return the O grids (batch, m + 1, n) of `strips` Z of the same shape: the inverse of `unrolled`.
-
-    `centres` (batch, 1, 1) are the points, as complex numbers, around which the grids wind.
-    """
+    """Return the O grids (batch, m + 1, n) around `centres` (batch, 1, 1) of `strips`."""
     return functions_of(xp).exp(times(-1j, strips)) + centres

@@ -1,8 +1,4 @@
-"""Training data of the strip operator: lifted boundaries, and their Winslow solutions by Picard iteration.
-
-The network's targets are coefficients of R / size^2 in a basis across the strip: the proper orthogonal
-decomposition of the training set in the H1 inner product, which accounts for angles as well as positions.
-"""
+"""Training data of the strip operator: lifted boundaries, and their Winslow solutions by Picard iteration."""
 
 from __future__ import annotations
 
@@ -30,9 +26,8 @@ ACCEPTED = 1e-4  # a slower one is still kept below this: the rest is in the hig
 class Strips:
     """n strips, the conformal images of domains around bodies, as Fourier modes.
 
-    `wall` and `far` (n, 2 MODES + 1) are the modes of the position F on the two walls of each strip.
-    `residual` (n, 2 MODES + 1, LEVELS) are the modes of R, which is Winslow's solution minus the harmonic
-    base.
+    `wall`, `far`: (n, 2 MODES + 1) modes of the position F on the two walls of each strip; `residual`: (n, 2
+    MODES + 1, LEVELS) modes of R, Winslow's solution minus the harmonic base.
     """
 
     wall: Complexes
@@ -89,8 +84,8 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
 class StripTargets:
     """Inputs (n, CHANNELS, COLUMNS), (n, SCALARS); wanted outputs (n, 2 Q, COLUMNS), whose mean square is 1.
 
-    An output times `scale` gives the coefficients of R / size^2 in `basis` (Q, LEVELS - 2). R is Winslow's
-    solution minus the harmonic base; size measures how far the walls deviate from straight lines.
+    An output times `scale` gives the coefficients of R / size^2 in `basis` (Q, LEVELS - 2), the proper
+    orthogonal decomposition across the strip in the H1 inner product.
     """
 
     channels: Floats

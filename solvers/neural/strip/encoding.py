@@ -1,9 +1,6 @@
-"""Inputs of the strip network and scaling of its output, shared by training and inference.
+"""Inputs of the strip network and scaling of its output; arrays are those of `xp`, numpy or torch.
 
-The output is R, the difference of Winslow's solution and the harmonic base, which is zero on both walls. To
-leading order R is quadratic in the deviation of the walls from straight lines. The network's input therefore
-contains deviations scaled to unit size, and its output is multiplied by size^2. Functions take and return
-arrays of `xp`, numpy or torch.
+The output R is to leading order quadratic in the deviation of the walls from straight lines, the size.
 """
 
 from typing import Any
@@ -23,9 +20,7 @@ SLOPE = 0.3  # factor of slopes, which are larger than values by about their wav
 
 
 def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
-    """Return the network's input for a batch of strips.
-
-    `wall`, `far`: (batch, 2 MODES + 1) modes of F on the two walls.
+    """Return the network's input for a batch of strips with modes `wall`, `far` (batch, 2 MODES + 1) of F.
 
     The input consists of three arrays:
 
@@ -48,12 +43,10 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 
 
 def decode(coefficients: Any, basis: Any, scale: float, size: Any, xp: Any = np) -> Any:
-    """Return the modes (batch, 2 MODES + 1, LEVELS) of R from the network's outputs.
+    """Return the modes (batch, 2 MODES + 1, LEVELS) of R, Winslow's solution minus the harmonic base.
 
-    R is the difference of Winslow's solution and the harmonic base.
-
-    `coefficients`: (batch, 2 Q, COLUMNS) real parts, then imaginary parts; `basis`: (Q, LEVELS - 2) functions
-    of the inner Chebyshev points; `scale`: of the training targets; `size`: (batch,) from `encode`.
+    `coefficients`: (batch, 2 Q, COLUMNS) outputs, real parts, then imaginary parts; `basis`: (Q, LEVELS - 2)
+    functions of the inner Chebyshev points; `scale`: of the training targets; `size`: (batch,) from `encode`.
     """
     q = len(basis)
     c = from_columns(coefficients[:, :q] + 1j * coefficients[:, q:], xp)

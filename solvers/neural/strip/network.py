@@ -1,13 +1,4 @@
-"""The strip network's forward pass in numpy, float64, and in torch, which trains it.
-
-A one-dimensional Fourier neural operator along theta, so that it commutes with shifts of theta::
-
-    h <- a * b + gelu(a)                                  lifting, [a, b] = W channels
-    h <- h + E gelu(a + K h) + 0.3 b tanh(a)              three times, [a, b] = conv5(h), K spectral
-    out = P h + K' h
-
-Li et al., Fourier Neural Operator for Parametric Partial Differential Equations (2020).
-"""
+"""The strip network's forward pass in NumPy, float64, and in torch, which trains it."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -22,9 +13,16 @@ GATE = 0.3  # factor of b tanh(a)
 
 
 class StripNetwork:
-    """The network of one set of weights, rearranged once as matrices for its products.
+    """A Fourier neural operator along theta with one set of weights.
 
-    `weights`: arrays by name (`shapes`), of the module `xp`, numpy or torch.
+    ::
+
+        h <- a * b + gelu(a)                                  lifting, [a, b] = W channels
+        h <- h + E gelu(a + K h) + 0.3 b tanh(a)              three times, [a, b] = conv5(h), K spectral
+        out = P h + K' h
+
+    `weights`: arrays by name (`shapes`), of the module `xp`, numpy or torch. Li et al., Fourier Neural
+    Operator for Parametric Partial Differential Equations (2020).
     """
 
     def __init__(self, weights: Mapping[str, Any], xp: Any = np) -> None:

@@ -23,10 +23,9 @@ from meshonet.solvers.solution import Solution
 
 @dataclass(frozen=True)
 class StripOperator(Operator):
-    """A strip network with its encoding; without weights, its answer is the harmonic base.
+    """A strip network with its encoding; without weights, it returns the harmonic base.
 
-    `basis` (Q, LEVELS - 2) are the basis functions of the network's targets, and `scale` is the size of the
-    targets.
+    `basis`: (Q, LEVELS - 2) basis functions of the network's targets; `scale`: size of the targets.
     """
 
     weights: Mapping[str, Floats] = field(default_factory=dict)  # of the network, float64
@@ -49,11 +48,10 @@ class StripOperator(Operator):
     def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
         """Return the modes (batch, 2 MODES + 1, LEVELS) of R, Winslow's solution minus the harmonic base.
 
-        `wall` and `far` (batch, 2 MODES + 1) are the modes of the strip's walls. `hand` (batch,) is the
-        result of `meshonet.geometry.polygon.mirror.handedness`. It makes the result equivariant under
-        reflection: of a strip and its mirror image, whose modes are conjugate, the network is always applied
-        to the same one; for a symmetric strip the result is made symmetric. Modes that Picard steps would not
-        correct are zero.
+        `wall`, `far`: (batch, 2 MODES + 1) modes of the strip's walls; `hand`: (batch,) result of
+        `meshonet.geometry.polygon.mirror.handedness`, for equivariance under reflection: -1 takes the
+        network's output for the mirror image, whose modes are conjugate; 0 makes the output symmetric. Modes
+        that Picard steps would not correct are zero.
         """
         if self.network is None:
             return np.zeros((*wall.shape, LEVELS), complex)

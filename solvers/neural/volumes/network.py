@@ -1,11 +1,7 @@
 """3DMeshNet: physics-informed networks for volumes, one for each geometry, evaluated by NumPy.
 
-::
-
-    (x, y, z) = centre + size N_g(2 xi - 1, 2 eta - 1, 2 zeta - 1)
-
-A model file serves the geometries that it was trained on, at any resolution. Peng, Chen & Liu, 3DMeshNet: a
-three-dimensional differential neural network for structured mesh generation, arXiv 2407.01560.
+Peng, Chen & Liu, 3DMeshNet: a three-dimensional differential neural network for structured mesh generation,
+arXiv 2407.01560.
 """
 
 from collections.abc import Mapping, Sequence
@@ -47,7 +43,11 @@ class VolumeMeshNet:
 
 @dataclass(frozen=True)
 class VolumeNetwork:
-    """Trained networks, one per geometry; `weights` include sensors (count, s, 3), centres and sizes."""
+    """Trained networks, one per geometry, at any resolution.
+
+    ``(x, y, z) = centre + size N_g(2 xi - 1, 2 eta - 1, 2 zeta - 1)``. `weights` include sensors (count, s,
+    3), centres and sizes.
+    """
 
     name: str
     weights: Weights
