@@ -24,7 +24,7 @@ def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) ->
     """Return the grid around an aircraft or its half, with the quality of the grid.
 
     Raises InputError: a wing does not begin in the body, does not leave it, or reaches the far field. Raises
-    NoValidGridError: cells are folded, unless folded cells are allowed.
+    NoValidGridError: cells are folded, and the request does not allow that.
     """
     request = request or aircraft_request()
     seconds: dict[str, float] = {}

@@ -17,11 +17,7 @@ if TYPE_CHECKING:
     from meshonet.solvers.pipeline.methods import Method
 
 FEWER_NODES = {"winslow": (512, 257), "variational": (257, 129)}
-"""Node counts above which a method by default solves on fewer nodes, and these smaller counts.
-
-For random domains with 513 x 513 nodes the mean angle then differs by at most 0.01 degrees from that of the
-solution on all nodes.
-"""
+"""Node counts above which a method by default solves on fewer nodes, and these smaller counts."""
 
 
 @dataclass(frozen=True)
@@ -67,11 +63,7 @@ class Anew(Wrapper):
 
 @dataclass(frozen=True)
 class AroundWake(OneByOne):
-    """C grids: marched with a default first-cell height, or variational if marching does not suit.
-
-    Winslow's equations are not used: along the wake, where small cells face the large cells of the far field,
-    their grid lines deviate from the normal by up to 70 degrees.
-    """
+    """C grids: marched with a default first-cell height, or variational if marching does not suit."""
 
     note: str = ""  # begins the notes, before the method's name
     name: str = "auto"

@@ -51,9 +51,7 @@ def smooths(shape: DomainShape, request: GridRequest) -> bool:
 
 
 def smoothed(grid: Grid, request: GridRequest) -> Solution:
-    """Return a multi-block grid after smoothing, and after `request.refine` refinements, if any.
-
-    Each refinement is followed by another smoothing.
+    """Return a multi-block grid after smoothing; `request.refine` refinements and smoothings follow.
 
     Raises InputError: see `smooth`; with refinement, also a connection that covers only a part of a side.
     """
@@ -81,8 +79,7 @@ def check_asked(request: GridRequest) -> None:
 def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str, float]]:
     """Return the blocks that `request` makes of a shape, and the seconds of each stage.
 
-    If the request has no number of cells, the layout has the default number of cells. Raises InputError: see
-    `as_blocks`. Raises SolverError: the decomposition fails.
+    Raises InputError: see `as_blocks`. Raises SolverError: the decomposition fails.
     """
     seconds: dict[str, float] = {}
     with stage("load", seconds):

@@ -42,10 +42,7 @@ def method_of(request: OneBlock) -> Method:
 
 
 def _base(request: OneBlock) -> Method:
-    """Return the method with its settings, on all nodes.
-
-    A network is used only if it is requested by name or settings.
-    """
+    """Return the method with its settings, on all nodes; a network only by its name or settings."""
     best = request.by_network or request.method == "best"
     chosen = ":" in request.method or not set(NETWORK_SETTINGS).isdisjoint(request.chosen)
     if best and not chosen and {*NETWORK_SETTINGS, "answer"}.issuperset(request.settings):

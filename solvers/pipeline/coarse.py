@@ -1,8 +1,4 @@
-"""Solves on few nodes, and evaluates the result at the nodes of the grid.
-
-Few nodes suffice for a smooth grid. The boundary is coarsened, a method solves there, and its grid is
-evaluated between the full edges (`meshonet.solvers.algebraic.resample.grids`).
-"""
+"""Solves on few nodes, and evaluates the result at the nodes of the grid."""
 
 from __future__ import annotations
 
@@ -40,10 +36,9 @@ def solve_coarse(
 ) -> Solution:
     """Solve by `solve` on at most n x n nodes; return the grid interpolated to the nodes of `boundary`.
 
-    With `smooth`, sweeps of Winslow's equations on all nodes follow near kinks of the boundary: always for
-    solutions of these equations and for folded grids, otherwise only if the sweeps improve angles. The edges
-    are bitwise those of `boundary`; residual and cycles are those of the coarse solution. Raises InputError:
-    `n` is below 9.
+    Residual and cycles are those of the coarse solution. With `smooth`, Winslow's equations are relaxed near
+    kinks of the boundary: always for their own solutions and folded grids, otherwise only if angles improve.
+    Raises InputError: `n` is below 9.
     """
     check_coarse(n)
     counts = min(n, boundary.ni), min(n, boundary.nj)

@@ -37,11 +37,9 @@ def section_grid(
 ) -> tuple[Grid, tuple[str, ...]]:
     """Return the planar grid inside a closed curve or domain, and notes; a given grid is returned unchanged.
 
-    A circle gets five blocks, a four-sided outline one block, and any other shape the blocks of its
-    decomposition. All sides, or those that the request names, are walls with a first-cell height. `around` is
-    the number of cells along a circle.
-
-    Raises InputError: parameters that do not suit the shape; see also `make_grid`.
+    A circle gets five blocks, with `around` cells along it; a four-sided outline gets one block. Walls with a
+    first-cell height are all sides, or those that the request names. Raises InputError: parameters that do
+    not suit the shape; see also `make_grid`.
     """
     five_blocks = isinstance(shape, Circle) and not (
         request.cell_size or request.layout or request.walls or request.by_wall
@@ -116,10 +114,7 @@ def _inside(shape: Shape) -> Shape:
 
 
 def _four_walls(inside: Shape, request: GridRequest) -> GridRequest:
-    """Return the request with layers at the sides that may be walls by their names.
-
-    Growth decides the numbers of nodes that are left open.
-    """
+    """Return the request with layers at the sides that may be walls by their names."""
     h, sampling, growth = request.height() or 0.0, request.sampling, request.growth
     if sampling.ni is None and isinstance(inside, Outline):
         growth = growth or GROWTH
@@ -141,10 +136,7 @@ def _loop(curve: Curve) -> Loop:
 
 
 def _walled(shape: DomainShape, request: GridRequest) -> GridRequest:
-    """Return the request with layers along all loops that can have them, unless it names walls.
-
-    Stretches whose names say that they are no walls have none.
-    """
+    """Return the request with layers along loops that may be walls by name, unless it names walls."""
     loops = shape.domain.loops
     if not request.at_walls or request.walls or request.by_wall or (loops[0].corner_cells < 2).any():
         return request

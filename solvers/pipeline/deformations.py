@@ -18,8 +18,8 @@ def make_deformed(
 ) -> Result:
     """Return `grid` deformed to the new walls `walls`, with its quality.
 
-    Raises InputError: see `meshonet.solvers.deformation.deform.deform`; NoValidGridError: cells are folded,
-    and the request does not allow that.
+    Raises InputError: see `meshonet.solvers.deformation.deform.deform`. Raises NoValidGridError: cells are
+    folded, and the request does not allow that.
     """
     request = request or DeformRequest()
     with limited_to(request.threads):

@@ -27,12 +27,10 @@ def guard(
 ) -> Solution:
     """Return `solution` if its grid is valid, otherwise the first valid grid from the following stages.
 
-    The first stage is a local repair in regions of `margin` cells around folded cells. Then each method of
-    `ORDER` makes a grid, from the repaired grid if the method uses an initial grid; if that grid is folded,
-    it is repaired too. `boundary` is the boundary of the grid unless `solution` has one. The path of the
-    result ends with the stages that made the grid, such as ``("repair",)``, ``("winslow", "repair")`` or
-    ``("tfi",)``. Raises NoValidGridError, with the ten worst cells of the best attempt: cells stay folded in
-    all stages and `allow_invalid` is not set.
+    First, regions of `margin` cells around folded cells are repaired. Then each method of `ORDER` makes a
+    grid, which is repaired too. `boundary` is that of the grid unless `solution` has one. The path of the
+    result ends with the stages that made it, such as ``("winslow", "repair")``. Raises NoValidGridError, with
+    the ten worst cells of the best attempt: all stages leave folded cells, and `allow_invalid` is not set.
     """
     grid, boundary = solution.grid, solution.boundary or boundary
     if count_folded(grid.nodes) == 0:

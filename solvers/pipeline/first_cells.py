@@ -68,10 +68,9 @@ def sides_called(boundary: Boundary, name: str) -> list[Side]:
 def wall_sides(boundary: Boundary) -> list[Side]:
     """Return the sides of a four-sided boundary that get layers if the request names no walls.
 
-    South and north get layers, unless their names say that they are no walls, such as ``inlet``. West and
-    east get layers if their names say that they are walls along their whole length. If no side gets layers by
-    these rules, west and east do, unless their names say that they are no walls. Raises InputError: no side
-    is left.
+    These are south and north, unless all their names, such as ``inlet``, say that they are no walls, and
+    sides that are walls by name along their whole length. If there are none, west and east may be walls.
+    Raises InputError: no side may be a wall.
     """
     patches = {side: [p for p in boundary.patches if p.side == side] for side in SIDES}
     possible = [side for side in SIDES if any(patch.may_be_wall for patch in patches[side])]
@@ -96,11 +95,9 @@ def along_walls(boundary: Boundary, request: OneBlock) -> bool:
 def has_walls_on_sides(shape: Shape, request: GridRequest) -> bool:
     """Return whether the walls named by a request are whole sides of a four-sided domain of one block.
 
-    If the request neither asks for one block nor gives node counts in both directions, it is also necessary
-    that the walls are opposite sides and that the request does not refine. If not, the domain becomes many
-    blocks.
-
-    Raises InputError: the domain has no wall of such a name, or only along a part of a side of the block.
+    Unless the request asks for one block or gives both node counts, these walls must also be opposite, and
+    the request must not refine. Raises InputError: the domain has no wall of such a name, or only along a
+    part of a side of the block.
     """
     heights = request.first_cell if request.y_plus is None else request.y_plus
     off = heights if isinstance(heights, Mapping) else dict.fromkeys(request.walls, 0.0)

@@ -1,12 +1,4 @@
-"""Prescribed first-cell heights: by marching from bodies, otherwise by moving nodes along grid lines.
-
-::
-
-    body ----------------------------------- march ------------------------------> grid
-    channel, free wall nodes ---- slide wall nodes, solve ------+
-    channel, given wall nodes --- turn lines by source terms ---+-- move nodes along lines --> grid
-    other domains --------------- solve ------------------------+
-"""
+"""Prescribed first-cell heights: by marching from bodies, otherwise by moving nodes along grid lines."""
 
 from __future__ import annotations
 

@@ -1,12 +1,4 @@
-"""Blades and ducts: planar grids of all sections with the same topology, and the volume between them.
-
-::
-
-    blade   O grids marched from the sections, between the walls ``hub`` and ``shroud``. Twist and scaling,
-            and the differences between the grids, decrease away from the blade, so that the far field is a
-            straight cylinder.
-    duct    one block if all sections have four sides, else five; ``inlet`` and ``outlet`` at the ends.
-"""
+"""Blades and ducts: planar grids of all sections with the same topology, and the volume between them."""
 
 from dataclasses import replace
 
@@ -41,10 +33,11 @@ GROWTH = 1.2  # of layers where none is given, as of volumes that are marched
 
 
 def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
-    """Return the volume around a blade between its first and its last section, and notes.
+    """Return the volume between the first and the last section of a blade, ``hub`` and ``shroud``, and notes.
 
-    Raises InputError: node counts that are too small; NoValidGridError: the grid of a section has folded
-    cells.
+    The planar grids are marched O grids. Far from the blade they are equal: the far field is a cylinder.
+    Raises InputError: node counts that are too small. Raises NoValidGridError: the grid of a section has
+    folded cells.
     """
     plan = around(
         request.surface.around, gap=request.surface.base, edge=stack.te_spacing, nose=stack.le_spacing
@@ -81,11 +74,7 @@ def blade_rows(request: StackRequest) -> int:
 
 
 def _alike_far_away(grids: Floats, weight: Floats) -> Floats:
-    """Return O grids (k, ni, nj, 2) moved to their mean in polar coordinates, but for a part of `weight`.
-
-    Around sections of unlike shapes lines of equal number leave in unlike directions: lines between the grids
-    would lean.
-    """
+    """Return O grids (k, ni, nj, 2) moved to their mean in polar coordinates, but for a part of `weight`."""
     off = grids - _CENTRE
     radius = norms(off)
     angle = np.unwrap(arctan2(off[..., 1], off[..., 0]), axis=1)
@@ -100,9 +89,10 @@ def _alike_far_away(grids: Floats, weight: Floats) -> Floats:
 
 
 def duct_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
-    """Return the volume inside a duct between its first and its last section, and notes.
+    """Return the volume inside a duct from ``inlet`` to ``outlet``, its first and last section, and notes.
 
-    Raises InputError: a section that is an airfoil; node counts that are too small.
+    It has one block if all sections have four sides, else five. Raises InputError: a section that is an
+    airfoil; node counts that are too small.
     """
     for k, section in enumerate(stack.sections):
         if isinstance(section.shape, Airfoil):
@@ -169,10 +159,7 @@ def _unit(plane: Grid, section: Section) -> Grid:
 def _lofted(
     stack: Stack, planes: list[Grid], span: int | None, ends: tuple[End, End], weight: Floats | None = None
 ) -> tuple[Grid, tuple[str, ...]]:
-    """Return the volume between planar grids of the sections, and notes on the nodes along the axis.
-
-    The grids of the sections have unit chord and equal topology.
-    """
+    """Return the volume between planar grids of unit chord and equal topology, and notes."""
     z, notes = axis_heights(stack.z, span, stack.panel_cells)
     nodes = []
     for k, block in enumerate(planes[0].blocks):

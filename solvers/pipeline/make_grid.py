@@ -77,14 +77,13 @@ def make_grid(shape: Shape, request: GridRequest) -> Result:
 def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result | Exception]:
     """Yield the grid of each shape, or the error in which it ended, in the order of the shapes.
 
-    A shape is read when its result is requested. Some methods solve several shapes together, because this is
-    faster; a limited number of shapes is then read ahead, and grids differ from those of separate calls only
-    in the last digits.
+    Some methods solve several shapes together. Then a limited number of shapes is read ahead, and grids
+    differ from those of separate calls in the last digits.
 
     Parameters
     ----------
     shapes : iterable of shape
-        Shapes to sample.
+        Shapes to sample; each is read when its result is requested.
     request : GridRequest
         The options of all grids, made by `grid_request`.
 
@@ -163,10 +162,7 @@ def _group(
 
 
 def _solve_together(group: Iterable[_Member], method: Method) -> None:
-    """Solve the members that the method solves in one call.
-
-    If one of them cannot be solved, or memory does not suffice, they are solved one by one later.
-    """
+    """Solve the members that the method solves in one call; after an error they follow one by one."""
     alike = [
         (member, member.boundary)
         for member in group

@@ -1,9 +1,4 @@
-"""The interface of a method, and the table of methods from which choices, help and tests are derived.
-
-A method has a name, immutable settings and a function from boundaries to solutions. A new method is a
-function ``solve(boundary, *, settings...) -> Solution`` in a file of its own and a row of `METHODS`. Rows
-contain the names of functions as text, so that reading the table loads no solver.
-"""
+"""The interface of a method, and the table of methods from which choices, help and tests are derived."""
 
 from __future__ import annotations
 
@@ -117,4 +112,4 @@ METHODS: Mapping[str, MethodEntry] = MappingProxyType(
         ),
     }
 )
-"""Methods by name; ``operator:NAME`` is the neural operator with that name."""
+"""Methods by name, which are loaded when used; ``operator:NAME`` is the neural operator NAME."""

@@ -50,10 +50,7 @@ class Each(OneByOne):
         return setting in inspect.signature(self.function).parameters
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the function's solution of a boundary.
-
-        `start` is used if the function accepts an initial grid.
-        """
+        """Return the function's solution of a boundary; `start` is used if the function has ``initial``."""
         more = {"initial": start} if start is not None and self.takes("initial") else {}
         return self.function(boundary, **self.settings, **more)
 

@@ -156,19 +156,16 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     sampling : Sampling, optional
         Numbers of nodes and spacing of the boundary.
     method : str, optional
-        A key of `METHODS`, ``best`` or ``auto``. ``best`` is the default method for the topology, or marching
-        around bodies with a first-cell height. ``auto`` is Winslow's equations, or marching in the same
-        cases.
+        A key of `METHODS`, ``best`` (the default for the topology) or ``auto`` (Winslow's equations). With a
+        first-cell height, both march around bodies.
     settings : dict, optional
         Settings of the method by name.
     first_cell : float or mapping, optional
-        Height of the first cell at every wall node, in chords around a body, otherwise in the unit of the
-        domain. In a four-sided domain the walls are south and north, unless sides have names such as
-        ``inlet``. In four-sided and multi-block domains, a mapping from names to heights selects the walls
-        that get layers.
+        Height of the first cells, in chords around a body, otherwise in the unit of the domain. Walls of a
+        four-sided domain are south and north, unless sides have names such as ``inlet``. In four-sided and
+        multi-block domains, a mapping from names to heights selects the walls with layers.
     y_plus : float or mapping, optional
-        First-cell height as y+, or y+ of several walls by name, instead of `first_cell`. The conversion
-        assumes a turbulent flat plate.
+        First-cell height as y+ of a turbulent flat plate, instead of `first_cell`.
     reynolds : float, optional
         Reynolds number for `y_plus`.
     length : float, optional
@@ -177,27 +174,26 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     chord_fraction : float, optional
         Position along the reference length, from 0 to 1, at which y+ is converted to a height.
     growth : float, optional
-        Largest growth ratio of cells away from the wall. If `sampling` has no `nj`, the number of rows
-        follows from the growth ratio.
+        Largest growth ratio of cells away from the wall; determines the number of rows if `sampling` has
+        none.
     constant_layers : int, optional
         Number of rows at the wall that have the height of the first cell.
     spacing_south, spacing_north, spacing_west, spacing_east : float, optional
         First-cell heights at single sides of a four-sided domain.
     slide : bool, optional
         Whether nodes slide along the walls south and north. None: only if a first-cell height is given and
-        the wall nodes were not given but placed by the program.
+        the wall nodes were placed by the program.
     wall_angle : float, optional
         Angle between grid lines and walls in degrees, for ``steger-sorenson``.
     coarse : int or 'auto', optional
-        Largest number of nodes per direction on which the equations are solved; the solution is then
-        interpolated to all nodes. ``auto``: selected by method and size. None: the equations are solved on
-        all nodes.
+        Largest number of nodes per direction of the solution, which is then interpolated to all nodes.
+        ``auto``: selected by method and size. None: all nodes.
     refine : int, optional
         Number of refinements after the first solution; each halves all cells and solves again.
     initial : Grid, optional
         Initial grid.
     repair : bool, optional
-        True: a grid with folded cells is repaired, or made again by another method. False: such a grid is an
+        Whether a grid with folded cells is repaired, or made again by another method; otherwise it is an
         error. None: True, except for algebraic methods and raw grids of networks.
     repair_margin : int, optional
         Width in cells of the region around folded cells in which the repair moves nodes.
@@ -225,15 +221,13 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     periodic : tuple of tuple of str, optional
         Pairs of sides of a domain, by name, that are periodic.
     count : mapping, optional
-        Numbers of cells along sides of a domain, by the names of the sides. With `refine`, the numbers of the
-        coarsest grid.
+        Numbers of cells along sides of a domain by name; with `refine`, those of the coarsest grid.
     layers : int, optional
         Number of nodes along each grid line of a volume marched from a surface, including the wall node.
     symmetry : {'x', 'y', 'z', 'none'}, optional
-        Axis that is normal to the plane of symmetry, the plane that contains the open edges of a surface.
+        Axis normal to the plane of symmetry, which contains the open edges of a surface.
     poles : {'replace', 'refuse'}, optional
-        Treatment of a pole, a side of a surface patch that is a single point: a core patch replaces it, or it
-        is an error.
+        Treatment of sides of surface patches that are points: a core patch replaces them, or they are errors.
     energy : {'angles', 'shape'}, optional
         Functional that is minimised in a volume inside six faces; None: ``angles``.
     threads : int, optional

@@ -45,8 +45,7 @@ class Result:
         ``grid`` (from boundary nodes to grid nodes), ``guard`` (test for folded cells and repair) and
         ``quality``.
     notes : tuple of str, optional
-        Notes for the user, including those of the boundary and the solution. Names of parameters are in
-        braces.
+        Notes for the user, also of boundary and solution; names of parameters are in braces.
     history : tuple of HistoryRow, optional
         Convergence history of the iteration, if the request asks for it.
     lines : Lines, optional
@@ -81,9 +80,8 @@ def judged(
 ) -> Result:
     """Return a solution with its quality; the time of the measurement is added to `seconds`.
 
-    The provenance of the grid lists the changes of the shape. If a growth ratio was prescribed, a note says
-    where cells grow by more; otherwise, where cells grow by more than `JUMP` along a wall. Raises
-    NoValidGridError, with the given `remedy`: cells are folded, and the request does not allow that.
+    Notes say where cells grow by more than a prescribed growth ratio, or along walls by more than `JUMP`.
+    Raises NoValidGridError, with the given `remedy`: cells are folded, and the request does not allow that.
     """
     with stage("quality", seconds):
         quality = measure(solution.grid, percentiles=request.percentiles)

@@ -35,8 +35,8 @@ _REMEDY = "use more {cells}, or a larger {first_cell}"  # where cells fold
 def make_row(row: Row, request: RowRequest | None = None) -> Result:
     """Return the grid of a row's passage, with its quality.
 
-    Raises InputError: parameters that do not suit the row. Raises NoValidGridError: cells are folded, unless
-    folded cells are allowed.
+    Raises InputError: parameters that do not suit the row. Raises NoValidGridError: cells are folded, and the
+    request does not allow that.
     """
     request = request or RowRequest()
     if not 1 <= request.copies <= row.blades:

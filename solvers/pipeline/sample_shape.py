@@ -35,7 +35,7 @@ _TURNED = "xi runs along the walls with layers, which are the sides south and no
 def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainShape | SpatialShape:
     """Return the boundary of a shape; three-dimensional and multi-block shapes are returned unchanged.
 
-    For an airfoil whose blunt base is kept in a C grid, the result is the line around the base and its wake.
+    For a C grid that keeps the blunt base of an airfoil, return the line around the base and its wake.
     """
     if isinstance(shape, SpatialShape):
         return shape
@@ -100,8 +100,7 @@ def _check_refined(ni: int, nj: int, halvings: int) -> None:
 def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
     """Return whether the request is a marched C grid that keeps the blunt base of an airfoil.
 
-    Three kinds of bases are kept only if the request says so: bases without layers, thin bases, and bases of
-    grids that are refined after the first solution.
+    Bases without layers, thin bases and bases of refined grids are kept only if the request says so.
     """
     sampling = request.sampling
     if request.method not in MARCHING or sampling.te not in ("auto", "exact"):

@@ -13,10 +13,7 @@ from meshonet.solvers.solution import Solution
 
 @dataclass(frozen=True)
 class Sequenced(Wrapper):
-    """Solves by `method` on every 2^levels-th node, then with half the step, and so on up to all nodes.
-
-    The boundary nodes of each grid are among those of the next finer one.
-    """
+    """Solves by `method` on every 2^levels-th node, then with half the step, and so on up to all nodes."""
 
     levels: int
 
@@ -30,9 +27,8 @@ def solve_refined(
 ) -> Solution:
     """Solve on every 2^levels-th node of `boundary`, then with half the step, and so on up to all nodes.
 
-    `solve` has a parameter ``initial``, an initial grid; on the coarsest level it is the given `initial`. The
-    solution has the total time, and a note with the counts of all levels. Raises InputError: the counts
-    cannot be halved so often.
+    `solve` has a parameter ``initial``, an initial grid; on the coarsest level it is the given `initial`.
+    Raises InputError: the counts cannot be halved so often.
     """
     solution = solve(coarser_boundary(boundary, 2**levels), initial=initial)
     seconds, counts = dict(solution.seconds), [_counts(solution)]

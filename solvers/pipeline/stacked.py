@@ -34,9 +34,8 @@ def with_tip(what: Sections, tip: Tip | None, *, surface: bool = False) -> Secti
 def stacked_surface(what: Stack | Aircraft, **parameters: Any) -> tuple[Grid, tuple[str, ...]]:
     """Return the surface patches of a wing or an aircraft, and notes.
 
-    Parameters are the fields of `StackRequest` or `AircraftRequest`.
-
-    Raises InputError: see `stack_surface` and `make_aircraft`. Raises NoValidGridError: see `make_aircraft`.
+    Parameters are the fields of `StackRequest` or `AircraftRequest`. Raises: see `stack_surface` and
+    `make_aircraft`.
     """
     if isinstance(what, Stack):
         from meshonet.solvers.pipeline.stacks import stack_surface
@@ -54,10 +53,8 @@ def stacked_surface(what: Stack | Aircraft, **parameters: Any) -> tuple[Grid, tu
 def make_stacked(what: Sections, **parameters: Any) -> Result:
     """Return the volume grid of a stack, a row or an aircraft, with its quality.
 
-    Parameters are the fields of `StackRequest`, `RowRequest` or `AircraftRequest`.
-
-    Raises InputError: a parameter that the request does not have; see also `make_stack`, `make_row` and
-    `make_aircraft`. Raises NoValidGridError: see these functions.
+    Parameters are the fields of `StackRequest`, `RowRequest` or `AircraftRequest`. Raises InputError: a
+    parameter that the request does not have; see also `make_stack`, `make_row` and `make_aircraft`.
     """
     if isinstance(what, Stack):
         from meshonet.solvers.pipeline.stacks import make_stack

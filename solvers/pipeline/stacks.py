@@ -49,8 +49,8 @@ def stack_surface(stack: Stack, request: StackRequest | None = None) -> tuple[Gr
 def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
     """Return the volume grid around or inside a stack, with its quality.
 
-    Raises InputError: parameters do not suit the stack; NoValidGridError: cells are folded, and the request
-    does not allow that.
+    Raises InputError: parameters do not suit the stack. Raises NoValidGridError: cells are folded, and the
+    request does not allow that.
     """
     request = _with_panels(stack, request)
     if stack.kind != "duct":
@@ -71,10 +71,7 @@ def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
 def _wing_of(
     cells: int, stack: Stack, request: StackRequest, counted: StackRequest, seconds: dict[str, float]
 ) -> tuple[Solution, tuple[str, ...]]:
-    """Return the volume around a wing that is nearest to `cells` cells, and notes; `counted` is tried first.
-
-    Lines that diverge have more layers than is known beforehand, and how many depends on the node counts.
-    """
+    """Return the volume around a wing with nearly `cells` cells, and notes; `counted` is tried first."""
     tried = [_wing(stack, counted, seconds)]
     rows = _rows(tried[0])
     while True:

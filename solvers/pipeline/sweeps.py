@@ -16,8 +16,7 @@ from meshonet.solvers.stages import stage
 from meshonet.solvers.sweeping.sweep import Sweep, check_planes, reach_of, self_crossing, sweep, walled
 
 SMALL = 0.1
-"""Ratio of the sizes of the smaller and the larger end section below which a note asks whether this is meant.
-"""
+"""Ratio of the sizes of the smaller and the larger end section below which there is a note."""
 _REMEDY = "use a wider bend, a smaller section or more {planes}"  # where cells fold
 
 
@@ -27,10 +26,9 @@ def make_sweep(
 ) -> Result:  # fmt: skip
     """Return the volume grid of a cross-section swept along a path or about an axis, with its quality.
 
-    `request` and `around` describe the planar grid of the section (`section_grid`).
-
-    Raises InputError: parameters, section and path do not suit each other; NoValidGridError: cells are
-    folded, and the request does not allow that.
+    `request` and `around` describe the planar grid of the section (`section_grid`). Raises InputError:
+    parameters, section and path do not suit each other. Raises NoValidGridError: cells are folded, and the
+    request does not allow that.
     """
     seconds: dict[str, float] = {}
     with limited_to(request.threads):

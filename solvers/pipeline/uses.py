@@ -1,8 +1,4 @@
-"""The table of options and of the kinds of grids to which each applies.
-
-An option is a field of `GridRequest` or `Sampling` (the node counts together are ``res``), or a setting of a
-method.
-"""
+"""Options (fields of `GridRequest` and `Sampling`, settings of methods) and the grids that use each."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any, TypeAlias
@@ -17,9 +13,7 @@ def _row(*options: str) -> frozenset[str]:
 COUNTED = ("ni", "nj", "nk")
 """Fields of `Sampling` that form the option ``res``."""
 Counts: TypeAlias = int | tuple[int] | tuple[int, int] | tuple[int, int, int]
-"""Number of nodes along all directions, along each direction, or only along the first if rows follow from a
-growth ratio.
-"""
+"""Number of nodes along all directions, or along each, or along xi only if growth determines the rows."""
 _OFF_WALLS = _row("first_cell y_plus spacing_south spacing_north")
 """Options that prescribe first cells at the ends of grid lines along eta."""
 ALWAYS = _row("sampling method settings repair allow_invalid percentiles history threads")
@@ -78,8 +72,7 @@ IN_SPACE = OF_SURFACE | _row("energy")
 def counted(res: Counts | None, options: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields of `Sampling` for counts `res`.
 
-    A single number is the count along xi and eta. If `options` contain a growth ratio, it is the count along
-    xi alone, because the number of rows follows from the growth ratio.
+    A single number is the count along xi and eta, or along xi only if `options` have a growth ratio.
     """
     if isinstance(res, int):
         by_growth = options.get("growth") and any(map(options.get, _OFF_WALLS))

@@ -17,14 +17,7 @@ _OPEN = ("best", "auto")
 
 @dataclass(frozen=True)
 class _VolumeMethod:
-    """A way to make volume grids.
-
-    Parameters
-    ----------
-    what : its name in the table of options.
-    methods : names of its methods.
-    make : function from a shape to a solution.
-    """
+    """A way to make volume grids: name in the table of options, methods, and function of a shape."""
 
     what: str
     methods: tuple[str, ...]
@@ -34,8 +27,8 @@ class _VolumeMethod:
 def make_volume(shape: SpatialShape, request: Volume) -> Solution:
     """Return the volume grid that `request` makes of a shape: marched, inside six faces, or smoothed.
 
-    Raises InputError: method, parameters and shape do not suit each other, or the shape encloses no volume;
-    NoValidGridError: the grid has folded cells.
+    Raises InputError: method, parameters and shape do not suit each other, or the shape encloses no volume.
+    Raises NoValidGridError: the grid has folded cells.
     """
     way = _way(shape, request)
     if request.method not in (*_OPEN, *way.methods):

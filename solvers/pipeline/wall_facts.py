@@ -26,11 +26,10 @@ def wall_facts(grid: Grid) -> tuple[str, ...]:
 
 
 def growth_note(grid: Grid, limit: float, run: Lines | None = None) -> tuple[str, ...]:
-    """Return a note with the largest growth ratio and its node, if the ratio exceeds `limit`.
+    """Return a note with the largest growth ratio along all grid lines and its node, if it exceeds `limit`.
 
-    The ratio is the largest along all grid lines, as in `quality`. The limit is meant for lines from walls;
-    if the largest ratio occurs on another line, the note also has the largest ratio along lines from walls.
-    `run` has the measures of the lines of a multi-block grid; if None, they are computed.
+    If it is on a line that does not leave a wall, the note also has the largest ratio of those that do. `run`
+    has the measures of the lines of a multi-block grid; None: they are computed.
     """
     ratios, leaving = _growth(grid, run)
     largest = most_of(ratios.families().values())
