@@ -1,16 +1,6 @@
 """Transfinite interpolation of a planar grid from its four edges.
 
-The parameters (u, v) of node (i, j) are where the straight lines between the parameters of opposite edges
-intersect in the unit square::
-
-    u = s_i + (n_i - s_i) v      s, n: parameter along south and north at i
-    v = w_j + (e_j - w_j) u      w, e: parameter along west and east at j
-
-and its position is the Boolean sum of the interpolations between opposite edges, with corners a, b, c, d::
-
-    x = (1-v) S_i + v N_i + (1-u) W_j + u E_j - (1-u)(1-v) a - u (1-v) b - u v c - (1-u) v d
-
-Gordon and Hall, Int. J. Numer. Meth. Engng 7 (1973) 461-477; the intersection: Soni, AIAA 85-1526 (1985).
+Gordon and Hall, Int. J. Numer. Meth. Engng 7 (1973) 461-477; parameters: Soni, AIAA 85-1526 (1985).
 """
 
 from typing import Literal, get_args
@@ -32,9 +22,14 @@ Four = tuple[Floats, Floats, Floats, Floats]
 def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
     """Return the grid inside `boundary` by transfinite interpolation; it may have folded cells.
 
-    `blending` selects the parameter along an edge: with ``linear`` it is i / (ni - 1); with ``arclength`` it
-    is the fraction of the edge's length, so that the spacing of the edges continues into the interior. The
-    edges of the grid equal those of `boundary` bitwise. Raises InputError: the blending is unknown.
+    Edges S, N, W and E meet at corners a, b, c and d; s, n, w and e are parameters along them::
+
+        x = (1-v) S_i + v N_i + (1-u) W_j + u E_j - (1-u)(1-v) a - u (1-v) b - u v c - (1-u) v d
+        u = s_i + (n_i - s_i) v,    v = w_j + (e_j - w_j) u
+
+    `blending`: with ``linear`` the parameters are i / (ni - 1); with ``arclength`` fractions of the edge's
+    length, so that the spacing of the edges continues into the interior. Raises InputError: the blending is
+    unknown.
     """
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
     facts = {"method": "tfi", "blending": blending}

@@ -18,12 +18,8 @@ SWEEPS = 3  # over the corners, which influence each other a little
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
     """Return the shifts of phi for each corner, and before them their weights (n, corners) along the wall.
 
-    At a corner with the exterior angle A, the angles of the two cells add up to A; the larger of them is
-    smallest if both are A/2. Solutions of Winslow's equations approach this only as the cells shrink. A local
-    shift of phi near the first node of the line achieves it directly, and decays within a few cells.
-
-    With these shifts the first grid lines at `corners` are bisectors in the plane. `wall` (n,) are nodes in
-    the plane, counter-clockwise, and `corners` indices into it.
+    With these shifts the first grid lines at `corners` bisect their angles in the plane. `wall` (n,) are
+    nodes in the plane, counter-clockwise, and `corners` indices into it.
     """
     n, step = len(wall), 2.0 * np.pi / len(wall)
     between = np.subtract.outer(corners, corners) % n

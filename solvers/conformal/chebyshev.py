@@ -1,9 +1,5 @@
 """Chebyshev points, interpolation matrices, and panels of such points along eta.
 
-The maps from the strip to the plane are singular only at the wall. On a panel that is as long as its distance
-from the wall (in psi), `NODES` Chebyshev points therefore represent a grid line to round-off: Bernstein's
-ellipse has rho = 3 + sqrt(8), and rho^-NODES is 6e-13. The maps are evaluated only at these points.
-
 Trefethen, Approximation Theory and Approximation Practice (2013), chapter 8; Berrut & Trefethen, Barycentric
 Lagrange Interpolation, SIAM Review 46 (2004) 501.
 """
@@ -33,9 +29,7 @@ def weights(n: int) -> Floats:
 
 
 def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
-    """Return the (len(nodes), len(x)) matrix from values at `nodes` to values at `x`.
-
-    It is exact at the nodes themselves, where its column has a single 1.
+    """Return the (len(nodes), len(x)) matrix from values at `nodes` to values at `x`; exact at nodes.
 
     >>> points(5) ** 4 @ barycentric(points(5), weights(5), np.array([0.0, 0.3]))
     array([0.    , 0.0081])
@@ -53,9 +47,8 @@ def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
 class Panels(NamedTuple):
     """Consecutive panels along eta: panel k covers the grid levels from ``ends[k]`` to ``ends[k + 1]``.
 
-    `eta` (panels NODES,) are the points of the panels. `matrix` (NODES, levels) has a column for each level:
-    the product of the values at the points of the level's panel with this column is the value at the level.
-    Without panels, `ends` has one entry.
+    `eta` (panels NODES,) are the points of the panels. The values at a level's panel, times its column of
+    `matrix` (NODES, levels), are the value at the level. Without panels, `ends` has one entry.
     """
 
     ends: list[int]
@@ -67,8 +60,8 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
     """Return panels that cover the levels `first` to `last` - 1 of `eta`, if this saves evaluations.
 
     `eta` (nj,) ascends from 0 at the wall to 1; `height` is the difference of psi between wall and far field,
-    and `spread` the variation of psi along the wall. Panels are consecutive, from the wall outwards, and end
-    at `last`. If panels would save nothing, there are none, and `ends` has only the last level.
+    and `spread` the variation of psi along the wall. Maps to the plane are singular only at the wall: on a
+    panel as long as its distance from it, `NODES` points are exact to rho^-NODES, 6e-13, rho = 3 + sqrt(8).
     """
     ends: list[int] = []
     points, matrices = [np.empty(0)], [np.empty((NODES, 0))]

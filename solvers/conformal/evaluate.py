@@ -1,11 +1,6 @@
 """Evaluates a strip solution at the nodes of a grid of any resolution.
 
-The strip solution is separable: Fourier modes along theta, Chebyshev points across. The part of the walls
-beyond the first `MODES` modes decays within a few levels and is added there exactly. Levels near the walls
-are mapped to the plane one by one. All others are interpolated along eta in the plane, from the few Chebyshev
-points of each panel. The points of a row are::
-
-    levels 1 .. begin - 1 | panels' points | levels end .. nj - 2
+Levels near the walls are mapped to the plane one by one, others interpolated along eta in the plane.
 """
 
 import math
@@ -60,10 +55,12 @@ class StripGrid:
         return np.asarray(F + 1j * theta)
 
     def fill(self, lift: Lift, out: Floats, axis: Axis | None = None, shift: Shift | None = None) -> bool:
-        """Write the grid in the plane to `out` (n + 1, nj, 2), in planar layout, except for its two walls.
+        """Write the grid, except for its walls, to planar `out` (n + 1, nj, 2); return whether it is finite.
 
-        Returns whether all nodes are finite. The last row repeats the first bitwise. With an `axis`, rows i
-        and n - i are mirror images. A `shift` is added to phi.
+        The last row repeats the first bitwise. With an `axis`, rows i and n - i are mirror images. A `shift`
+        is added to phi. The points of a row are ::
+
+            levels 1 .. begin - 1 | panels' points | levels end .. nj - 2
         """
         n, (ends, points, matrix) = len(self.theta), self._panels
         begin, far = ends[0], self.eta[ends[-1] : -1]
@@ -107,7 +104,7 @@ def _widened(low: Complexes, ahead: Complexes, behind: Complexes) -> Complexes:
 class _HighModes:
     """Modes of a wall beyond `MODES`: `ahead` for k = MODES + 1 .. K, `behind` for -K .. -MODES - 1.
 
-    They are zero at the opposite wall to round-off; exp(-|k| height depth) then equals their ratio of sinh.
+    To round-off, they are zero at the opposite wall.
     """
 
     ahead: Complexes

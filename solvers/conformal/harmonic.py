@@ -1,14 +1,4 @@
-"""Harmonic extension of a boundary: x and y solve Laplace's equation in a rectangle or a ring.
-
-::
-
-    quad   u = corners, bilinear + sum over sides, k of b_k sin(k pi xi) sinh(k pi a (1 - eta)) / sinh(k pi a)
-    o      u = means, linear + sum over walls, k of c_k exp(2 pi i k xi) sinh(k T (1 - eta)) / sinh(k T)
-
-Here eta is measured from the side with these coefficients. a is the ratio of height to length of the
-rectangle, from the lengths of the sides. T = log(outer length / inner length), so that for a ring between two
-circles the result solves Winslow's equations. Kinks of the boundary do not propagate into the interior.
-"""
+"""Harmonic extension of a boundary: x and y solve Laplace's equation in a rectangle or a ring."""
 
 import math
 
@@ -24,6 +14,13 @@ FAR = 37.0  # exp(-37) is the precision of a double: modes that have decayed so 
 
 def extend(boundary: Boundary) -> Floats:
     """Return the nodes (ni, nj, 2) of the harmonic extension of a `boundary`, whose nodes are kept.
+
+    With eta from the side of the coefficients, a the height of the rectangle over its length, from the
+    lengths of sides, and T = log(outer length / inner length) of the ring::
+
+        quad   u = corners, bilinear + sum over sides, k of b_k sin(k pi xi) sinh(k pi a (1 - eta)) / sinh(k
+        pi a)
+        o      u = means, linear + sum over walls, k of c_k exp(2 pi i k xi) sinh(k T (1 - eta)) / sinh(k T)
 
     >>> s, zero, one = np.linspace(0.0, 1.0, 5), np.zeros(5), np.ones(5)
     >>> square = Boundary(*(np.stack(edge, axis=1) for edge in [(s, zero), (s, one), (zero, s), (one, s)]))

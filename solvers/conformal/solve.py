@@ -1,10 +1,4 @@
-"""O grids without a network: conformal map, harmonic extension, Picard iteration, evaluation at the nodes.
-
-The two walls of a boundary are mapped to a periodic strip, where their harmonic extension nearly solves
-Winslow's equations. A correction, such as that of a network, may be added. Picard iterations reduce the
-remaining error, and the separable sum is evaluated at the nodes of the grid. Boundaries without such a map
-are solved by the elliptic solver, which the solution states in a note.
-"""
+"""O grids by a conformal map to a strip, harmonic extension, Picard iteration, evaluation at nodes."""
 
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -49,10 +43,10 @@ def solve(
 ) -> list[Solution]:
     """Return a grid inside each O boundary; its boundary nodes are bitwise those of the boundary.
 
-    `polish` is the number of Picard iterations. `correction` returns a term that is added to the harmonic
-    extension, for all boundaries at once; `model` is the name of the network that computes it. If a boundary
-    has no conformal map, `substitute` is called with the boundary and the reason; if it returns None, the
-    elliptic solver is used.
+    `polish`: number of Picard iterations; `correction`: returns a term that is added to the harmonic
+    extension, for all boundaries at once; `model`: name of the network that computes it; `substitute`: makes
+    the grid of a boundary without a conformal map, from the boundary and the reason; where it returns None,
+    the elliptic solver is used.
     """
     across()  # made once a process: no part of a grid's time
     begun = time.perf_counter()

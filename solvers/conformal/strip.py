@@ -1,15 +1,5 @@
 """Winslow's equations in the periodic strip, with Fourier modes along phi and Chebyshev points across.
 
-A grid in the strip is w(theta, eta) = psi + i phi with phi = theta + ..., so that F = w - i theta is periodic
-in theta (2 pi). With W = w::
-
-    alpha W_tt - 2 beta W_te + gamma W_ee = 0
-    alpha = |W_e|^2,  beta = Re(conj(W_t) W_e),  gamma = |W_t|^2
-
-For the uniform strip W = T eta + i theta, alpha = T^2, beta = 0 and gamma = 1, and the harmonic extension of
-the two walls solves the equations with these coefficients. Picard iteration uses this constant operator as a
-preconditioner. Points are clustered at the wall, where high modes decay.
-
 Trefethen, Spectral Methods in MATLAB (2000), chapters 6 and 7.
 """
 
@@ -35,9 +25,8 @@ CLUSTERING = 4.0  # eta(s) = (exp(c s) - 1)/(exp(c) - 1)
 EIGENVECTORS = Path(__file__).with_name("eigenvectors.npy")
 """Rows of eigenvalues w of ``d2[1:-1, 1:-1]`` below, of eigenvectors v in columns, and of their inverse.
 
-They are stored because LAPACK rounds differently on different processors. If `LEVELS` or `CLUSTERING` change,
-compute them again: ``w, v = np.linalg.eig(d2[1:-1, 1:-1])``, ``np.save(EIGENVECTORS, np.vstack([w, v,
-np.linalg.inv(v)]))``.
+LAPACK would round them differently on different processors. If `LEVELS` or `CLUSTERING` change: ``w, v =
+np.linalg.eig(d2[1:-1, 1:-1])``, ``np.save(EIGENVECTORS, np.vstack([w, v, np.linalg.inv(v)]))``.
 """
 
 
@@ -112,7 +101,7 @@ def wavenumbers(like: Any = None, xp: Any = np) -> Any:
 
 
 def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
-    """Return two arrays (..., len(k), len(eta)): factors of mode k of the wall, and of the far field, at eta.
+    """Return the factors (..., len(k), len(eta)) at eta of mode k of the wall, and those of the far field.
 
     They are sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT), computed without overflow. T, the height of
     the strip, is a number or (..., 1, 1).
@@ -152,6 +141,12 @@ def picard(
     c: Complexes, steps: int, settled: float = 0.0, diverged: float = np.inf
 ) -> tuple[Complexes, list[float]]:
     """Return the modes of F after at most `steps` Picard steps, and the largest change of F in each step.
+
+    A grid in the strip is w(theta, eta) = psi + i phi; F = w - i theta is periodic in theta (2 pi). The
+    operator that a step inverts has the coefficients T^2, 0 and 1 of a uniform strip of height T::
+
+        alpha w_tt - 2 beta w_te + gamma w_ee = 0
+        alpha = |w_e|^2,  beta = Re(conj(w_t) w_e),  gamma = |w_t|^2
 
     The iteration ends after a step in which the change is below `settled` or at least `diverged`; a change
     that is not finite counts as infinite. `c` (2 MODES + 1, LEVELS) are the modes at the Chebyshev points;

@@ -25,8 +25,7 @@ class StripWalls(NamedTuple):
 
     `lift` maps the strip to the plane. `wall` and `far` (n,) are F = w - i theta, periodic in theta, at the n
     = ni - 1 nodes of each wall; `z` are the nodes of the wall in the plane, `corners` its trailing corners.
-    `axis` is the mirror axis of a boundary that is its own mirror image. For other boundaries, `hand` tells
-    the boundary from its mirror image.
+    `axis` is the mirror axis of a symmetric boundary; `hand` tells others from their mirror images.
     """
 
     lift: Lift
@@ -57,12 +56,10 @@ def walls(boundary: Boundary) -> StripWalls:
 def is_rough(body: StripWalls) -> bool:
     """Return whether the strip hardly resolves the uneven wall spacing, so that cells may fold.
 
-    The measure is the sum, in radians, of the amplitudes of Fourier modes beyond `MODES` / 2. `SHARPEST` and
-    `ROUGHEST` are its limits. Measured values are up to 0.013 for airfoils, up to 0.06 for airfoils with
-    evenly spaced nodes around the leading edge, 0.02 or more for polygons, and 0.01 or more for a square far
-    field.
-
-    Raises InputError: the strip does not resolve the wall.
+    The sum of the amplitudes, in radians, of Fourier modes beyond `MODES` / 2 is compared with `SHARPEST` and
+    `ROUGHEST`. It is at most 0.013 for airfoils, 0.06 with nodes evenly spaced around the leading edge, and
+    at least 0.02 for polygons and 0.01 for a square far field. Raises InputError: the strip does not resolve
+    the wall.
     """
     n = len(body.wall)
     k = np.minimum(np.arange(n), n - np.arange(n))
@@ -77,10 +74,7 @@ def is_rough(body: StripWalls) -> bool:
 
 
 def sharp_turns(body: StripWalls) -> tuple[int, ...]:
-    """Return the indices of the trailing corners, followed by those of nodes where the wall turns sharply.
-
-    At these nodes grid lines may cross the wall.
-    """
+    """Return the indices of trailing corners, then of sharp turns, where grid lines may cross the wall."""
     others = set(np.flatnonzero(_turn(body) > SHARP_TURN).tolist()) - set(body.corners)
     return (*body.corners, *sorted(others))
 

@@ -1,9 +1,4 @@
-"""Deformation of a grid to a changed boundary that preserves its boundary layers.
-
-`meshonet.solvers.deformation.follow` interpolates the displacement of the boundary into the interior. If
-cells fold, the deformation is divided into steps, each of which deforms the grid of the one before. If cells
-still fold, they are repaired; at last all nodes outside the boundary layers are smoothed.
-"""
+"""Deformation of a grid to a changed boundary that preserves its boundary layers."""
 
 import contextlib
 from collections.abc import Iterator, Mapping
@@ -30,8 +25,10 @@ STEPS = 2, 4, 8
 def deform(grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> Solution:
     """Return `grid` deformed to the new shapes of `walls`, with notes.
 
-    Raises InputError: the grid is a surface or has folded cells; it does not have one of the walls; a new
-    shape is unsuitable; walls cross.
+    Displacements of the boundary are interpolated (`meshonet.solvers.deformation.follow`). If cells fold,
+    this is divided into steps; then cells are repaired, and at last nodes outside layers are smoothed. Raises
+    InputError: the grid is a surface or has folded cells; it does not have one of the walls; a new shape is
+    unsuitable; walls cross.
     """
     table = NodeTable.of(grid)
     folded = count_folded_in(grid)

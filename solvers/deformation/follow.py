@@ -1,8 +1,6 @@
 """Displacement of all nodes from that of the boundary, by inverse-distance weighting, and its derivative.
 
-Boundary nodes are the sources of a displacement field: those of moved walls with their displacement and
-rotation, the others with none. On straight sides (flat ones of volumes) that touch a moved wall, nodes first
-slide along the side; then they too are sources, with the displacement they found.
+Luke, Collins, Blades, J. Comput. Phys. 231 (2012) 586-601.
 """
 
 from dataclasses import dataclass
@@ -33,15 +31,11 @@ FLAT = 1e-9
 class Field:
     """Displacements interpolated from motions and rotations of boundary nodes by inverse-distance weighting.
 
-    A source k is a node that moves from w_k to w_k' and rotates by R_k. The displacement at x is the weighted
-    mean of d_k(x) = w_k' + R_k (x - w_k) - x over all sources. The weights are A_k (r^-2 + near² r^-4) in the
-    plane and A_k (r^-3 + near² r^-5) in three dimensions: A_k is the length or area that belongs to node k, r
-    is its distance from x, and `near` is the distance within which the second term is larger than the first.
-    Close to a wall the nearest node dominates, so that boundary layers move and rotate with the wall. The
-    field depends only on x, so that nodes shared by blocks remain shared.
-
-    The exponents in three dimensions are those of Luke, Collins, Blades, J. Comput. Phys. 231 (2012) 586-601;
-    in the plane, where sources lie on lines, they are lower by one.
+    A source k is a boundary node that moves from w_k to w_k' and rotates by R_k, or stays. The displacement
+    at x is the weighted mean of d_k(x) = w_k' + R_k (x - w_k) - x over all sources. The weights are A_k (r^-2
+    + near² r^-4) in the plane and A_k (r^-3 + near² r^-5) in three dimensions: A_k is the length or area that
+    belongs to node k, r is its distance from x, and `near` is the distance within which the second term is
+    larger.
     """
 
     sources: Indices
@@ -134,10 +128,7 @@ class Follow:
         return affine(old[at], there[at], turns)
 
     def along_sides(self, move: Floats, there: Floats) -> Floats:
-        """Remove from `move` (n, d), in place, components normal to straight or flat sliding sides.
-
-        The result is the changed `move`.
-        """
+        """Return `move` (n, d), changed in place, without components normal to flat sliding sides."""
         for piece in self.sources.sliding:
             normal = normal_of(self.table, piece, there)
             if normal is not None:
@@ -157,10 +148,7 @@ def _near(moved: Floats, fixed: Floats) -> float:
 
 
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
-    """Return the unit normal (d,) of a side that is straight or flat before and after the deformation.
-
-    The result is None for other sides.
-    """
+    """Return the unit normal (d,) of a side that is flat before and after the deformation, or None."""
     nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
     centre = nodes.mean(axis=0)
     _, size, ways = singular_values(nodes - centre)
@@ -170,10 +158,7 @@ def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
 
 
 def sliding_notes(follow: Follow, to: Floats) -> tuple[str, ...]:
-    """Return notes about the fixed sides that touch moved walls.
-
-    `to` (n, d) are the new positions of the moved nodes.
-    """
+    """Return notes about fixed sides that touch moved walls; `to` (n, d) are new positions of moved nodes."""
     notes, table = [], follow.table
     for piece in follow.sources.sliding:
         if (to[piece.numbers] == table.nodes[piece.numbers]).all():

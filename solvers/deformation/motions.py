@@ -1,11 +1,7 @@
 """The motion x -> w' + R (x - w) of each node w of a moved wall, with R the local rotation of the wall.
 
-::
-
-         |  n'          In the plane R is the rotation by the mean angle of the two edges at a node, weighted
-      ___|___ w'        by their inverse lengths. In three dimensions it is the mean rotation of the wall's
-      n | R             quadrilaterals at the node, each the polar factor of the map from old to new edges.
-    ____|____ w
+In the plane R is the rotation by the mean angle of the edges at a node, weighted by their inverse lengths; in
+space the mean rotation of quadrilaterals, polar factors of the maps from old to new edges.
 """
 
 from dataclasses import dataclass

@@ -1,7 +1,6 @@
 """All nodes of a grid in one table, and its outer boundary as pieces: arrays of indices into this table.
 
-In the plane the domain is on the left of a piece, so that pieces around a body run clockwise. In a volume,
-pieces are rectangles (m, n) of nodes.
+In the plane the domain is on the left of a piece. In a volume, pieces are rectangles (m, n) of nodes.
 """
 
 from collections.abc import Sequence
@@ -44,10 +43,7 @@ class NodeTable:
 
     @classmethod
     def of(cls, grid: Grid) -> Self:
-        """Return the table of a planar grid or of a volume.
-
-        Raises InputError: a surface.
-        """
+        """Return the table of a planar grid or of a volume. Raises InputError: a surface."""
         if grid.form == "surface":
             raise InputError("a surface has no cells that could follow it", "give a planar grid or a volume")
         return cls(grid, *node_table(grid.blocks, grid.connections))

@@ -1,8 +1,6 @@
 """Positions of wall nodes on a new outline: each keeps its fraction of arc length between matching features.
 
-Features of an airfoil are the trailing edge (both ends of a blunt one's base) and the leading edge; those of
-another outline are its corners, if the old and the new outline have equally many. Otherwise arc length is
-counted from the first wall node and from the point of the new outline nearest to it.
+These are trailing edge (or ends of a base) and leading edge of airfoils, or equally many corners.
 """
 
 import numpy as np

@@ -38,8 +38,8 @@ class Sources:
 def sources_of(table: NodeTable, moved: Bools) -> Sources:
     """Return the sources on the outer boundary of `table` when the nodes `moved` (n,) move.
 
-    On boundaries far from all moved nodes, nodes are grouped, and one node of each group is a source. A group
-    is small compared with its distance from the moved nodes and with the cells at the boundary.
+    Far from all moved nodes one source stands for a group of nodes, which is small compared with its distance
+    from the moved nodes and with the cells at the boundary.
     """
     elements = elements_of(table.pieces, table.nodes.shape[1])
     areas = areas_of(table.nodes, elements)

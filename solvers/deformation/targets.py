@@ -25,13 +25,12 @@ from meshonet.solvers.deformation.outline import on_line, on_outline
 NewWall: TypeAlias = Shape | Grid | Motion | Floats | Sequence[Floats]
 """An outline, another grid whose boundary nodes are taken one by one, a rigid motion, or nodes.
 
-Nodes are given in the plane as one array (n, 2) for each polyline of the wall, in either direction, or in
-three dimensions as one array (m, n, 3) for each patch. An array (n, 2) of another length is an outline.
+Nodes are one array (n, 2) for each polyline of the wall, in either direction, or one array (m, n, 3) for each
+patch in space. An array (n, 2) of another length is an outline.
 """
 
 SAME = 1e-9
-"""Largest difference between the positions that two pieces give a shared node, divided by the wall's extent.
-"""
+"""Largest difference of the positions that two pieces give a shared node, over the wall's extent."""
 
 
 @dataclass(frozen=True, eq=False)

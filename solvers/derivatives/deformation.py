@@ -1,10 +1,4 @@
-"""The derivative of the nodes of a deformed grid with respect to the nodes of its moved walls.
-
-In a deformation of one step (`meshonet.solvers.deformation.follow`) the weights depend on the old grid alone:
-the new nodes are linear in the displacements and rotations of the wall nodes, which are smooth functions of
-the new wall nodes. So the derivative is exact; it costs about one more deformation. Sliding sides are
-included.
-"""
+"""The exact derivative of the nodes of a grid, deformed in one step, by the nodes of its moved walls."""
 
 from collections.abc import Mapping, Sequence
 
@@ -68,9 +62,8 @@ class DeformationDerivative:
     def transposed(self, pulls: Floats | Sequence[Floats]) -> Lines:
         """Return the derivative (n, 2) of a functional with respect to the nodes of each moved wall.
 
-        `pulls` (ni, nj, 2), one array per block, is the derivative of the functional with respect to all
-        nodes as independent variables. A closed wall repeats its first node; the first entry is then the full
-        derivative, and the last entry is 0.
+        `pulls` (ni, nj, 2), one array per block, is the derivative of the functional by all nodes as
+        independent variables. A closed wall repeats its first node; the last entry is then 0.
         """
         arrays = [pulls] if isinstance(pulls, np.ndarray) else list(pulls)
         if [a.shape[:2] for a in arrays] != [block.counts for block in self.grid.blocks]:

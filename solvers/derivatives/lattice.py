@@ -1,11 +1,5 @@
 """The sparse Jacobian of equations on a structured grid, by finite differences with graph colouring.
 
-::
-
-    1 2 3 1 2 3      Nodes of one colour are so far apart that no equation depends on two of them. A stencil
-    4 5 6 4 5 6      of `reach` nodes each way needs (2 reach + 1)² colours, whatever the size of the grid.
-    7 8 9 7 8 9
-
 Curtis, Powell, Reid, J. Inst. Maths. Applics. 13 (1974) 117-119.
 """
 

@@ -1,11 +1,6 @@
-"""Derivatives, by the implicit function theorem, of a grid that solves equations.
+"""Derivatives of a grid x that solves F(x, b) = 0 by its boundary nodes b: dx = -F_x⁻¹ F_b db.
 
-Let F(x, b) = 0 for interior nodes x and boundary nodes b. Then dx = -F_x⁻¹ F_b db. A functional whose
-derivative with respect to x is p has the derivative -F_bᵀ F_x⁻ᵀ p with respect to b (adjoint method): one
-linear solve per functional, whatever the number of boundary nodes. F is the gradient of the variational
-functional (`meshonet.solvers.energy.functional`), for which F_x is symmetric, or Winslow's equations, for
-which it is not. In the second case the symmetric matrix ((1, F_x), (F_xᵀ, 0)) is factored. The aspect ratio a
-of the functional depends on the boundary and is differentiated too.
+A functional with the derivative p by x has the derivative -F_bᵀ F_x⁻ᵀ p by b (adjoint method).
 """
 
 from dataclasses import dataclass
@@ -36,11 +31,10 @@ class OptimumDerivative:
 
     Parameters
     ----------
-    grid : a grid near the minimum of the variational functional, or near the solution of Winslow's equations,
-        for its own boundary nodes, so that Newton's method converges.
-    method : ``variational`` or ``winslow``.
-    weights : weights of the functional. None: the weights in the provenance of `grid`, or, if there are none,
-        the defaults of `solve_pde`.
+    grid : a grid near the solution for its own boundary nodes, so that Newton's method converges.
+    method : ``variational`` (F is the gradient of the functional) or ``winslow``.
+    weights : weights of the functional. None: those in the provenance of `grid`, or the defaults of
+        `solve_pde`.
 
     Raises InputError: the grid is an O grid, a volume, or has several blocks; the method is unknown. Raises
     SolverError: the grid is far from the solution.
@@ -67,7 +61,7 @@ class OptimumDerivative:
     def along(self, moves: Floats) -> Floats:
         """Return the derivative (ni, nj, 2) of all nodes along `moves` (ni, nj, 2) of the boundary nodes.
 
-        Values of `moves` at inner nodes are ignored. The cost is one linear solve.
+        Values of `moves` at inner nodes are ignored.
         """
         rim = np.array(np.moveaxis(moves, -1, 0), dtype=np.float64, order="C")
         rim[:, 1:-1, 1:-1] = 0.0
@@ -79,8 +73,7 @@ class OptimumDerivative:
     def transposed(self, pull: Floats) -> Floats:
         """Return the derivative (ni, nj, 2) of a functional with respect to the boundary nodes, zero inside.
 
-        `pull` (ni, nj, 2) is the derivative of the functional with respect to all nodes as independent
-        variables. The cost is one linear solve.
+        `pull` (ni, nj, 2) is the derivative of the functional by all nodes as independent variables.
         """
         flat = np.array(np.moveaxis(pull, -1, 0), dtype=np.float64, order="C")
         adjoint = np.zeros(flat.size)
@@ -92,9 +85,9 @@ class OptimumDerivative:
         return np.ascontiguousarray(np.moveaxis(result, 0, -1))
 
     def _approach(self, nodes: Floats) -> None:
-        """Move `nodes` (2, ni, nj) to the solution and linearise there.
+        """Move `nodes` (2, ni, nj) to the solution by Newton's method, and linearise there.
 
-        Newton's method; a Jacobian is kept while each step is less than a quarter of the one before.
+        A Jacobian is kept while each step is less than a quarter of the one before.
         """
         edges, before, fresh = shortest_edges(nodes), np.inf, False
         for _ in range(STEPS):
@@ -137,10 +130,7 @@ class OptimumDerivative:
         return self._system.solve(right, transposed=transposed)
 
     def _aspect_term(self, nodes: Floats) -> Floats:
-        """Return the derivative of the equations with respect to the aspect ratio a.
-
-        The derivative of a with respect to the nodes is stored in an attribute.
-        """
+        """Return the derivative of the equations by the aspect ratio a; that of a by the nodes is stored."""
         self._aspect_slope = np.zeros(nodes.size)
         if self._method == "winslow":
             return np.zeros(nodes.size)
@@ -177,10 +167,7 @@ def aspect_slope(nodes: Floats) -> Floats:
 
 
 def winslow_residual(nodes: Floats) -> Floats:
-    """Return the residual of Winslow's equations at those of `nodes` (2, ni, nj) that are inside.
-
-    Derivatives are central differences.
-    """
+    """Return the residual of Winslow's equations at inner `nodes` (2, ni, nj), by central differences."""
     residual, middle = np.zeros_like(nodes), nodes[:, 1:-1, 1:-1]
     west, east = nodes[:, :-2, 1:-1], nodes[:, 2:, 1:-1]
     south, north = nodes[:, 1:-1, :-2], nodes[:, 1:-1, 2:]

@@ -1,11 +1,4 @@
-"""Multigrid data of one index direction: finite-difference weights and transfers between levels.
-
-The coarse nodes are every second one and the last. If the count of cells is odd, the last coarse step is
-shorter than the others, so every level has its own node positions::
-
-    fine    0   1   2   3   4   5   6   7        seven cells
-    coarse  0       1       2       3   4        four cells, the last half as long
-"""
+"""Multigrid data of one index direction: finite-difference weights and transfers between levels."""
 
 from __future__ import annotations
 
@@ -22,7 +15,8 @@ from meshonet.geometry.arrays import Floats
 class Direction:
     """One index direction of a level: node positions (n,), in units of the steps of the finest level.
 
-    If `periodic`, the last node is the first.
+    Coarse nodes are every second one and the last; the last step may be shorter. If `periodic`, the last node
+    is the first.
 
     >>> Direction(np.arange(8.0), periodic=False).coarse.positions
     array([0., 2., 4., 6., 7.])
@@ -63,14 +57,11 @@ class Direction:
 
     @cached_property
     def transfer(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """Weights of interpolation and of restriction, four arrays.
+        """Weights of linear interpolation and of its transpose, the restriction: four arrays.
 
-        The first array (n,) is, for each fine node, the weight of the next coarse node, and 0 at fine nodes
-        that are coarse nodes. The other three (coarse n,) are the weights of the fine nodes before, at and
-        after each coarse node.
-
-        Interpolation is linear; restriction is the transpose of interpolation, scaled by the dual lengths of
-        nodes so that a constant residual is preserved.
+        The first (n,) is the weight of the next coarse node at each fine node, 0 at coarse nodes. The others
+        (coarse n,) are the weights of the fine nodes before, at and after each coarse node, scaled by the
+        dual lengths of nodes so that a constant residual is preserved.
         """
         before, after = self._steps
         length = (before + after) / 2

@@ -1,14 +1,4 @@
-"""Control functions: source terms of Winslow's equations that set the growth of steps along ξ and η.
-
-::
-
-    α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0
-
-On a straight line φ = -(ln |x_ξ|)_ξ. A control function is stored as the logarithm l of the ratio of
-neighbouring steps, a sum of products of a function of ξ and one of η. So it needs no array of the size of the
-grid, coarser levels take every second value, and the scheme (φ = -(2/h) tanh(h l/2), see ``stencil.h``) is
-exact for geometric growth on every level.
-"""
+"""Control functions φ and ψ of Winslow's equations, which set the growth of steps along ξ and η."""
 
 from __future__ import annotations
 
@@ -56,7 +46,11 @@ class Factors:
 
 @dataclass(frozen=True, eq=False)
 class Controls:
-    """The control functions of a grid."""
+    """The logarithms of the ratios of neighbouring steps, as sums of products of functions of ξ and of η.
+
+    In α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0 it is φ = -(2/h) tanh(h l/2) for the logarithm l (see
+    ``stencil.h``), which is exact for geometric growth on every level.
+    """
 
     phi: Factors  # logarithm of the ratio of neighbouring steps along ξ and along η
     psi: Factors
@@ -72,9 +66,9 @@ class Controls:
 def thomas_middlecoff(boundary: Boundary) -> Controls:
     """Return the control functions that propagate the spacing of the edges into the domain.
 
-    On an edge with arc length s, φ = -(x_ξ·x_ξξ)/(x_ξ·x_ξ) = -(ln s_ξ)_ξ; this assumes that grid lines leave
-    the edge straight and orthogonally. Inside, φ and ψ are interpolated linearly between opposite edges. For
-    an O boundary, ψ is that of the seam.
+    On an edge with arc length s, φ = -(x_ξ·x_ξξ)/(x_ξ·x_ξ) = -(ln s_ξ)_ξ, for grid lines that leave the edge
+    straight and orthogonally. Inside, φ and ψ are interpolated linearly between opposite edges. For an O
+    boundary, ψ is that of the seam.
 
     Thomas and Middlecoff, AIAA J. 18 (1980) 652-656.
     """
@@ -90,10 +84,9 @@ def thomas_middlecoff(boundary: Boundary) -> Controls:
 
 
 def step_ratios(edge: Floats, *, periodic: bool) -> Floats:
-    """Return log(step after / step before) (n,) at each node of an edge (n, 2).
+    """Return log(step after / step before) (n,) at each node of an edge (n, 2), within ±`STEEPEST`.
 
-    The ends of an open edge get the values of their neighbours. Values are clipped to `STEEPEST`, because
-    ratios at corners are arbitrary.
+    The ends of an open edge get the values of their neighbours.
 
     >>> edge = np.array([[0.0, 0.0], [1.0, 0.0], [3.0, 0.0], [7.0, 0.0]])
     >>> np.exp(step_ratios(edge, periodic=False)).tolist()

@@ -16,9 +16,7 @@ REACH = 32  # cells to each side of the corner, and inwards
 SWEEPS = 8  # local sweeps after each sweep of the level
 
 LEAST = 120
-"""Smallest number of cells per direction of a level with local relaxation; on smaller levels it costs too
-much.
-"""
+"""Smallest number of cells per direction of a level with local relaxation."""
 
 Window = tuple[slice, slice]
 
@@ -28,9 +26,8 @@ Corner = tuple[str, int]
 class CornerPatch:
     """The nodes in a `window` (two index ranges) at a corner of a `level`; other nodes are fixed.
 
-    At a re-entrant corner the solution is singular, and a cycle reduces the error there less than elsewhere.
-    A fixed number of additional sweeps around the corner, on every level, restores most of the convergence
-    rate: Bai, Brandt, SIAM J. Sci. Stat. Comput. 8 (1987) 109-134.
+    Additional sweeps around re-entrant corners, where the solution is singular, restore most of the
+    convergence rate: Bai, Brandt, SIAM J. Sci. Stat. Comput. 8 (1987) 109-134.
     """
 
     def __init__(

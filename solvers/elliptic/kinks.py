@@ -10,10 +10,8 @@ from meshonet.geometry.quality.measure import angles
 from meshonet.solvers.elliptic.multigrid import relax
 
 REACH = 3.0
-"""Number of coarse cells on each side of a kink, and inwards, that are relaxed at full resolution.
-
-If this is more than `NEAR` fine cells and Winslow's equations were solved, half as many are relaxed: the
-sweeps change only nodes nearer to the kink, and the largest angles are the same to a tenth of a degree.
+"""Number of coarse cells on each side of a kink, and inwards, that are relaxed at full resolution; half of it
+if it is more than `NEAR` fine cells and Winslow's equations were solved.
 """
 
 NEAR = 40  # fine cells from the kink
@@ -26,8 +24,8 @@ def sweep_kinks(
 ) -> bool:
     """Relax planar `nodes` in place around the kinks of the boundary; return whether there are kinks.
 
-    Relaxation corrects the spline interpolation from a coarse grid of `counts` nodes, which is too smooth at
-    kinks. With `only_better`, the nodes around a kink are moved only if the largest angle becomes smaller.
+    Splines from a coarse grid of `counts` nodes are too smooth there. With `only_better`, the nodes around a
+    kink are moved only if the largest angle becomes smaller.
     """
     any_kinks = False
     steps = [(n - 1) / (m - 1) for n, m in zip(nodes.shape[:2], counts, strict=True)]

@@ -1,10 +1,4 @@
-"""Full multigrid (nested iteration) with FAS V-cycles for Winslow's system, with or without controls.
-
-The smoother is alternating zebra line relaxation, with coefficients re-evaluated line by line. A cycle
-restricts nodes and residual, solves the coarse equations with the truncation error on the right-hand side
-(full approximation scheme), and interpolates the correction. Nested iteration interpolates the *difference
-from the transfinite interpolation* to finer levels, so that boundaries are exact and their kinks are not
-smoothed.
+"""Full multigrid with FAS V-cycles for Winslow's system; the smoother is alternating zebra line relaxation.
 
 Brandt, Math. Comp. 31 (1977) 333-390; Trottenberg, Oosterlee, Schüller, Multigrid (2001), chapters 5 and 8.
 """
@@ -34,8 +28,7 @@ class Settings:
 class Multigrid:
     """The multigrid levels for planar `nodes` (ni, nj, 2) inside `edges` (south, north, west, east).
 
-    `nodes` are the finest level; they are changed in place and need no initial values. `periodic` means an O
-    grid.
+    `nodes` are the finest level, changed in place and without initial values. `periodic` means an O grid.
     """
 
     def __init__(

@@ -1,11 +1,4 @@
-"""Elliptic grids of boundaries: initial grid, cycles, stopping criterion, and other attempts on divergence.
-
-::
-
-    interpolation --nested iteration--> cycles --stop--> grid        Winslow, or with control functions
-                                          |
-                                       diverges --> more sweeps --> controls little by little
-"""
+"""Elliptic grids: initial grid, cycles, stopping criterion, and other attempts on divergence."""
 
 import numpy as np
 
@@ -20,10 +13,7 @@ from meshonet.solvers.progress import cycle_ended
 from meshonet.solvers.solution import Outcome, Solution, timed
 
 ATTEMPTS = (Settings(), Settings(coarsest=32, sweeps=4), Settings(coarsest=64, sweeps=8))
-"""Settings tried in turn when the residual grows, stalls or is not finite.
-
-Around slits and spikes, one sweep smooths too little, and coarse corrections make the iteration diverge.
-"""
+"""Settings tried in turn when the residual grows, stalls or is not finite, as around slits and spikes."""
 
 CONTINUATION = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Factors of the control functions for continuation from solution to solution, if the full ones diverge."""
@@ -31,9 +21,7 @@ CONTINUATION = (0.0, 0.25, 0.5, 0.75, 1.0)
 SOLVED = 1e-4  # relative residual that counts as discretisation level when there is no better estimate
 
 SOLVED_BY_INTERPOLATION = 16.0
-"""Residual of transfinite interpolation, in units of its round-off, up to which it is the solution: in
-rectangles it reaches 7 units.
-"""
+"""Largest residual of transfinite interpolation, in units of its round-off, for which it is the solution."""
 
 
 class _DivergedError(Exception):
@@ -47,11 +35,16 @@ def solve(
 ) -> Solution:  # fmt: skip
     """Solve Winslow's equations, with control functions or without, for the nodes inside `boundary`.
 
-    `boundary` is of topology quad, o or c; the wake of a c boundary is fixed. The iteration stops when the
-    residual is `tol` times that of the transfinite interpolation; without `tol`, when the estimated error of
-    the iteration is below the discretisation error; at the latest after `max_cycles` cycles. `initial`, a
-    grid with the same node counts, replaces nested iteration. The grid may be folded at re-entrant corners
+    The wake of a C boundary is fixed. The grid may be folded at re-entrant corners
     (`meshonet.solvers.pipeline.fallback`).
+
+    Parameters
+    ----------
+    tol : residual that ends the iteration, relative to that of the transfinite interpolation. None: the
+        iteration
+        ends when its estimated error is below the discretisation error.
+    max_cycles : largest number of cycles.
+    initial : a grid with the same node counts, in place of nested iteration.
 
     Raises InputError: a setting is out of range; `initial` has other node counts. Raises SolverError: every
     attempt diverged.
@@ -83,11 +76,7 @@ def solve(
 def solve_thomas_middlecoff(
     boundary: Boundary, *, tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None
 ) -> Solution:
-    """Solve Winslow's equations with the control functions of Thomas and Middlecoff.
-
-    Parameters and errors are those of `solve`; the control functions are those of
-    `meshonet.solvers.elliptic.control.thomas_middlecoff`.
-    """
+    """Solve Winslow's equations with the control functions of `control.thomas_middlecoff`; see `solve`."""
     return solve(
         boundary, tol=tol, max_cycles=max_cycles, initial=initial, controls=thomas_middlecoff(boundary),
         method="thomas-middlecoff",
@@ -155,9 +144,8 @@ def _diverges(residuals: list[float], start: float, growth: float) -> bool:
 def _at_discretisation_level(corrections: list[float]) -> bool:
     """Return whether the error left by the cycles is below that of the discretisation.
 
-    After nested iteration the first correction is about the change from the coarser solution, three times the
-    discretisation error of a second-order scheme. With the last correction c and the ratio ρ of the last two,
-    the sum of all further corrections, the error left, is about c ρ / (1 - ρ).
+    The first correction is about three times the discretisation error of a second-order scheme. With the last
+    correction c and the ratio ρ of the last two, the error left is about c ρ / (1 - ρ).
     """
     if len(corrections) < 2 or corrections[-1] == 0.0:
         return False

@@ -1,14 +1,6 @@
 """Elliptic grids with prescribed angle of grid lines and first-cell height at chosen edges.
 
-::
-
-    Winslow's solution --> cycle --> correct sources at the edges --+--> cycles with the sources kept --> grid
-                             ^                                      |
-                             +------- until angles are right -------+    first on few nodes, then on all
-
-The sources (`meshonet.solvers.elliptic.wall_control`) can only make first cells somewhat thinner than those
-of Winslow's solution. Thinner ones are made by `meshonet.solvers.layers.redistribute`, along grid lines that
-by then leave the wall at the prescribed angle.
+Cycles alternate with corrections of the sources at the edges (`wall_control`), first on few nodes.
 """
 
 import math
@@ -47,11 +39,16 @@ def solve_steger_sorenson(
 ) -> Solution:  # fmt: skip
     """Solve Winslow's equations with sources that control angle and first-cell height at edges.
 
-    `heights` maps the controlled sides of the quad or o `boundary` to first-cell heights in its unit; 0 means
-    that the height is free. None: south and north of a quad, or the body of an o boundary, are controlled,
-    with free heights. `angle` is the angle in degrees between an edge and the lines that leave it. `tol`,
-    `max_cycles` and `initial` are those of `solve`. Notes state the remaining error of the angles, and
-    whether sources were weakened because cells folded.
+    Sources make first cells only somewhat thinner. Notes state the remaining error of the angles, and whether
+    sources were weakened because cells folded.
+
+    Parameters
+    ----------
+    heights : first-cell heights of controlled sides of a quad or O boundary, in its unit; 0 for a free
+        height.
+        None: free heights at south and north, or at a body.
+    angle : angle in degrees between an edge and the lines that leave it.
+    tol, max_cycles, initial : as in `solve`.
 
     Raises InputError: a side that cannot be controlled; an angle out of range; the errors of `solve`. Raises
     SolverError: every attempt diverged.
@@ -78,10 +75,7 @@ def solve_steger_sorenson(
 
 
 def largest_lean(nodes: Floats, boundary: Boundary) -> float:
-    """Return the largest deviation from 90 degrees of the lines that leave south and north of a quad.
-
-    Nodes near corners are ignored.
-    """
+    """Return the largest deviation from 90 degrees of lines at south and north of a quad, off corners."""
     sides = ("south", "north")
     edges = _edges(boundary, dict.fromkeys(sides, 0.0), 90.0, nodes)
     sine = max(float(np.abs(edge.errors(nodes)[0]).max()) for edge in edges)

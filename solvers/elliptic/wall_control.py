@@ -1,11 +1,5 @@
 """One controlled edge: angle of its lines, height of its first cells, and the sources that change both.
 
-The sources decay from the edge inwards, φ(i, j) = p(i) e^{-b j} along it and ψ(i, j) = q(i) e^{-b j} across,
-as those of Steger and Sorenson. To first order, on a uniform grid with steps dx and dy, a Fourier mode of p
-with wave number κ/dy rotates the lines at the edge by (dy/dx) p/(b + κ), and one of q changes the logarithm
-of the first-cell height by q/(b + κ). So the corrections of p and q are the errors with each mode multiplied
-by b + κ.
-
 Steger and Sorenson, J. Comput. Phys. 33 (1979) 405-410; feedback of angle and height: Hilgenstock, in
 Numerical Grid Generation in Computational Fluid Mechanics (1988) 137-146.
 """
@@ -28,9 +22,13 @@ LIMIT = 1.0  # largest logarithm of a step ratio due to a source
 class ControlledEdge:
     """An edge (n, 2) at which angle and first-cell height are controlled.
 
-    The grid has `across` nodes from this edge to the opposite edge; if `periodic`, the edge is closed.
-    `angle` is the angle in degrees between the edge and the lines that leave it. `height` is the first-cell
-    height, 0 if it is free.
+    Sources φ(i, j) = p(i) e^{-b j} along the edge and ψ(i, j) = q(i) e^{-b j} across decay inwards. On a
+    uniform grid with steps dx and dy, a Fourier mode of p with wave number κ/dy rotates lines by (dy/dx) p/(b
+    + κ); one of q changes the logarithm of the height by q/(b + κ). Corrections are errors with modes times b
+    + κ.
+
+    `across`: nodes from this edge to the opposite one; `periodic`: whether the edge is closed; `angle`: in
+    degrees, between the edge and the lines that leave it; `height`: of first cells, 0 if it is free.
     """
 
     def __init__(
@@ -48,8 +46,7 @@ class ControlledEdge:
     def errors(self, nodes: Floats) -> tuple[Floats, Floats]:
         """Return two errors (n,): of the angle (as a sine), and of the logarithm of the first-cell height.
 
-        The errors are multiplied by weights that decrease to 0 at corners and ends of the edge, where the
-        angle cannot be prescribed.
+        They decrease to 0 at corners and ends of the edge, where the angle cannot be prescribed.
         """
         lines = lines_from_side(nodes, self.side)
         lean = leaning(lines, self._tangent) - math.cos(math.radians(self.angle))

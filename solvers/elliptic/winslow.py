@@ -1,7 +1,4 @@
-"""Winslow's equations in terms of derivatives, whose discretisation is left to each solver.
-
-Winslow, J. Comput. Phys. 1 (1966) 149-172.
-"""
+"""Winslow's equations in terms of derivatives: Winslow, J. Comput. Phys. 1 (1966) 149-172."""
 
 from collections.abc import Callable
 from typing import Any

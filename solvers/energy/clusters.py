@@ -28,10 +28,7 @@ class Window:
         return int(np.prod(np.subtract(self.last, self.first)))
 
     def rows(self, ni: int, periodic: bool) -> NDArray[np.intp]:
-        """Return the i indices (m,) of the window's nodes in a grid with `ni` nodes along i.
-
-        If `periodic`, the indices are taken modulo ni - 1.
-        """
+        """Return the i indices (m,) of the window's nodes among `ni` nodes; modulo ni - 1 if `periodic`."""
         rows = np.arange(self.first[0], self.last[0] + 1)
         return rows % (ni - 1) if periodic else rows
 
@@ -41,10 +38,7 @@ class Window:
         return rows, *(slice(low + less, high + 1 - less) for low, high in ends)
 
     def cut(self, nodes: Floats, periodic: bool = False) -> Floats:
-        """Return a copy of those `nodes` (ni, nj, 2) or (ni, nj, nk, 3) that are in the window.
-
-        The copy is in planar layout (`meshonet.geometry.arrays`): each coordinate is contiguous in memory.
-        """
+        """Return a planar copy of those `nodes` (ni, nj, 2) or (ni, nj, nk, 3) that are in the window."""
         return as_planar(nodes[self._index(self.rows(len(nodes), periodic), 0)])
 
     def put(self, nodes: Floats, periodic: bool, patch: Floats) -> None:
@@ -60,10 +54,9 @@ def windows(
 ) -> Iterator[Window]:
     """Yield windows around the groups of the cells `bad` (n, d), with at least `margin` cells around each.
 
-    The grid is divided into tiles of `margin` cells; bad cells form a group if their tiles touch. A group
-    that needs more than `largest` cells is divided, if necessary down to single tiles. Windows stay inside
-    the nodes of `shape`, (ni, nj) or (ni, nj, nk); if `periodic`, a window may extend across the seam, but
-    not overlap itself.
+    Bad cells form a group if their tiles of `margin` cells touch. A group that needs more than `largest`
+    cells is divided, at most to single tiles. Windows stay inside the nodes of `shape`, (ni, nj) or (ni, nj,
+    nk); if `periodic`, a window may extend across the seam, but not overlap itself.
 
     >>> list(windows(np.array([[20, 0], [22, 1]]), 6, (100, 50), False, 2500))
     [Window(first=(12, 0), last=(30, 12))]

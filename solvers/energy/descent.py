@@ -1,7 +1,4 @@
-"""Minimisation of the variational functional from given nodes, which are made valid first.
-
-The iterations are compiled: preconditioned L-BFGS and, for few nodes, Newton's method.
-"""
+"""Minimisation of the variational functional from given nodes, which are made valid first."""
 
 from collections.abc import Callable
 
@@ -35,15 +32,12 @@ def descend(
     nodes: Floats, weights: Weights, still: float, most: int, *, periodic: bool = False,
     first: int | None = None, stiffness: tuple[Stiffness, tuple[int, int]] | None = None,
 ) -> tuple[int, bool]:  # fmt: skip
-    """Minimise from planar `nodes` (ni, nj, 2), in place.
+    """Minimise from planar `nodes` (ni, nj, 2) in place; return the iterations and whether the grid is valid.
 
-    Return the iterations and whether the grid is valid.
-
-    `still` is the `tol` of `variational.solve`, and `most` is the largest number of iterations. If `first` is
-    given, the iteration stops after `first` iterations unless the value is then above `HARD`. Around a body
-    (`periodic`) the last row of nodes repeats the first row, and both move. `stiffness` is the Hessian on a
-    coarse copy of the grid, and the node counts of the copy; it preconditions smooth displacements
-    (`stiffness_of`).
+    `still`: the `tol` of `variational.solve`; `most`: largest number of iterations; `first`: number of
+    iterations after which only values above `HARD` are lowered further; `periodic`: around a body, where the
+    last row of nodes repeats the first, and both move; `stiffness`: from `stiffness_of`, preconditions smooth
+    displacements.
     """
     ni, nj = nodes.shape[:2]
     if min(ni, nj) < 3:
@@ -69,9 +63,8 @@ def descend(
 def newton(nodes: Floats, weights: Weights, most: int) -> int:
     """Take up to `most` Newton steps from planar `nodes` (ni, nj, 2) of a quad; return the number of steps.
 
-    A step reduces the error much more than an iteration of `descend` does; with 33 x 33 nodes it costs as
-    much as about six such iterations. The iteration ends after a step that lowers the functional by less than
-    `WON`. If folded cells cannot be repaired, no step is taken.
+    The iteration ends after a step that lowers the functional by less than `WON`. If folded cells cannot be
+    repaired, no step is taken.
     """
     if min(nodes.shape[:2]) < 3 or (count_folded(nodes) and repair(nodes, periodic=False)):
         return 0
@@ -80,10 +73,7 @@ def newton(nodes: Floats, weights: Weights, most: int) -> int:
 
 
 def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int, int]] | None:
-    """Return the Hessian at coarse planar `nodes`, and their counts, for `descend`.
-
-    None if cells are folded.
-    """
+    """Return the Hessian at coarse planar `nodes`, and their counts; None if cells are folded."""
     if count_folded(nodes):
         return None
     hessian = Stiffness(np.moveaxis(nodes, -1, 0), aspect_of(nodes), weights.shape, weights.smoothness)
@@ -120,9 +110,7 @@ def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:
 def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floats) -> None:
     """Repair and minimise planar `nodes` (ni, nj, 2) of an O grid in windows around skewed cells, in place.
 
-    The given nodes come from splines, which smooth the effect of wall corners on the grid lines that leave
-    them. There the functional is far from quadratic, so that a minimisation over the whole grid would spend
-    most of its iterations on a few cells.
+    `nodes` come from splines, which smooth grid lines that leave corners of the wall.
     """
     skewed = corner_distortion(nodes)
     poor = np.argwhere(skewed > SKEWED)

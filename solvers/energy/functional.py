@@ -1,19 +1,5 @@
 """The functional of variational grids: angles, cell shapes, and gradual changes of edge lengths.
 
-Let u and v be the edges along xi and eta that meet at a corner of a cell, g = |u|², h = |v|², J = u × v, and
-l the lengths of the edges of one family. At the centre of a cell, u and v are the means of opposite edges.
-Then::
-
-    E = mean over cells of (mean over corners + 2 at the centre) / 3 of
-            (1-w) (a g + h/a) / (2J) + w (g h / J²)²
-      + β mean over cells of the squares of (ni-1) Δ_i log l and (nj-1) Δ_j log l, both families
-
-The first term is the discrete harmonic functional. It is infinite at J = 0, so that a minimisation keeps a
-valid grid valid. The second term is 1/sin⁴ of the angle. Both have the same value for equal cells and for
-alternating narrow and wide cells; the third term, the squared gradient of log l, distinguishes them. All
-means are Simpson's or the trapezoidal rule over the unit square, so that the minimum converges with the
-square of the step. For folded grids, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0.
-
 Ivanenko, Charakch'yan, USSR Comput. Maths. Math. Phys. 28 (1988) 126-133 (the barrier); Garanzha, Comput.
 Maths. Math. Phys. 40 (2000) 1617-1637 (regularisation).
 """
@@ -30,7 +16,19 @@ from meshonet.kernels._native import variational_energy
 
 @dataclass(frozen=True)
 class Weights:
-    """Weights of the terms."""
+    """Weights w and β of the functional E.
+
+    With u and v the edges along xi and eta at a corner of a cell, or their means at its centre, g = |u|², h =
+    |v|², J = u × v, a the aspect ratio, and l the lengths of the edges of one family::
+
+        E = mean over cells of (mean over corners + 2 at the centre) / 3 of
+                (1-w) (a g + h/a) / (2J) + w (g h / J²)²
+          + β mean over cells of the squares of (ni-1) Δ_i log l and (nj-1) Δ_j log l, both families
+
+    The first term is the discrete harmonic functional, infinite at J = 0; the second is 1/sin⁴ of the angle;
+    the third, the squared gradient of log l, makes equal cells differ from alternately narrow and wide ones.
+    For folded grids, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0.
+    """
 
     shape: float = 0.97  # w, from 0 (harmonic) to 1 (angles only)
     # β. A fourth of the default is sharper, but buckles on strongly skewed domains.
@@ -41,9 +39,7 @@ AROUND = Weights(smoothness=2e-5)
 """Weights for O grids, whose cells grow by orders of magnitude; more smoothness would worsen angles."""
 
 WAKE = Weights(smoothness=3e-5)
-"""Weights for C grids: with a smaller weight, rows grow threefold from one to the next; a larger one
-worsens angles.
-"""
+"""Weights for C grids. A smaller weight lets rows grow threefold from one to the next."""
 
 
 def value(nodes: Floats, weights: Weights) -> float:
@@ -56,9 +52,8 @@ def value(nodes: Floats, weights: Weights) -> float:
 def relief_of(wall: Floats) -> Floats:
     """Return the factors (ni,) of the angle terms of cell corners at the nodes of a closed `wall` (ni, 2).
 
-    If the angle of the domain at a node exceeds 320 degrees, as at a trailing edge, the two cell angles there
-    cannot be near 90 degrees. The factor is then sin⁴ of half the domain's angle, so that the smallest
-    possible value of the term equals that for right angles.
+    Where the angle of the domain exceeds 320 degrees, as at a trailing edge, the factor is sin⁴ of half of
+    it: the least possible value of the term is then that of right angles.
     """
     half = 0.5 * (np.pi - turning(wall[:-1], closed=True))
     share = np.where(half > 8.0 / 9.0 * np.pi, (np.maximum(sin(half), 1e-3) ** 2) ** 2, 1.0)

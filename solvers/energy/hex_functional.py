@@ -1,31 +1,7 @@
 """The functionals of variational volumes.
 
-Let u, v, w be the edges along xi, eta and zeta at a corner of a cell, each divided by its target length, J =
-det(u, v, w), and l the lengths of the edges of one family. The functional for angles is::
-
-    E = mean over the corners of cells of
-            (1-q) (|u × v|² + |v × w|² + |w × u|²) / (3J) + q (|u|² |v|² |w|² / J²)^p
-      + β mean of the squares of N^(1/3) Δ_e log l, all three families, along all three directions e
-
-The first term is a discrete form of Winslow's functional. It is infinite at J = 0, so that a minimisation
-keeps a valid grid valid. The second term is 1/sin² of the corner's solid angle, to the power p. The third
-distinguishes equal cells from alternating thin and thick ones. For folded grids, J is replaced by χ = (J +
-√(J² + ε²)) / 2 > 0.
-
-Target lengths are the mean length of each direction inside six faces, and close to the given lengths for
-given blocks.
-
-The other functional favours cells like cubes. With T the Jacobian matrix of a cell's trilinear map, whose
-columns are u, v, w divided by one common length::
-
-    E = mean over cells of the integral of |T|² / (3 det(T)^⅔)
-
-The integrand is 1 for cubes of any size. It is the inverse of the mean ratio, and metric 303 of the
-target-matrix optimisation paradigm.
-
-Ivanenko, Charakch'yan, USSR Comput. Maths. Math. Phys. 28 (1988) 126-133 (the barrier); Garanzha, Comput.
-Maths. Math. Phys. 40 (2000) 1617-1637 (regularisation); Knupp, SIAM J. Sci. Comput. 23 (2001) 193-218 (cells
-like cubes).
+Ivanenko, Charakch'yan, USSR Comput. Maths. Math. Phys. 28 (1988) 126-133; Garanzha, Comput. Maths. Math.
+Phys. 40 (2000) 1617-1637; Knupp, SIAM J. Sci. Comput. 23 (2001) 193-218 (cubes).
 """
 
 from dataclasses import dataclass
@@ -34,9 +10,22 @@ from typing import Literal
 
 @dataclass(frozen=True)
 class HexWeights:
-    """Weights of the terms: `shape` q, `smoothness` β, `power` p (1 or 2).
+    """Weights of a functional: `shape` q, `smoothness` β, `power` p (1 or 2; 0 for that of cubes).
 
-    Power 0 selects the functional for cubes, with q = 1 and β = 0. A minimisation ends after two consecutive
+    With u, v, w the edges at a corner of a cell, each divided by its target length, J = det(u, v, w), and l
+    the lengths of the edges of one family, the functional of angles is::
+
+        E = mean over the corners of cells of
+                (1-q) (|u × v|² + |v × w|² + |w × u|²) / (3J) + q (|u|² |v|² |w|² / J²)^p
+          + β mean of the squares of N^(1/3) Δ_e log l, all three families, along all three directions e
+
+    Target lengths are mean lengths along each direction inside six faces, and near the given ones for given
+    blocks. The functional of cubes has q = 1 and β = 0. With T the Jacobian matrix of a cell's trilinear map,
+    whose columns are u, v, w divided by one common length, its integrand is the inverse of the mean ratio::
+
+        E = mean over cells of the integral of |T|² / (3 det(T)^⅔)
+
+    For folded grids, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0. A minimisation ends after two consecutive
     steps, each of which lowers the value by less than the fraction `gain` of it.
     """
 

@@ -1,7 +1,6 @@
-"""Tables of a hexahedral mesh for the compiled minimisation: blocks, one layer beyond them, and forces.
+"""Tables of a hexahedral mesh for the compiled minimisation (``kernels/hexes/energy.h``).
 
-Only the part of each block around free nodes is stored, with its longest direction last
-(``kernels/hexes/energy.h``).
+Only the part of each block around free nodes is stored, with its longest direction last.
 """
 
 from collections.abc import Sequence
@@ -19,8 +18,8 @@ BlockTargets: TypeAlias = tuple[Floats, Floats, Floats]
 Targets = Sequence[BlockTargets]
 """For each block, logarithms of target lengths of edges along xi, eta and zeta.
 
-The shape along the direction of an edge is (ni+1, nj, nk), with one edge beyond either end, and likewise for
-the others; values without an edge are arbitrary.
+The shape along xi is (ni + 1, nj, nk), with one edge beyond either end, and likewise for the others; values
+without an edge are arbitrary.
 """
 
 
@@ -36,9 +35,8 @@ class HexTables:
     inverse : (3, c) inverse target lengths of cells.
     skip : (c,) for each cell, bits that say which of its corners are ignored.
     busy : for each row of cells, whether it has a corner that is not ignored.
-    free : free nodes (k,).
-    start, place : the force on free node k is the sum over the positions place[start[k]] to place[start[k +
-        1] - 1].
+    free : (k,) free nodes.
+    start, place : positions whose forces act on free node k: place[start[k]] to place[start[k + 1] - 1].
     """
 
     blocks: NDArray[np.int64]

@@ -1,10 +1,7 @@
 """Joint optimisation of all nodes of a multi-block hexahedral mesh with one functional.
 
-Nodes of interfaces and singular edges are unknowns like all others. Folded meshes are first untangled with
-regularised Jacobians, whose regularisation is reduced step by step; nearly flat cells are opened.
-
-Escobar et al., Comput. Methods Appl. Mech. Engrg. 192 (2003) 2775-2787 (regularisation); Garanzha, Kaporin,
-Kudryavtseva, Protais, Ray, Sokolov, ACM Trans. Graph. 40 (2021) 154 (untangling with volumes).
+Escobar et al., Comput. Methods Appl. Mech. Engrg. 192 (2003) 2775-2787 (regularisation); Garanzha et al., ACM
+Trans. Graph. 40 (2021) 154 (untangling with volumes).
 """
 
 from __future__ import annotations
@@ -23,9 +20,7 @@ from meshonet.solvers.energy.hex_tables import HexTables, Targets, cell_lengths,
 RENEWED = 10
 """Number of iterations after which the preconditioner is updated."""
 STILL = 0.3
-"""A minimisation ends after two consecutive steps that gain little and move nodes by less than this, in
-cells.
-"""
+"""Displacement, in cells, below which two consecutive steps of little gain end a minimisation."""
 REACH = 0.5
 """Largest displacement of a node in a first step, in cells."""
 ROUNDS, ROUND = 20, 10
@@ -54,10 +49,7 @@ class Slides:
         return cls(np.empty(0, dtype=np.intp), np.empty((0, 3, 3)))
 
     def among(self, nodes: Indices) -> Slides:
-        """Return the sliding nodes among `nodes` (m,), which are sorted node indices.
-
-        In the result, the index of a node is its position in `nodes`.
-        """
+        """Return the sliding nodes among `nodes` (m,), sorted node indices, as positions in `nodes`."""
         place = np.minimum(np.searchsorted(nodes, self.nodes), len(nodes) - 1)
         some = nodes[place] == self.nodes
         return Slides(place[some], self.projections[some])
@@ -171,9 +163,9 @@ def optimise(
 ) -> HexOptimum:  # fmt: skip
     """Return the nodes of `mesh`, with free nodes `moves` (n,), that minimise the functional.
 
-    The minimisation ends after `iterations`, not including those of untangling, or if two consecutive
-    iterations gain less than `tolerance` times the value. Folded cells are untangled first, in at most
-    `rounds` rounds. Cells without free nodes are ignored.
+    Folded cells are untangled first, in at most `rounds` rounds. The minimisation then ends after
+    `iterations`, or if two consecutive iterations gain less than `tolerance` times the value. Cells without
+    free nodes are ignored.
     """
     problem = HexProblem(mesh, moves, targets, slides)
     low = problem.unfold(problem.smallest(), rounds)

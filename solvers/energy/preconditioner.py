@@ -1,8 +1,6 @@
 """Minimisation preconditioned by the inverse Hessian of the functional on a grid of equal squares.
 
-On such a grid the harmonic term is a Laplacian and the edge length term a biharmonic operator. Both are
-diagonal in products of sines (along eta, and along xi between fixed nodes) or of sines and cosines (around a
-body). The compiled code applies them in the local frame of each node, as products of matrices.
+The Hessian is diagonal in products of sines, or around a body of sines and cosines along xi.
 """
 
 from collections.abc import Callable

@@ -1,7 +1,4 @@
-"""A quad mesh in the form of the compiled minimisation: unknowns, constraints and pairs of edges.
-
-Coordinates are scaled so that cells have a size near 1, and centred; results are scaled back.
-"""
+"""A quad mesh in the form of the compiled minimisation: unknowns, constraints and pairs of edges."""
 
 import math
 from dataclasses import dataclass
@@ -129,11 +126,7 @@ class Problem:
         )
 
     def _crossed(self) -> Indices:
-        """Return pairs (k, 2) of edges at irregular inner nodes, with exactly one other edge between the two.
-
-        At a regular node such edges follow each other along a grid line. The growth of cells is limited from
-        one to the other here too.
-        """
+        """Return pairs (k, 2) of edges at irregular inner nodes, with exactly one other edge between."""
         mesh, parts = self.mesh, [np.empty((0, 2), dtype=np.intp)]
         irregular = mesh.irregular & ~mesh.wall_nodes & self.moves
         near = np.flatnonzero(irregular[mesh.edges].any(axis=1))
@@ -193,10 +186,9 @@ class Problem:
         return line, pairs
 
     def _relief(self) -> tuple[Indices, Floats]:
-        """Return corners (k, 3) with large interior angles, and the removed part of their angle term.
+        """Return corners (k, 3) with angles above 320 degrees, and the removed part of their angle term.
 
-        If the interior angle exceeds 320 degrees and two cells share it, as at a trailing edge, neither angle
-        can be near 90 degrees. The factor sin⁴ of half that angle remains.
+        The factor sin⁴ of half the angle remains, for corners that two cells share.
         """
         places, angle = self.mesh.places, np.zeros(len(self.nodes))
         for number, loop in enumerate(self.mesh.domain.loops):

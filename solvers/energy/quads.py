@@ -1,16 +1,6 @@
-"""Joint optimisation of all nodes of a multi-block quad mesh with one functional.
+"""Joint optimisation of all nodes of a multi-block quad mesh with the functional of `energy.functional`.
 
-The functional is that of `meshonet.solvers.energy.functional` at the corners of cells. Its smoothness term is
-the squared differences of log lengths of neighbouring edges along and across grid lines, also across
-interfaces. Nodes of interfaces and singular vertices are unknowns like all others. Wall nodes slide along
-their loops without overtaking each other. A penalty limits the turning of a wall along one edge, because
-otherwise wall nodes would leave rounded tips, which improves angles.
-
-Folded meshes are first untangled with regularised Jacobians; a term for their areas keeps cells from
-shrinking to points.
-
-Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov, ACM Trans. Graph. 40 (2021) 154 (untangling with area
-and shape).
+Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov, ACM Trans. Graph. 40 (2021) 154 (untangling).
 """
 
 from collections.abc import Sequence
@@ -51,18 +41,22 @@ def optimise(
     targets: Floats | None = None, tolerance: float = 1e-4, turning: float = ALLOWED,
     weights: tuple[float, float] = SIZED, growth: tuple[float, float] = (0.0, 0.0),
 ) -> QuadOptimum:  # fmt: skip
-    """Return the mesh with all nodes at the minimum of the functional.
+    """Return the mesh with all nodes at the minimum of the functional; wall nodes slide along their loops.
 
-    Corners (`Places.cells` > 0) and `held` nodes (n,) are bitwise unchanged. A node with a periodic partner
-    is at the partner's position plus the period of the domain; both move. `aspects` (m,) are, for each quad,
-    the target ratios of its sides 1-2 and 0-3 to its sides 0-1 and 3-2. `targets` (e,), for `mesh.edges`, are
-    lengths in any unit: the ratios of neighbouring edges should be those of their targets. Edges along which
-    a wall turns by more than `turning` radians are penalised. The minimisation ends after `iterations`, not
-    including those of untangling, or if three consecutive iterations gain less than a hundredth of
-    `tolerance` times the value. Cells without free nodes are ignored, but if one of them is folded, the mesh
-    is not valid. `weights` are w and β of the functional if there are `targets` or if growth is penalised.
-    `growth` has two values: the weight of the penalty for ratios of consecutive edges, and the logarithm of
-    the ratio above which it applies.
+    Periodic partners move together; cells without free nodes are ignored, but must not be folded. The
+    smoothness term has squared differences of log lengths of edges along and across grid lines, also across
+    interfaces.
+
+    Parameters
+    ----------
+    iterations : largest number of iterations, without those of untangling.
+    held : (n,) mask of nodes that stay bitwise where they are, like corners (`Places.cells` > 0).
+    aspects : (m,) target ratios of a quad's sides 1-2 and 0-3 to its sides 0-1 and 3-2.
+    targets : (e,) target lengths of `mesh.edges`, in any unit: only ratios of neighbouring edges matter.
+    tolerance : the iteration ends if three consecutive gains are below a hundredth of it, relative.
+    turning : angle in radians by which a wall may turn along one edge without penalty.
+    weights : w and β of the functional if there are `targets` or if growth is penalised.
+    growth : weight of the penalty for ratios of consecutive edges, and logarithm of the largest free ratio.
     """
     problem = problem_of(mesh, held, aspects, targets, turning)
     if problem is None:
@@ -110,8 +104,7 @@ def minimise(
 def _unfold(problem: Problem, low: float) -> tuple[float, int]:
     """Minimise with decreasing regularisation of the Jacobians; return the smallest one, and the iterations.
 
-    `low` is the initial smallest Jacobian relative to its cell's area. The iteration ends when all are
-    positive.
+    `low` is the initial smallest Jacobian relative to its cell's area.
     """
     done, epsilon = 0, max(0.3, min(2.0 * abs(low), 3.0))
     shape, size = UNFOLDING

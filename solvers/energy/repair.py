@@ -1,10 +1,4 @@
-"""Repairs the folded cells of a grid by moving the nodes around them.
-
-A grid with few folded cells is untangled in windows around them, which grow while cells stay folded. If this
-fails, coarser copies of the grid are untangled first: the coarsest as a whole, then each finer one with the
-displacements of the coarser one, followed by windows. Only interior nodes move. An attempt that fails ends
-after a second or two.
-"""
+"""Repairs the folded cells of a grid by moving the nodes around them: in windows, or from coarser copies."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -24,9 +18,7 @@ from meshonet.solvers.energy.untangle import unfold
 
 UNFOLDING = (Weights(0.3, 0.0), 60), (Weights(0.0, 0.0), 60), (Weights(0.0, 0.0), 200)
 """Weights and numbers of iterations that are tried in turn, with decreasing regularisation, while cells stay
-folded.
-
-The harmonic term alone untangles more cells, but with larger angles; around spikes it needs many iterations.
+folded. The harmonic term alone untangles more cells, but with larger angles.
 """
 
 SMOOTHING = Weights()  # weights with which the corners of an unfolded patch are opened
@@ -47,18 +39,13 @@ FUTILE = 2.4e7  # nodes times iterations that may be spent on patches which stay
 
 @dataclass
 class UnfoldingBudget:
-    """Remaining budget for untangling that fails, in nodes times iterations.
-
-    Untangling that succeeds does not reduce it.
-    """
+    """Remaining budget for untangling that fails, in nodes times iterations."""
 
     left: float = FUTILE
 
 
 def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
-    """Untangle planar `nodes` (ni, nj, 2) in place, except boundary nodes.
-
-    Return the number of folded cells left.
+    """Untangle planar `nodes` (ni, nj, 2) in place, except boundary nodes; return the folded cells left.
 
     If `periodic` (O grids), the last row repeats the first, and both move. The first windows have `margin`
     cells around the folded cells.
@@ -87,10 +74,7 @@ def _repair_windows(
     margins: tuple[int, ...] = (MARGIN, *MARGINS),
     nested: bool = False,
 ) -> int:
-    """Untangle windows around folded cells, directly or (`nested`) through coarser copies.
-
-    Return as `repair`.
-    """
+    """Untangle windows around folded cells, directly or (`nested`) through coarser copies; see `repair`."""
     largest = (16 if nested else 1) * LARGEST_CELLS
     left = count_folded(nodes)
     for cells in margins:

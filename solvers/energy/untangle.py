@@ -21,8 +21,7 @@ def unfold(
     """Untangle planar `nodes` (ni, nj, 2) in place; return whether no cell is folded, and the iterations.
 
     The regularisation ε starts at the area of a cell and decreases with the worst Jacobian, at least by half
-    in each step. It is large enough for cells to untangle, and small enough to distinguish folded from valid
-    cells. `periodic` and `aspect` are those of `Descent`.
+    in each step. `periodic` and `aspect` are those of `Descent`.
     """
     descent = Descent(nodes, weights, periodic, aspect)
     cell = _cell_area(nodes)
@@ -47,9 +46,8 @@ LONG = 300  # iterations with each of them
 def widen(nodes: Floats, weights: Weights) -> None:
     """Lower the functional of valid planar `nodes` (ni, nj, 2) with nearly folded cells, in place.
 
-    In nearly folded cells the barrier of the functional is so steep that a minimisation hardly moves the
-    nodes. With regularised Jacobians it does; the regularisation is then reduced step by step to zero. If
-    cells are folded at the end, or the functional is not lower than before, the nodes are not changed.
+    Regularised Jacobians, where the barrier is less steep, come first. If cells are folded at the end, or the
+    functional is not lower than before, the nodes are not changed.
     """
     trial = nodes.copy(order="K")
     descent, before = Descent(trial, weights), value(nodes, weights)

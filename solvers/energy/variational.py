@@ -1,9 +1,4 @@
-"""Variational grids by nested iteration from Winslow's solution on the coarsest level.
-
-Each level starts from the minimum on the next coarser one, evaluated by splines. If an initial grid has
-folded cells, it is repaired first, locally or as a whole. The Hessian of the coarsest level preconditions
-smooth displacements on finer levels.
-"""
+"""Variational grids by nested iteration from Winslow's solution on the coarsest level."""
 
 from dataclasses import replace
 
@@ -29,22 +24,13 @@ COARSEST = 17  # a copy with this many nodes or fewer along a direction is the f
 COARSEST_AROUND = 65  # the same around a body
 
 NEXT = 129
-"""Largest node count along a direction of the finest coarse copy.
-
-A copy nearly as fine as the grid itself would cost more than it saves.
-"""
+"""Largest node count along a direction of the finest coarse copy."""
 
 STILL = 1e-4
-"""Displacement at which the iteration on the finest level stops, relative to the side of the square of all
-cells.
-"""
+"""Displacement that ends the iteration on the finest level, over √cells times the mean cell size."""
 
 FEW = 4
-"""Iterations on a finest level with more nodes, for quads without a tolerance.
-
-They remove the errors of the spline evaluation. Further iterations lower the functional near notches, but
-hardly change angles.
-"""
+"""Iterations on a finest level with more nodes, for quads without a tolerance."""
 
 FEW_AROUND = 20, 10
 """The same for O grids, with up to `NEXT` nodes and with more, unless the value exceeds `descent.HARD`."""
@@ -71,12 +57,15 @@ def solve(
 ) -> Solution:  # fmt: skip
     """Minimise the functional of `meshonet.solvers.energy.functional` over the nodes inside `boundary`.
 
-    The nodes of the seam of an O grid are unknowns; a wake of a C grid is fixed. The iteration ends when no
-    node moves by more than `tol` times the size of the domain, which is estimated as √cells times the mean
-    cell size. If `tol` is None, it is 1e-4, and the number of iterations is at most `FEW`, or `FEW_AROUND`
-    for O grids. `max_cycles` limits the iterations on the finest level. `initial`, a grid with the same node
-    counts, replaces nested iteration. If no initial grid could be untangled, the result is folded and has a
-    note.
+    The nodes of the seam of an O grid are unknowns; a wake of a C grid is fixed. If no initial grid could be
+    untangled, the result is folded and has a note.
+
+    Parameters
+    ----------
+    tol : displacement of all nodes that ends the iteration, over √cells times the mean cell size. None: 1e-4,
+        with at most `FEW` iterations, or `FEW_AROUND` for O grids.
+    max_cycles : largest number of iterations on the finest level.
+    initial : a grid with the same node counts, in place of nested iteration.
 
     Raises InputError: `initial` has other node counts; `tol` or `max_cycles` is not positive.
     """
@@ -107,8 +96,7 @@ def _nested(
     """Return nodes, their weights, iterations on the finest level, and whether the grid is valid.
 
     `limits` are the largest numbers of iterations on the finest level: in general, and for more than `NEXT`
-    nodes. `few` are those for values below `HARD`. A folded initial grid that can be untangled as a whole is
-    not repaired locally if its value is at most `easy`.
+    nodes; `few` are those for values below `HARD`; `easy` as in `_descended`.
     """
     periodic = boundary.periodic
     coarsest = (COARSEST if not boundary.around_body else COARSEST_AROUND), COARSEST
@@ -166,8 +154,7 @@ def _coarsest(
 def winslow_start(boundary: Boundary) -> Floats:
     """Return approximately Winslow's solution inside `boundary`, (ni, nj, 2) in planar layout.
 
-    If the discrete equations have no solution, the result is the transfinite interpolation, which may be
-    folded.
+    If the discrete equations have no solution, return the transfinite interpolation, which may be folded.
     """
     if not boundary.around_body and (boundary.ni - 1) * (boundary.nj - 1) <= RELAXED:
         nodes = tfi(boundary).nodes
@@ -187,8 +174,8 @@ def _descended(
 ) -> tuple[Floats, int, bool]:
     """Return the minimum from `start` on the coarsest level, the iterations, and whether it is valid.
 
-    A folded start is untangled as a whole, which is fast. In strongly bent domains the functional has several
-    minima, and local repair leads to better ones; the lower of both results is returned.
+    A folded start is untangled as a whole; if its value is then above `easy`, also locally, and the lower of
+    both minima is returned.
     """
     nodes = start.copy(order="K")
     if periodic or count_folded(start) == 0:

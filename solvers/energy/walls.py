@@ -40,7 +40,7 @@ def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
     """Return the walls of a mesh; nodes that have overtaken others along a wall are moved back.
 
     `fixed` (n,) is the mask of fixed nodes, `tied` (n,) that of the nodes of periodic sides, which are not
-    walls. The result is None if fixed nodes are not in order.
+    walls. Return None if fixed nodes are not in order.
     """
     places = mesh.places
     on = (places.loop >= 0) & ~tied
@@ -104,10 +104,7 @@ def _chains(edges: Indices, following: Indices, starts: Indices, ends: Bools) ->
 
 
 def _spread(arc: Floats, chain: Indices, length: float, ends: bool) -> None:
-    """Give the edges of a chain (k, 2) positive lengths, in place.
-
-    With `ends`, the chain ends at a fixed node.
-    """
+    """Give the edges of a chain (k, 2) positive lengths, in place; with `ends`, it ends at a fixed node."""
     gap = arc[chain[:, 1]] - arc[chain[:, 0]]
     gap = gap - length * np.round(gap / length)
     whole = ends or chain[-1, 1] == chain[0, 0]

@@ -1,8 +1,4 @@
-"""Edges of the blocks of a layout, and the chords that they form: edges with equal counts of cells.
-
-Opposite edges of a block have as many cells, and a shared edge has them for both its blocks. So a layout has
-one count a chord. Edges of periodic sides have those of their partners.
-"""
+"""Edges of the blocks of a layout, and the chords that they form: edges with equal counts of cells."""
 
 from __future__ import annotations
 
@@ -28,16 +24,13 @@ TURNING_DEG = 25.0
 
 @dataclass(frozen=True, eq=False)
 class Chords:
-    """The distinct edges of a layout's blocks, and the chords that the edges form.
-
-    A chord is a set of edges that must have the same number of cells, because they are opposite each other in
-    blocks.
+    """The distinct edges of a layout's blocks, and chords: opposite edges, which have equally many cells.
 
     `sides` (b, 4) are the indices of the edges at south, north, west and east of each block; `reversed` (b,
     4) says whether the edge runs against the direction of the block; `wall` (e,) whether an edge is on a
-    wall. `partner` (e,) is, for an edge on a periodic side, the corresponding edge of the other side, else
-    -1; `chord` (e,) is the index of the edge's chord. `images` has, for each mirror, the index (n,) of each
-    node's mirror image; an edge and its mirror image belong to the same chord.
+    wall. `partner` (e,) is the corresponding edge of the other periodic side, or -1; `chord` (e,) is the
+    index of the edge's chord. `images` has, for each mirror, the index (n,) of each node's mirror image; an
+    edge and its mirror image belong to the same chord.
     """
 
     layout: Layout
@@ -79,10 +72,7 @@ class Chords:
         return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, images)
 
     def of_refined(self, layout: Layout) -> Chords:
-        """Return the edges of `layout`, whose blocks are the same and whose numbers of cells may differ.
-
-        The chords are the same.
-        """
+        """Return the edges of `layout`, whose blocks are the same; numbers of cells may differ."""
         return replace(Chords.of(layout), chord=self.chord, count=self.count)
 
     @cached_property
@@ -96,8 +86,8 @@ class Chords:
     def multiple(self) -> Indices:
         """(chords,) divisors that the counts of a symmetric layout must have, to be symmetric when refined.
 
-        For the chord around a ring it is the number of the ring's mirrors; for a chord along a wall that a
-        mirror crosses at a corner it is two; otherwise it is one.
+        They are the number of mirrors of the ring for the chord around it, 2 for a chord along a wall with a
+        mirror through a corner, and 1 for others.
         """
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):
@@ -117,10 +107,7 @@ class Chords:
         return np.array([np.hypot(*np.diff(nodes[edge], axis=0).T).sum() for edge in self.edges])
 
     def arcs(self, edge: int) -> Floats:
-        """Return the arc lengths (n,) of the nodes of a wall edge.
-
-        The arc lengths are monotonic: they do not jump at the first point of the loop.
-        """
+        """Return the arc lengths (n,) of the nodes of a wall edge, without a jump at the loop's start."""
         nodes, places = self.edges[edge], self.layout.mesh.places
         length = self.layout.mesh.domain.loops[places.loop[nodes[0]]].length
         step = np.diff(places.arc[nodes])

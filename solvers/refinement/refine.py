@@ -1,10 +1,4 @@
-"""Changes the numbers of cells of a layout, by splines along its edges and through its blocks.
-
-Every edge is resampled once, at equal steps of the index of its nodes: along walls by arc length, so that new
-nodes lie on the loop, inside by a spline. Blocks are splines that meet their edges bitwise
-(`meshonet.solvers.algebraic.resample.quad`). With a multiple of the numbers of cells all old nodes are kept,
-so that the grids are nested.
-"""
+"""Changes the numbers of cells of a layout, by splines along its edges and through its blocks."""
 
 from __future__ import annotations
 
@@ -33,18 +27,15 @@ def refine(
     """Return the layout with `counts` (chords,) of cells along the edges of each of its `Chords`.
 
     `places` has, for each edge, the positions (cells + 1,) of its new nodes as fractional indices of old
-    nodes; without `places`, new nodes are at equal steps. If a corner of the domain is inside an edge, the
-    new node nearest to the corner is moved to it. Layers are not preserved.
+    nodes; by default they are at equal steps. The new node nearest to a corner of the domain inside an edge
+    is moved to the corner. Layers are not preserved.
     """
     chords = chords or Chords.of(layout)
     return _Refined(chords, counts, places).layout
 
 
 def multiplied(layout: Layout, times: int) -> Layout:
-    """Return the layout with `times` as many cells in each direction.
-
-    The nodes of the given layout are bitwise among the new nodes.
-    """
+    """Return the layout with `times` as many cells in each direction; the old nodes are bitwise kept."""
     chords = Chords.of(layout)
     return refine(layout, chords.counts * times, chords)
 

@@ -46,9 +46,7 @@ class Near:
 
 @dataclass(frozen=True, eq=False)
 class SizeMetric:
-    """Target lengths of edges across and along walls.
-
-    In other directions, the length is the radius of the ellipse whose axes are these two lengths.
+    """Target lengths of edges across and along walls, the axes of an ellipse of lengths in other directions.
 
     Parameters
     ----------
@@ -57,8 +55,9 @@ class SizeMetric:
     across, along : (n,) target lengths of edges along the normal, and along the wall.
     largest : length of edges far from all points.
     grading : increase of the target length per distance from a point.
-    starts : indices of the points at which parts start; each part is a wall with its own sizes. An edge gets
-        the smallest of the lengths of all parts, so that sizes change gradually from one wall to the next.
+    starts : indices of the points at which parts start, which are walls with sizes of their own; an edge gets
+        the
+        smallest of the lengths of all parts.
     """
 
     points: Floats
@@ -109,8 +108,7 @@ class SizeMetric:
     def gradual(self, mesh: QuadMesh, sweeps: int = SWEEPS) -> Floats:
         """Return the target lengths (e,) of the edges of a mesh, smoothed from edge to edge.
 
-        Without smoothing, lengths jump where the nearest wall point changes, on the centre lines between
-        walls, and grid lines would have wrinkles there.
+        Without smoothing, lengths would jump on the centre lines between walls.
         """
         return _evened(self.edges(mesh), mesh, sweeps)
 

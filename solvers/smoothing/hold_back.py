@@ -24,7 +24,7 @@ _SMALL = 0.02
 def held_back(grid: Grid, original: Layout, layout: Layout, before: PlaneMeasures) -> Grid | None:
     """Return `grid`, whose layout is `original`, moved towards `layout` where that does not make it worse.
 
-    `before` are the measures of `grid`. The result is None if hardly any node would move.
+    `before` are the measures of `grid`. Return None if hardly any node would move.
     """
     part = np.ones(len(original.mesh.nodes))
     for number in range(_ROUNDS):

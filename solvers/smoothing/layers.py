@@ -1,10 +1,4 @@
-"""Restores the heights of boundary layers after an optimisation; the other nodes are then optimised again.
-
-::
-
-    wall |-o--o---o-----o-----      nodes of thin cells are moved along the optimised line that leaves the
-         |-o--o---o------o----      wall, to the sum of their given heights, and held there
-"""
+"""Restores the heights of boundary layers after an optimisation; the other nodes are then optimised again."""
 
 from dataclasses import dataclass
 
@@ -21,12 +15,11 @@ ROWS = 200
 
 
 def with_layers(mesh: QuadMesh, original: QuadMesh) -> tuple[QuadMesh, Bools]:
-    """Return `mesh` with the layer heights of `original`, and a mask (n,) of the nodes in layers.
+    """Return `mesh` with the layer heights of `original`, of the same quads, and a mask (n,) of layer nodes.
 
-    Both meshes have the same quads.
-
-    Layers are rows of cells at the boundary that are `THIN`. If wall nodes have moved, the heights are those
-    of `original` at the same arc length. Nodes in the layers of two walls do not move.
+    Layers are rows of cells at the boundary that are `THIN`. Their nodes move along the line that leaves the
+    wall to the sum of the heights of `original` at the same arc length, unless they are in layers of two
+    walls.
     """
     lines = _lines(original)
     held = np.zeros(len(original.nodes), dtype=bool)

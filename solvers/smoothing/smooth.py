@@ -1,12 +1,4 @@
-"""Smooths planar multi-block grids: the joint optimum of all nodes, with the spacing of the given grid.
-
-The optimum is computed by `meshonet.solvers.energy.quads`. Its targets are the aspect ratios of cells and the
-ratios of neighbouring edges in the given grid (`meshonet.solvers.smoothing.wanted_lengths`). Layers at the
-boundary keep their heights (`meshonet.solvers.smoothing.layers`). Two optima are computed, with and without
-evening out jumps of the spacing between blocks, and the better one is used. Neither the largest
-non-orthogonality and skewness of a face nor the mean deviation from 90 degrees may exceed those of the given
-grid; if they would, displacements are reduced (`meshonet.solvers.smoothing.hold_back`).
-"""
+"""Smooths planar multi-block grids: the joint optimum of all nodes, with the spacing of the given grid."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -38,7 +30,10 @@ _AS_GOOD = "the grid is kept as it was: its optimum is no better"
 def smooth(grid: Grid, *, slide: bool = False, iterations: int = ITERATIONS) -> Solution:
     """Return `grid` with its nodes moved to the optimum of all blocks; boundary nodes may `slide`.
 
-    Raises InputError: the blocks are not planar, or do not form a domain.
+    Of two optima, with and without evening out jumps of the spacing between blocks, the better one is used.
+    Displacements are reduced where the largest non-orthogonality or skewness of a face, or the mean deviation
+    from 90 degrees, would exceed those of `grid`. Raises InputError: the blocks are not planar, or do not
+    form a domain.
     """
     original = layout_of(grid)
     before = measures(grid)

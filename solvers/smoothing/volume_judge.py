@@ -47,10 +47,7 @@ def measures(mesh: HexMesh) -> VolumeMeasures:
 
 
 def cells_below(mesh: HexMesh, bound: float) -> list[Bools]:
-    """Return, for each cell of each block, whether its scaled Jacobian is below `bound`.
-
-    If `bound` is 0, this is whether the cell is folded.
-    """
+    """Return for each cell of each block whether its scaled Jacobian is below `bound`; 0: it is folded."""
     scaled = solid_metric(_grid(mesh), "scaled_jacobian")
     return [least < bound if bound > 0 else least <= 0.0 for least in scaled]
 

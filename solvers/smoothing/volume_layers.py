@@ -1,8 +1,4 @@
-"""Restores the heights of layers at the outer sides of volumes.
-
-As in `meshonet.solvers.smoothing.layers`, nodes of thin cells are moved along the optimised line that leaves
-the side, to the sum of their given heights. They are held there while the rest is optimised again.
-"""
+"""Restores the heights of layers at the outer sides of volumes, as `meshonet.solvers.smoothing.layers`."""
 
 import math
 from dataclasses import dataclass, replace
@@ -21,9 +17,7 @@ THIN = 3.0
 _LOW = 3.0
 """Ratio of the mean height along a line to that of its first cell above which this cell belongs to layers."""
 _UNLIKE = math.log(1.5)
-"""Largest logarithmic difference between a height and its target; a larger one is taken for an error of
-the grid.
-"""
+"""Largest logarithm of a height over its target that is not an error of the grid."""
 _ROOM = 0.9
 """Largest fraction of a line, up to its last interior node, that layers may take."""
 

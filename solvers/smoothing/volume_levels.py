@@ -1,9 +1,6 @@
 """A coarser copy of a hexahedral mesh with about every second node, and interpolation from it.
 
-::
-
-    fine     o--o--o--o--o--o--o--o      counted from both ends of a line, or of a connected piece of
-    coarse   o-----o--------o-----o      it, so that blocks with opposite directions agree
+Nodes are counted from both ends of a line, so that blocks with opposite directions agree.
 """
 
 from collections.abc import Iterator

@@ -1,7 +1,4 @@
-"""New interior nodes for volumes whose given nodes are unusable.
-
-Each node becomes the mean of its neighbours along edges: Laplace's equation on the graph of edges, solved by
-conjugate gradients.
+"""New interior nodes for volumes whose given nodes are unusable: Laplace's equation on the graph of edges.
 
 Tutte, Proc. London Math. Soc. 13 (1963) 743-767.
 """

@@ -1,8 +1,4 @@
-"""Target lengths of the edges of a given volume grid: its own, without noise and jumps.
-
-Logarithms of lengths are diffused along and across grid lines wherever there are neighbours on both sides, so
-that geometric growth does not change. Edges between fixed nodes keep their lengths.
-"""
+"""Target lengths of the edges of a given volume grid: its own, with noise and jumps diffused."""
 
 import math
 from functools import partial
@@ -42,10 +38,7 @@ def wanted_edges(mesh: HexMesh, moves: Bools, rounds: int = ROUNDS) -> Targets:
 
 
 def _logs(nodes: Floats, axis: int) -> Floats:
-    """Return the logarithms of lengths along a direction, with NaN for one edge beyond either end.
-
-    Edges without length get the value of the middle one.
-    """
+    """Return logs of lengths along `axis`, NaN for one edge beyond either end, the median for length 0."""
     steps = np.diff(nodes, axis=axis)
     squares = (steps**2).sum(axis=-1)
     known = squares > 0.0

@@ -1,11 +1,4 @@
-"""Smooths multi-block volume grids: the joint optimum of all nodes, with the spacing of the given grid.
-
-The optimum is computed by `meshonet.solvers.energy.hexes`. Its targets are the edge lengths of the given grid
-without noise (`meshonet.solvers.smoothing.volume_spacing`). Layers at outer sides keep their heights
-(`meshonet.solvers.smoothing.volume_layers`). Folded cells are untangled first, starting with the nodes around
-them. Neither the smallest scaled Jacobian nor the mean deviation from 90 degrees becomes worse
-(`meshonet.solvers.smoothing.volume_judge`); if they would, displacements are reduced.
-"""
+"""Smooths multi-block volume grids: the joint optimum of all nodes, with the spacing of the given grid."""
 
 from collections.abc import Iterator
 from functools import partial
@@ -36,9 +29,7 @@ _SOME = 0.02
 _FEW_ROUNDS = 5  # of unfolding, where layers at their heights folded what was valid
 _COARSE = 60  # iterations of the optimum of a coarser copy, at the most
 _ROUNDS, _GENTLE = 12, 5
-"""Largest number of rounds of reducing displacements, and the number after which bad cells are reset at
-once.
-"""
+"""Numbers of rounds of reducing displacements, and of rounds before bad cells are reset at once."""
 _SHARES = (0.5, 0.7, 0.85)
 """Factors per round of the displacement of a bad cell's nodes, and of nodes one and two cells away."""
 _AS_GOOD = "the grid is kept as it was: its optimum is no better"
@@ -49,9 +40,9 @@ def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = Fa
     """Return `grid` with its nodes moved to the optimum of all blocks.
 
     Nodes of outer and periodic sides are bitwise unchanged, except that with `slide` the nodes of flat
-    patches move in their planes. `iterations` is the largest number of iterations of the optimisation.
-
-    Raises InputError: the blocks are not volumes, or are left-handed.
+    patches move in their planes. `iterations` is the largest number of iterations. Displacements are reduced
+    where the smallest scaled Jacobian or the mean deviation from 90 degrees would become worse. Raises
+    InputError: the blocks are not volumes, or are left-handed.
     """
     original = hex_mesh_of(grid)
     before = measures(original)
@@ -95,7 +86,7 @@ def _unfolded(
 ) -> tuple[HexMesh, VolumeMeasures, Targets]:
     """Return the mesh without folded cells, or with fewer, its measures, and the target lengths.
 
-    If few cells are folded, the nodes around them are moved first. Then all nodes are moved, from several
+    A few folded cells are first untangled with the nodes around them, then with all nodes, from several
     starts: the optimum of a coarser copy, the given nodes, and a harmonic restart.
     """
     mesh, measured = original, before
@@ -192,10 +183,7 @@ def _optima(
     slides: Slides,
     iterations: int,
 ) -> Iterator[tuple[HexMesh, bool]]:
-    """Yield optima with all layers at their heights, with only first cells, and without, in this order.
-
-    Each comes with a flag that says whether its layers have their heights.
-    """
+    """Yield optima with layers, with first cells only and without, and whether these have their heights."""
     towards = partial(optimise, targets=targets, slides=slides, iterations=iterations, tolerance=TOLERANCE)
     begun = _begun(start, moves, targets, slides)
     optimum = towards(begun, moves)

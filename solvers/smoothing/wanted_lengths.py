@@ -15,23 +15,15 @@ THIN = 3.0
 _ROUNDS = 200  # of diffusion, at the most
 
 _SHARE = 0.17
-"""Fraction of the excess ratio between two edges by which each changes in a round; an edge has up to four
-neighbours.
-"""
+"""Fraction of the excess ratio of two of up to four neighbouring edges by which each changes in a round."""
 
 
 def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
     """Return target lengths (e,) of `mesh.edges`; neighbours differ by a factor of at most about `most`.
 
-    ::
-
-        given    o---o---o---o---o-o-o-o-o-o      if neighbours differ by more than a factor, the
-        target   o---o---o--o--o-o-o-o-o-o-o      excess is diffused along and across grid lines
-
-    Only ratios of neighbouring lengths matter. Edges across thin first cells at the boundary, and edges along
-    a boundary with fixed nodes, keep their lengths.
-
-    Nodes of the boundary are fixed unless they `slide`.
+    The excess is diffused along and across grid lines. Edges across thin first cells at the boundary, and
+    edges along a boundary whose nodes do not `slide`, keep their lengths. Only ratios of neighbouring lengths
+    matter.
     """
     own = log(mesh.edge_lengths)
     cap, stays = math.log(most), thin_heights(mesh)
@@ -53,10 +45,7 @@ def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
 
 
 def thin_heights(mesh: QuadMesh) -> Bools:
-    """Return a mask (e,) of the edges that lead from the boundary across a thin cell.
-
-    A cell is thin if it is `THIN` and its short direction is that of the edge.
-    """
+    """Return a mask (e,) of the edges that lead from the boundary along the short side of a `THIN` cell."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     ratio = mesh.aspects(mesh.edge_lengths)[cell]
     thin = np.where(side % 2 == 0, ratio < 1.0 / THIN, ratio > THIN)

@@ -1,14 +1,7 @@
 """Damping of splines near acute corners, so that they do not fold the thin cells there.
 
-Between the walls of an acute corner cells are much thinner than long, and grid lines turn within a cell or
-two of the walls. A cubic spline through the nodes of such a line overshoots by more than the thickness of a
-cell; linear interpolation does not. So the second derivatives of the spline are reduced: to 0 at an acute
-corner, by less farther away, and not at all at corners of 60 degrees or more. With X the coarse nodes, L the
-matrices of linear interpolation, B those that give second derivatives at coarse nodes (`bending`), C those
-that give their contribution between nodes (`cubic`), and K the factor 0 to 1 at each coarse node, the fine
-nodes are::
-
-    L X Lᵀ + C (K∘B X) Lᵀ + L (K∘X Bᵀ) Cᵀ + C (K∘B X Bᵀ) Cᵀ
+With coarse nodes X, matrices L of linear interpolation, B (`bending`), C (`cubic`) and damping K, fine nodes
+are L X Lᵀ + C (K∘B X) Lᵀ + L (K∘X Bᵀ) Cᵀ + C (K∘B X Bᵀ) Cᵀ.
 """
 
 from functools import lru_cache
@@ -24,9 +17,7 @@ ACUTE, WIDE = np.radians((30.0, 60.0))
 """Corner angles below which damping is complete, and above which there is none."""
 
 NEAR, FAR = 4.0, 10.0
-"""Distances from the corner, in coarse cells along xi or eta, below which damping is complete and above which
-it is 0.
-"""
+"""Distances from the corner, in coarse cells, below which damping is complete and above which it is 0."""
 
 
 def openings(z: Any, xp: Any) -> Any:

@@ -1,8 +1,4 @@
-"""Coarsening of boundaries, and interpolation of coarse grids to the full resolution.
-
-Grids of four-sided domains are interpolated by splines in both directions (`quad`), O grids along their own
-grid lines (`o_grid`).
-"""
+"""Coarsening of boundaries, and interpolation of coarse grids (`quad`, `o_grid`)."""
 
 import numpy as np
 
@@ -51,8 +47,7 @@ def refine_grid(coarse: Floats, boundary: Boundary) -> Floats:
 def divided(coarse: Floats, boundary: Boundary) -> Floats:
     """Return the bilinear interpolation (ni, nj, 2) of a quad grid `coarse` (m, n, 2) inside `boundary`.
 
-    Grid lines have kinks at coarse nodes, but cells inside a valid coarse cell are valid: folded cells can
-    occur only next to edges that are curved between coarse nodes.
+    Cells can be folded only in folded coarse cells, or next to edges that are curved between coarse nodes.
     """
     nodes = planar_nodes(boundary.ni, boundary.nj)
     along, across = (

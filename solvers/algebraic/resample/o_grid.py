@@ -1,14 +1,8 @@
-"""Interpolation of a coarse O grid to any resolution, along its own grid lines.
-
-Steps along a line from the body outwards may be very unequal; a spline of its nodes by index would overshoot
-and fold. So each line keeps its shape, a cubic x_c of arc length, and the arc length of the new nodes is a
-monotonic cubic s(j) of the index::
+"""Interpolation of a coarse O grid to any resolution, along its own grid lines::
 
     x = S x_c(s(j)) + (1 - s)⁸ (south - S south_c) + s⁸ (north - S north_c)
 
-with s the fraction of a line's length and S periodic splines along xi. The powers confine the difference
-between the given walls (south, north) and the splines through their coarse nodes (south_c, north_c) to their
-vicinity.
+x_c: cubic of arc length; s(j): monotonic cubic, fraction of arc length; S: periodic splines along xi.
 """
 
 from typing import Any
@@ -25,8 +19,7 @@ from meshonet.solvers.algebraic.resample.spline import bending, places, spline_m
 from meshonet.solvers.iteration import put_edges
 
 STEEP, FLAT = 1.15, 0.5
-"""Bounds of the slopes of the monotonic cubic, as multiples of the harmonic mean of the two adjacent steps.
-"""
+"""Bounds of slopes of the monotonic cubic, as multiples of the harmonic mean of the two adjacent steps."""
 
 SQUARINGS = 3  # squarings that make the eighth power
 

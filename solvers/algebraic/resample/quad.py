@@ -1,22 +1,9 @@
 """Interpolation of coarse four-sided grids by splines, with edges that are reproduced bitwise.
 
-With X the coordinates of the coarse nodes::
-
-    x = S X Tᵀ + shares * (edges - S X Tᵀ on the edges)
-
-S and T are cubic splines, damped near acute corners (`corner_damping`). Splines overshoot where spacings
-differ much, and may fold fine cells in valid coarse ones. Around folded cells they are replaced by linear
-interpolation, in as large a neighbourhood as it takes: with it, cells inside a valid coarse cell are valid.
-
-Between coarse nodes the given edges differ from the splines; this mismatch is blended into the interior. In a
-smooth grid, a detail of the edge as long as a coarse step decays over about that distance from the edge,
-however thin the cells there are; blended along whole lines, it would fold thin cells far away. So at coarse
-node (i, j), at a distance d along its line from the edge::
-
-    share = max(0, 1 - d / r),    r = max(d_1, min(`REACH` h, length of the line))
-
-with h the mean of the edge's steps on both sides of the line and d_1 the line's first cell. Between nodes
-shares are linear.
+Splines S and T are damped near acute corners (`corner_damping`) and linear around folded cells: x = S X Tᵀ +
+shares * (edges - S X Tᵀ on the edges), with coarse nodes X. At a coarse node at a distance d along its line
+from the edge, share = max(0, 1 - d / r), r = max(d_1, min(`REACH` h, length of the line)), h the mean step of
+the edge on both sides of the line, d_1 the line's first cell.
 """
 
 from collections.abc import Iterator
@@ -41,8 +28,8 @@ REACH = 2.0  # steps of the edge over which its mismatch is blended
 CORNERS = [0, 1, -2, -1]  # rows and columns of a grid from which its corner angles are computed
 
 WIDER = (0, 1, 3)
-"""Number of coarse cells around folded ones in which interpolation becomes linear, one attempt after the
-other; in the last attempt it is linear everywhere.
+"""Numbers of coarse cells around folded ones in which interpolation becomes linear, in successive attempts; in
+the last one it is linear everywhere.
 """
 
 
@@ -56,11 +43,10 @@ def refine_quad(coarse: Floats, sides: Sides) -> Floats:
 
 
 def mended(coarse: Floats, sides: tuple[Floats, ...], nodes: Floats) -> Straight | None:
-    """Interpolate `coarse` (2, m, n) to `nodes` (2, ni, nj) again, but linearly around folded cells.
+    """Interpolate `coarse` (2, m, n) to `nodes` (2, ni, nj) again in place, linearly around folded cells.
 
-    `nodes` are changed in place. Return an array (m, n) that is 1 at the coarse nodes with linear
-    interpolation. Return None, and leave `nodes` unchanged, if `coarse` has folded cells or if no attempt
-    reduces the number of folded cells.
+    Return an array (m, n) that is 1 at the coarse nodes with linear interpolation. Return None, and leave
+    `nodes` unchanged, if `coarse` has folded cells or no attempt reduces the number of folded cells.
     """
     if count_folded(coarse.transpose(1, 2, 0)):
         return None

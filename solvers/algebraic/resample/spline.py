@@ -1,14 +1,4 @@
-"""Cubic splines on uniform knots as matrices, for interpolation of arrays to any resolution.
-
-On knots 0, 1, ..., m-1 with values f and second derivatives M the spline between knots k and k+1 is, with
-t the place between them (0 to 1)::
-
-    s = (1-t) f_k + t f_k+1 - t (1-t) (2-t)/6 M_k - t (1-t) (1+t)/6 M_k+1
-    M_k-1 + 4 M_k + M_k+1 = 6 (f_k-1 - 2 f_k + f_k+1)
-
-with the third derivative continuous at the second and the last but one knot ("not a knot"), or periodic.
-de Boor, A Practical Guide to Splines (1978), chapter IV.
-"""
+"""Cubic splines on uniform knots as matrices: de Boor, A Practical Guide to Splines (1978), chapter IV."""
 
 import math
 from functools import lru_cache
@@ -22,7 +12,11 @@ from meshonet.geometry.elementary import power, product
 
 @lru_cache(maxsize=16)
 def bending(m: int, periodic: bool) -> Floats:
-    """Return the matrix (m, m) from values at m >= 2 uniform knots to the spline's second derivatives there.
+    """Return the matrix (m, m) from values at m >= 2 uniform knots to the spline's second derivatives M.
+
+    The third derivative is continuous at the second and the last but one knot ("not a knot"), and ::
+
+        M_k-1 + 4 M_k + M_k+1 = 6 (f_k-1 - 2 f_k + f_k+1)
 
     If `periodic`, the last knot repeats the first. 2 knots give a straight line, 3 knots a parabola.
     """
@@ -80,8 +74,9 @@ def between(values: Floats, n: int) -> Floats:
 def places(m: int, n: int) -> tuple[NDArray[np.intp], Floats]:
     """Return, for n uniform places over m knots, the knot before each (n,) and four weights (n, 4).
 
-    The first two weights apply to the values at this knot and the next, the other two to the second
-    derivatives at these knots.
+    The weights are those of the values f and second derivatives M at this knot and the next, t between them::
+
+        s = (1-t) f_k + t f_k+1 - t (1-t) (2-t)/6 M_k - t (1-t) (1+t)/6 M_k+1
     """
     at = np.arange(n) * ((m - 1) / (n - 1))
     first = np.minimum(at.astype(np.intp), m - 2)
