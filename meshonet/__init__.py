@@ -6,8 +6,7 @@
     grid.quality()["max_angle"].max
     grid.write("naca0012.cgns")
 
-Functions have the names of the commands, and parameters those of the options, with underscores. Each name is
-loaded when it is first used, so that importing the package takes no time.
+Functions have the names of the commands, and parameters those of the options, with underscores.
 """
 
 from importlib import import_module

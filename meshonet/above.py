@@ -1,7 +1,4 @@
-"""Functions of higher packages that methods in `geometry` call; `meshonet/__init__.py` registers them here.
-
-Thus ``Grid.write`` is available for every grid, although `geometry` imports nothing from higher packages.
-"""
+"""Functions of higher packages that methods in `geometry` call, registered by `meshonet/__init__.py`."""
 
 from collections.abc import Callable
 from typing import Any

@@ -6,10 +6,8 @@
     nodes = layer.winslow(south, north, west, east)   # (batch, ni, nj, 2)
     nodes.square().mean().backward()                  # gradients of the boundary nodes
 
-Sides of `transfinite`, `winslow` and `variational` are tensors (..., n, 2), south and north along xi, west
-and east along eta, with common corners; leading dimensions are batches. Results have the device and the dtype
-of the sides; the arithmetic is in double precision. `torch.func.vmap` and `torch.func.grad` can be applied to
-these functions. The module needs torch (extra ``train``).
+Results have the device and the dtype of the sides; the arithmetic is in double precision. `torch.func.vmap`
+and `torch.func.grad` can be applied to these functions. The module needs torch (extra ``train``).
 """
 
 from meshonet.solvers.neural.devices import INSTALL_TORCH

@@ -37,8 +37,7 @@ def convert(
     source : str, Path or list of these
         Input files, folders and archives, as for `inputs`.
     output : str or Path
-        Output file. To write several grids into one file, choose a format that can store several grids. To
-        write one file for each grid, call this function in a loop over `inputs`.
+        Output file; several grids need a format that can store several.
     extrude : float, optional
         Height of an extrusion along z; None: no extrusion.
     planes : int, optional
@@ -47,8 +46,8 @@ def convert(
     swap : bool, optional
         Exchange xi and eta of four-sided grids, which stay right-handed.
     normalise : bool, optional
-        Scale and move the grid to unit chord with the leading edge at (0, 0); four-sided grids are scaled to
-        unit length.
+        Scale and move the grid to unit chord, or unit length of four-sided grids, with the leading edge at
+        (0, 0).
     coarsen : int, optional
         Keep only nodes whose indices along xi and eta are multiples of this number.
     revolve : float, optional
@@ -57,8 +56,8 @@ def convert(
     axis : sequence of float, optional
         Axis of the revolution in the plane: point and direction (x, y, dx, dy); None is the x axis.
     copies : int or sequence of int, optional
-        Number of copies of a periodic grid, joined to each other, for example passages of a blade row up to
-        the whole annulus. If the grid is periodic in several directions, give one number for each direction.
+        Number of joined copies of a periodic grid, such as a passage of a blade row; one number for each
+        periodic direction.
     scale : float, optional
         Factor by which all lengths are multiplied; 0.001 converts millimetres to metres.
     from_format, to_format : str, optional

@@ -18,9 +18,7 @@ from meshonet.solvers.deformation.targets import NewWall
 from meshonet.solvers.pipeline.deformations import make_deformed
 
 AnyWall: TypeAlias = NewWall | str | Path
-"""A file with an outline or a grid, its content, a designation such as ``naca:2412``, nodes, or a
-motion.
-"""
+"""A file with an outline or a grid, its content, a designation such as ``naca:2412``, nodes, or a motion."""
 
 
 def deform(

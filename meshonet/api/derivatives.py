@@ -16,12 +16,6 @@ def deform_derivative(
 ) -> DeformationDerivative:
     """Return a deformed grid and the derivative of its nodes with respect to the nodes of its walls.
 
-    The result has two attributes: ``grid`` is the deformed grid, and ``walls`` contains the node numbers of
-    each wall by name. The method ``along(moves)`` returns the displacements of all nodes; `moves` contains
-    the displacements (n, 2) of the nodes of each wall by name. The method ``transposed(pull)`` returns the
-    derivative of a functional with respect to the wall nodes; `pull` (ni, nj, 2) is the derivative of the
-    functional with respect to all nodes.
-
     Parameters
     ----------
     grid : Grid, str or Path
@@ -32,7 +26,10 @@ def deform_derivative(
     Returns
     -------
     DeformationDerivative
-        The deformed grid with its derivative.
+        ``grid`` is the deformed grid, ``walls`` has the node numbers of each wall by name. ``along(moves)``
+        returns the displacements of all nodes for displacements (n, 2) of the nodes of each wall by name.
+        ``transposed(pull)`` returns the derivative of a functional by the wall nodes, from its derivative
+        (ni, nj, 2) by all nodes.
 
     Raises
     ------
@@ -58,12 +55,6 @@ def optimum_derivative(
 ) -> OptimumDerivative:
     """Return the derivative of a variational or Winslow grid with respect to its boundary nodes.
 
-    The attribute ``grid`` of the result is the grid, solved to rounding. The method ``along(moves)`` returns
-    the displacements (ni, nj, 2) of all nodes; `moves` (ni, nj, 2) contains the displacements of the boundary
-    nodes. The method ``transposed(pull)`` returns the derivative of a functional with respect to the boundary
-    nodes; `pull` (ni, nj, 2) is the derivative of the functional with respect to all nodes. Each call solves
-    one linear system, whose factors are stored.
-
     Parameters
     ----------
     grid : Grid, str or Path
@@ -77,7 +68,11 @@ def optimum_derivative(
     Returns
     -------
     OptimumDerivative
-        The solution with its derivative.
+        ``grid`` is the grid, solved to rounding. ``along(moves)`` returns the displacements (ni, nj, 2) of
+        all
+        nodes for displacements (ni, nj, 2) of the boundary nodes. ``transposed(pull)`` returns the derivative
+        of a functional by the boundary nodes, from its derivative (ni, nj, 2) by all nodes. Each call solves
+        one linear system, whose factors are stored.
 
     Raises
     ------

@@ -51,8 +51,8 @@ def doctor() -> list[Finding]:
     Returns
     -------
     list of Finding
-        Each finding has a group, a name, a value and a remedy. It also says whether the part works; None
-        stands for an optional part that is not installed.
+        Group, name and value of each part, whether it works (None: an optional part that is not installed),
+        and a remedy.
 
     Examples
     --------

@@ -162,8 +162,8 @@ def write(what: Writable | Iterable[Writable], path: str | Path, *, to_format: s
     Parameters
     ----------
     what : Grid, Boundary or Layout, or iterable of these
-        Object to write, or several objects of the same kind. In a dataset all grids must have the same
-        numbers of nodes and the same topology. An iterable is read one object at a time.
+        Objects of the same kind; an iterable is read one object at a time. Grids of a dataset must have the
+        same numbers of nodes and the same topology.
     path : str or Path
         File to write; its extension determines the format. An OpenFOAM mesh is written into the folder of
         ``case.foam``, or into a folder given as the path.

@@ -29,9 +29,7 @@ from meshonet.solvers.pipeline.parameters import SAMPLED, grid_request, sampling
 from meshonet.solvers.pipeline.uses import Counts
 
 AnyShape: TypeAlias = str | Path | Floats | Shape | Grid | Domain
-"""A path, a designation such as ``naca:2412``, points of an outline, nodes in space, or an object made
-from these.
-"""
+"""A path, a designation such as ``naca:2412``, points of an outline, nodes in space, or such an object."""
 
 
 def grid(
@@ -50,10 +48,11 @@ def grid(
     Parameters
     ----------
     shape : str, Path, array, Grid, Boundary or Domain, or a list of these
-        A plane shape is a file, a designation such as ``naca:0012``, an array of points (n, 2) of a closed
-        outline, a boundary, a `meshonet.Domain`, or a grid, of which only the boundary is used; with
-        `assemble` it is a list of these. A shape in space is an array (ni, nj, nk, 3) of volume nodes, of
-        which only the six faces are used, or a list of surface patches (ni, nj, 3).
+        A plane shape: a file, a designation such as ``naca:0012``, points (n, 2) of a closed outline, a
+        boundary, a `meshonet.Domain`, or a grid, of which only the boundary is used; with `assemble` a list
+        of
+        these. A shape in space: nodes (ni, nj, nk, 3) of a volume, of which only the six faces are used, or a
+        list of surface patches (ni, nj, 3).
     assemble : bool, optional
         Combine all shapes in the list into one domain.
     res : int or tuple of int, optional
@@ -249,8 +248,7 @@ def sample_family(
     seed : int, optional
         Seed of the random numbers.
     split : str, optional
-        ``interpolation``, ``extrapolation`` or ``random``: the rule that selects one sixth of the shapes for
-        tests.
+        Rule that selects one sixth of the shapes for tests: ``interpolation``, ``extrapolation``, ``random``.
 
     Returns
     -------

@@ -73,8 +73,7 @@ def read_stack(path: str | Path) -> Stack | Row | Aircraft:
     Returns
     -------
     Stack, Row or Aircraft
-        A wing, blade or duct (`Stack`), a row of blades with lengths in metres, or an aircraft. To make
-        variants, use `dataclasses.replace`.
+        A wing, blade or duct (`Stack`), a row of blades with lengths in metres, or an aircraft.
 
     Raises
     ------

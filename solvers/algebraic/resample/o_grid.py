@@ -1,7 +1,6 @@
-"""Interpolation of a coarse O grid to any resolution, along its own grid lines::
+"""Interpolation of a coarse O grid to any resolution, along its own grid lines.
 
-    x = S x_c(s(j)) + (1 - s)⁸ (south - S south_c) + s⁸ (north - S north_c)
-
+x = S x_c(s(j)) + (1 - s)⁸ (south - S south_c) + s⁸ (north - S north_c), with
 x_c: cubic of arc length; s(j): monotonic cubic, fraction of arc length; S: periodic splines along xi.
 """
 

@@ -28,9 +28,7 @@ REACH = 2.0  # steps of the edge over which its mismatch is blended
 CORNERS = [0, 1, -2, -1]  # rows and columns of a grid from which its corner angles are computed
 
 WIDER = (0, 1, 3)
-"""Numbers of coarse cells around folded ones in which interpolation becomes linear, in successive attempts; in
-the last one it is linear everywhere.
-"""
+"""Coarse cells around folded ones in which interpolation becomes linear; at last it is linear everywhere."""
 
 
 def refine_quad(coarse: Floats, sides: Sides) -> Floats:
