@@ -43,10 +43,8 @@ class Across:
     inverse: Floats
     matrices: Floats
     """(4, LEVELS, LEVELS) tables of the compiled step: `d1`, `d2`, `inverse` and `vectors`, transposed."""
-    stiffness: Floats
-    """Eigenvalues with one more value at both ends, for the compiled step."""
-    smooth: Floats
-    """Factors by which changes of the modes are filtered: aliasing affects modes near `MODES`."""
+    stiffness: Floats  # eigenvalues with one more value at both ends, for the compiled step
+    smooth: Floats  # factors by which changes of the modes are filtered: aliasing affects modes near `MODES`
 
 
 @lru_cache(maxsize=1)

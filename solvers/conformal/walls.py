@@ -35,8 +35,7 @@ class StripWalls(NamedTuple):
     corners: tuple[int, ...]
     axis: Axis | None
     hand: int
-    rough: bool = False
-    """Whether uneven spacing slightly exceeds the resolution of the strip (`is_rough`)."""
+    rough: bool = False  # whether uneven spacing slightly exceeds the resolution of the strip (`is_rough`)
 
 
 def walls(boundary: Boundary) -> StripWalls:

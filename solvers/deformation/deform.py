@@ -17,8 +17,7 @@ from meshonet.solvers.deformation.targets import NewWall, NodeTargets, targets_o
 from meshonet.solvers.solution import Outcome, Solution, timed
 
 METHOD = "deformation"
-STEPS = 2, 4, 8
-"""Numbers of steps of the deformation, tried in turn while cells are folded."""
+STEPS = 2, 4, 8  # numbers of steps of the deformation, tried in turn while cells are folded
 
 
 @timed

@@ -21,8 +21,7 @@ NEAR = 0.3
 """Upper bound of the distance inside which the nearest wall nodes dominate, in extents of the moved walls."""
 ROOM = 0.1
 """Upper bound of the same distance, in distances between moved and fixed nodes: gaps need a softer field."""
-_SOME = 100
-"""Approximate number of moved nodes whose distances to fixed nodes are computed."""
+_SOME = 100  # approximate number of moved nodes whose distances to fixed nodes are computed
 FLAT = 1e-9
 """Largest deviation from a line or plane, as a fraction of its extent, of a side whose nodes slide."""
 
@@ -38,16 +37,11 @@ class Field:
     larger.
     """
 
-    sources: Indices
-    """(k,) node indices of the sources."""
-    places: Floats
-    """(d, k) coordinates of the sources."""
-    areas: Floats
-    """(k,) lengths or areas assigned to the sources."""
-    near: float
-    """Distance inside which the nearest sources dominate."""
-    points: Floats
-    """(d, m) coordinates of the nodes that the field displaces."""
+    sources: Indices  # (k,) node indices of the sources
+    places: Floats  # (d, k) coordinates of the sources
+    areas: Floats  # (k,) lengths or areas assigned to the sources
+    near: float  # distance inside which the nearest sources dominate
+    points: Floats  # (d, m) coordinates of the nodes that the field displaces
 
     @classmethod
     def of(cls, nodes: Floats, sources: Indices, areas: Floats, near: float, points: Indices) -> Self:
@@ -79,14 +73,10 @@ class Follow:
 
     table: NodeTable
     sources: Sources
-    turning: Turning | None
-    """Rotations of the wall's edges; None in three dimensions."""
-    slide: Field | None
-    """The field at sliding nodes; None if there are none."""
-    field: Field
-    """The field at inner nodes."""
-    inner: Indices
-    """Node indices of inner nodes."""
+    turning: Turning | None  # rotations of the wall's edges; None in three dimensions
+    slide: Field | None  # the field at sliding nodes; None if there are none
+    field: Field  # the field at inner nodes
+    inner: Indices  # node indices of inner nodes
 
     @classmethod
     def of(cls, table: NodeTable, moved: Bools) -> Self:

@@ -19,8 +19,7 @@ from meshonet.geometry.polygon.corners import angle_between
 class Turning:
     """Rotation angles of the nodes of a planar wall, as weighted means over its edges."""
 
-    edges: Indices
-    """(m, 2) node indices of the edges."""
+    edges: Indices  # (m, 2) node indices of the edges
     share: Floats
     """(m, 2) weights of each edge in the angles of its two end nodes; the weights at a node add up to 1."""
 

@@ -36,8 +36,7 @@ class NodeTable:
     """All nodes of a grid; nodes shared by blocks occur once."""
 
     grid: Grid
-    nodes: Floats
-    """(n, d) coordinates of the nodes."""
+    nodes: Floats  # (n, d) coordinates of the nodes
     numbers: tuple[Indices, ...]
     """For each block, the indices (ni, nj) or (ni, nj, nk) of its nodes in `nodes`."""
 

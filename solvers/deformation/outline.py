@@ -16,8 +16,7 @@ from meshonet.geometry.shapes.airfoil.section_curve import farthest_arc
 from meshonet.geometry.shapes.outline import Outline
 
 Notes = tuple[str, ...]
-_SHARP = np.radians(60.0)
-"""Smallest turn of a wall at a trailing edge that is not rounded."""
+_SHARP = np.radians(60.0)  # smallest turn of a wall at a trailing edge that is not rounded
 _WIDEST_BASE = 0.2  # widest base, in perimeters of the section; flatbacks have up to .13
 
 

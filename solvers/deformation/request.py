@@ -7,9 +7,6 @@ from dataclasses import dataclass
 class DeformRequest:
     """Settings of `meshonet.deform`."""
 
-    allow_invalid: bool = False
-    """Return the grid even if cells are folded."""
-    percentiles: bool = False
-    """Compute percentiles of the quality measures too."""
-    threads: int | None = None
-    """Number of threads of the kernels; None stands for one per core."""
+    allow_invalid: bool = False  # return the grid even if cells are folded
+    percentiles: bool = False  # compute percentiles of the quality measures too
+    threads: int | None = None  # number of threads of the kernels; None stands for one per core

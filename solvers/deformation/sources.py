@@ -7,27 +7,20 @@ import numpy as np
 from meshonet.geometry.arrays import Bools, Floats, Indices, extent_of, norms
 from meshonet.solvers.deformation.outer import NodeTable, Piece, elements_of, first_heights
 
-REACH = 0.1
-"""Largest length of a group of nodes, divided by its distance from the moved nodes."""
+REACH = 0.1  # largest length of a group of nodes, divided by its distance from the moved nodes
 
-CELLS = 2.0
-"""Largest length of a group of nodes, divided by the height of the thinnest cell at the piece."""
+CELLS = 2.0  # largest length of a group of nodes, divided by the height of the thinnest cell at the piece
 
 
 @dataclass(frozen=True, eq=False)
 class Sources:
     """The moved, the sliding and the fixed nodes of the outer boundary of a grid."""
 
-    moved: Bools
-    """(n,) mask of nodes with prescribed new positions."""
-    areas: Floats
-    """(n,) lengths or areas assigned to boundary nodes; 0 for nodes that are not sources."""
-    elements: Indices
-    """Edges (m, 2) or quadrilaterals (m, 4) whose nodes are all moved."""
-    sliding: tuple[Piece, ...]
-    """Pieces that are not moved but touch moved nodes: sliding sides."""
-    slides: Bools
-    """(n,) mask of the nodes of these pieces that belong to no moved or fixed piece."""
+    moved: Bools  # (n,) mask of nodes with prescribed new positions
+    areas: Floats  # (n,) lengths or areas assigned to boundary nodes; 0 for nodes that are not sources
+    elements: Indices  # edges (m, 2) or quadrilaterals (m, 4) whose nodes are all moved
+    sliding: tuple[Piece, ...]  # pieces that are not moved but touch moved nodes: sliding sides
+    slides: Bools  # (n,) mask of the nodes of these pieces that belong to no moved or fixed piece
 
     @property
     def fixed(self) -> Indices:

@@ -29,20 +29,16 @@ Nodes are one array (n, 2) for each polyline of the wall, in either direction, o
 patch in space. An array (n, 2) of another length is an outline.
 """
 
-SAME = 1e-9
-"""Largest difference of the positions that two pieces give a shared node, over the wall's extent."""
+SAME = 1e-9  # largest difference of the positions that two pieces give a shared node, over the wall's extent
 
 
 @dataclass(frozen=True, eq=False)
 class NodeTargets:
     """New positions of the wall nodes of a grid."""
 
-    moved: Bools
-    """(n,) mask of the nodes of moved walls."""
-    nodes: Floats
-    """(n, d) all nodes, those of moved walls in their new positions."""
-    names: tuple[str, ...]
-    """Names of the moved walls."""
+    moved: Bools  # (n,) mask of the nodes of moved walls
+    nodes: Floats  # (n, d) all nodes, those of moved walls in their new positions
+    names: tuple[str, ...]  # names of the moved walls
     notes: tuple[str, ...] = ()
 
 

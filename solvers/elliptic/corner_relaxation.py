@@ -15,8 +15,7 @@ REACH = 32  # cells to each side of the corner, and inwards
 
 SWEEPS = 8  # local sweeps after each sweep of the level
 
-LEAST = 120
-"""Smallest number of cells per direction of a level with local relaxation."""
+LEAST = 120  # smallest number of cells per direction of a level with local relaxation
 
 Window = tuple[slice, slice]
 

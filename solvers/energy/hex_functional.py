@@ -40,14 +40,11 @@ class HexWeights:
         return self.power == 0
 
 
-OPTIMAL = HexWeights()
-"""Default weights of grids."""
-CUBES = HexWeights(1.0, 0.0, power=0, gain=1e-6)
-"""Functional for cells like cubes."""
+OPTIMAL = HexWeights()  # default weights of grids
+CUBES = HexWeights(1.0, 0.0, power=0, gain=1e-6)  # functional for cells like cubes
 Energy = Literal["angles", "shape"]
 ENERGIES: dict[Energy, HexWeights] = {"angles": OPTIMAL, "shape": CUBES}
 """Weights by the name of the functional."""
-UNFOLDING = HexWeights(0.02, power=1)
-"""Weights close to Winslow's functional, which untangles the most cells."""
+UNFOLDING = HexWeights(0.02, power=1)  # weights close to Winslow's functional, which untangles the most cells
 OPENING = HexWeights(0.3, power=1), HexWeights(0.9, power=1)
 """Intermediate weights from `UNFOLDING` to `OPTIMAL`, without which nearly flat cells stay flat."""

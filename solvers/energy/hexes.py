@@ -17,23 +17,15 @@ from meshonet.kernels._native import HexDescent
 from meshonet.solvers.energy.hex_functional import OPENING, OPTIMAL, UNFOLDING, HexWeights
 from meshonet.solvers.energy.hex_tables import HexTables, Targets, cell_lengths, tables_of
 
-RENEWED = 10
-"""Number of iterations after which the preconditioner is updated."""
-STILL = 0.3
-"""Displacement, in cells, below which two consecutive steps of little gain end a minimisation."""
-REACH = 0.5
-"""Largest displacement of a node in a first step, in cells."""
-ROUNDS, ROUND = 20, 10
-"""Largest number of rounds of untangling, and iterations of each."""
+RENEWED = 10  # number of iterations after which the preconditioner is updated
+STILL = 0.3  # displacement, in cells, below which two consecutive steps of little gain end a minimisation
+REACH = 0.5  # largest displacement of a node in a first step, in cells
+ROUNDS, ROUND = 20, 10  # largest number of rounds of untangling, and iterations of each
 NARROW = 8  # rounds after which ε is 0.3 of what it would be
-WITHOUT_GAIN = 6
-"""Number of rounds without improvement after which untangling is given up."""
-SIZE = 0.1
-"""Weight of the volumes of cells in untangling."""
-NEARLY = 0.05
-"""Smallest Jacobian, relative to a cell with target lengths, below which cells are opened first."""
-OPENED = 20, 10, 10
-"""Iterations of each stage of opening."""
+WITHOUT_GAIN = 6  # number of rounds without improvement after which untangling is given up
+SIZE = 0.1  # weight of the volumes of cells in untangling
+NEARLY = 0.05  # smallest Jacobian, relative to a cell with target lengths, below which cells are opened first
+OPENED = 20, 10, 10  # iterations of each stage of opening
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,10 +61,8 @@ class Slides:
 class HexOptimum:
     """Result of `optimise`."""
 
-    nodes: Floats
-    """(n, 3) nodes; nodes that are not free are bitwise unchanged."""
-    smallest: float
-    """Smallest corner Jacobian of cells with free nodes, relative to their target volume."""
+    nodes: Floats  # (n, 3) nodes; nodes that are not free are bitwise unchanged
+    smallest: float  # smallest corner Jacobian of cells with free nodes, relative to their target volume
     value: float
     iterations: int
 

@@ -29,8 +29,7 @@ class Unknowns:
     fixed: Bools
     images: Indices
     originals: Indices
-    tied: Bools
-    """(n,) mask of images and their originals."""
+    tied: Bools  # (n,) mask of images and their originals
 
 
 def unknowns_of(mesh: QuadMesh, held: Bools | None) -> Unknowns:
@@ -53,8 +52,7 @@ def smallest_jacobian(nodes: Floats, quads: Indices, areas: Floats | None = None
 class Problem:
     """The minimisation over a mesh, and the conversion of its result."""
 
-    cell: float
-    """Mean area of a cell in scaled units."""
+    cell: float  # mean area of a cell in scaled units
     descent: QuadDescent
 
     def __init__(

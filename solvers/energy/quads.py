@@ -29,10 +29,8 @@ class QuadOptimum:
     """Result of `optimise`."""
 
     mesh: QuadMesh
-    valid: bool
-    """Whether all corner Jacobians are positive and wall nodes are in order."""
-    value: float
-    """Value of the functional, infinite if the mesh is not valid."""
+    valid: bool  # whether all corner Jacobians are positive and wall nodes are in order
+    value: float  # value of the functional, infinite if the mesh is not valid
     iterations: int
 
 

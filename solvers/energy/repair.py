@@ -24,8 +24,7 @@ folded. The harmonic term alone untangles more cells, but with larger angles.
 SMOOTHING = Weights()  # weights with which the corners of an unfolded patch are opened
 
 SMOOTHING_ITERATIONS = 1500  # at the most; it ends before by `SMOOTHING_STILL`
-SMOOTHING_STILL = 3e-5
-"""Displacement of nodes, in cells, below which the smoothing stops."""
+SMOOTHING_STILL = 3e-5  # displacement of nodes, in cells, below which the smoothing stops
 
 MARGIN = 6  # cells around a group of folded ones that move with them, at first
 MARGINS = (12, 16)  # those of later rounds, where cells stay folded

@@ -23,22 +23,18 @@ from meshonet.solvers.solution import Solution, timed
 COARSEST = 17  # a copy with this many nodes or fewer along a direction is the first one solved
 COARSEST_AROUND = 65  # the same around a body
 
-NEXT = 129
-"""Largest node count along a direction of the finest coarse copy."""
+NEXT = 129  # largest node count along a direction of the finest coarse copy
 
-STILL = 1e-4
-"""Displacement that ends the iteration on the finest level, over √cells times the mean cell size."""
+STILL = 1e-4  # displacement that ends the iteration on the finest level, over √cells times the mean cell size
 
-FEW = 4
-"""Iterations on a finest level with more nodes, for quads without a tolerance."""
+FEW = 4  # iterations on a finest level with more nodes, for quads without a tolerance
 
 FEW_AROUND = 20, 10
 """The same for O grids, with up to `NEXT` nodes and with more, unless the value exceeds `descent.HARD`."""
 
 FIRST_AROUND = 100  # the same on a coarser level
 
-ROUGH = 3.0
-"""Factor of the tolerance on intermediate levels."""
+ROUGH = 3.0  # factor of the tolerance on intermediate levels
 
 MOST = 1000  # iterations on a coarser level at the most
 WEAKER = 3  # how often the edge length term may be made weaker, to a fourth each time

@@ -21,12 +21,9 @@ class Walls:
 
     nodes: Indices
     loop: Indices
-    arc: Floats
-    """(w,) arc lengths of the nodes, less than the length of the loop."""
-    edges: Indices
-    """(e, 2) the two wall nodes of each edge, as indices into the nodes on loops."""
-    round: Floats
-    """(e,) value to add to the arc length of the second node: 0 or the length of the loop."""
+    arc: Floats  # (w,) arc lengths of the nodes, less than the length of the loop
+    edges: Indices  # (e, 2) the two wall nodes of each edge, as indices into the nodes on loops
+    round: Floats  # (e,) value to add to the arc length of the second node: 0 or the length of the loop
 
     def range_of(self, loop: int) -> tuple[int, int, int, int]:
         """Return the index ranges of a loop: first and end index of its nodes, then those of its edges."""

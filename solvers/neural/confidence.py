@@ -16,8 +16,7 @@ from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.compare import compare
 from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
 
-Goal = Literal["winslow", "variational", "conformal"]
-"""Name of the method whose grids a network imitates."""
+Goal = Literal["winslow", "variational", "conformal"]  # name of the method whose grids a network imitates
 
 THRESHOLD = 0.03
 """Largest expected error of a grid without folded cells that is accepted (docs/benchmarks/confidence.md)."""

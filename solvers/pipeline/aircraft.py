@@ -13,8 +13,7 @@ from meshonet.solvers.stages import stage
 
 _REMEDY = "use more nodes {around}, or a larger {first_cell}"  # where cells fold
 
-_HIGHEST = 0.1
-"""Largest height of first cells, in chords of the smallest section."""
+_HIGHEST = 0.1  # largest height of first cells, in chords of the smallest section
 
 _REACH = 0.8
 """Largest distance of the tip of a wing from the middle of the body, relative to that of the far field."""

@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
     from meshonet.solvers.pipeline.request import GridRequest
 
-SMOOTHERS = ("auto", "variational")
-"""Methods that smooth the blocks of a given grid."""
+SMOOTHERS = ("auto", "variational")  # methods that smooth the blocks of a given grid
 METHODS = ("best", *SMOOTHERS)
 """Method names for which multi-block grids are made; their nodes minimise the variational functional."""
 

@@ -28,8 +28,7 @@ from meshonet.solvers.pipeline.wall_facts import growth_note, wall_facts
 from meshonet.solvers.sweeping.butterfly import GROWTH
 from meshonet.solvers.sweeping.disc import Disc, butterfly
 
-_SIDES = 65, 33
-"""Default number of nodes along the sides of a four-sided section."""
+_SIDES = 65, 33  # default number of nodes along the sides of a four-sided section
 
 
 def section_grid(

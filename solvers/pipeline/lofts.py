@@ -24,11 +24,9 @@ from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.section_nodes import around, nose_notes, unit_nodes
 from meshonet.solvers.sweeping import butterfly
 
-_FADE = 4.0
-"""Distance from a blade, in chords, at which its twist and scaling are reduced to one third."""
+_FADE = 4.0  # distance from a blade, in chords, at which its twist and scaling are reduced to one third
 _CENTRE = np.array([0.5, 0.0])  # of the far field of a section of unit chord
-_HIGHEST = 0.1
-"""Largest height of first cells in a duct, in widths of the narrowest section."""
+_HIGHEST = 0.1  # largest height of first cells in a duct, in widths of the narrowest section
 GROWTH = 1.2  # of layers where none is given, as of volumes that are marched
 
 

@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.aircraft.aircraft import Aircraft
     from meshonet.geometry.rows.row import Row
 
-Sections: TypeAlias = "Stack | Row | Aircraft"
-"""Inputs of `meshonet stack`."""
+Sections: TypeAlias = "Stack | Row | Aircraft"  # inputs of `meshonet stack`
 
 
 def with_tip(what: Sections, tip: Tip | None, *, surface: bool = False) -> Sections:

@@ -15,8 +15,7 @@ from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import stage
 from meshonet.solvers.sweeping.sweep import Sweep, check_planes, reach_of, self_crossing, sweep, walled
 
-SMALL = 0.1
-"""Ratio of the sizes of the smaller and the larger end section below which there is a note."""
+SMALL = 0.1  # ratio of the sizes of the smaller and the larger end section below which there is a note
 _REMEDY = "use a wider bend, a smaller section or more {planes}"  # where cells fold
 
 

@@ -10,8 +10,7 @@ def _row(*options: str) -> frozenset[str]:
     return frozenset(" ".join(options).split())
 
 
-COUNTED = ("ni", "nj", "nk")
-"""Fields of `Sampling` that form the option ``res``."""
+COUNTED = ("ni", "nj", "nk")  # fields of `Sampling` that form the option ``res``
 Counts: TypeAlias = int | tuple[int] | tuple[int, int] | tuple[int, int, int]
 """Number of nodes along all directions, or along each, or along xi only if growth determines the rows."""
 _OFF_WALLS = _row("first_cell y_plus spacing_south spacing_north")
@@ -61,12 +60,9 @@ USES: dict[str, frozenset[str]] = {
 }
 """Options that apply, by the kind of grid."""
 
-FOR_MANY = tuple(sorted(USES[MANY] - USES[ONE]))
-"""Options of which each asks for many blocks."""
-OF_SURFACE = _row("layers symmetry poles")
-"""Options that only apply to marching from a surface."""
-IN_SPACE = OF_SURFACE | _row("energy")
-"""Options that do not apply to planar grids."""
+FOR_MANY = tuple(sorted(USES[MANY] - USES[ONE]))  # options of which each asks for many blocks
+OF_SURFACE = _row("layers symmetry poles")  # options that only apply to marching from a surface
+IN_SPACE = OF_SURFACE | _row("energy")  # options that do not apply to planar grids
 
 
 def counted(res: Counts | None, options: Mapping[str, Any]) -> dict[str, Any]:

@@ -11,8 +11,7 @@ from meshonet.solvers.pipeline.request import Volume
 from meshonet.solvers.pipeline.uses import INSIDE, JOINED, OFF_SURFACE, refuse
 from meshonet.solvers.solution import Solution
 
-_OPEN = ("best", "auto")
-"""Method names that leave the choice to the program."""
+_OPEN = ("best", "auto")  # method names that leave the choice to the program
 
 
 @dataclass(frozen=True)

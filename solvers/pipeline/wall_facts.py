@@ -10,8 +10,7 @@ from meshonet.geometry.quality.lines import Lines, lines, solid_lines
 from meshonet.geometry.quality.walls import wall_rows
 from meshonet.geometry.summary import named
 
-_SAME = 1e-6
-"""Relative tolerances for equal first cells and for growth above the limit."""
+_SAME = 1e-6  # relative tolerances for equal first cells and for growth above the limit
 
 
 def wall_facts(grid: Grid) -> tuple[str, ...]:

@@ -16,10 +16,8 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.ties import nearest_whole
 from meshonet.kernels._native import joined_classes
 
-LEAST = 2
-"""Smallest number of cells along an edge of a block."""
-TURNING_DEG = 25.0
-"""Largest angle in degrees by which a wall turns along a cell."""
+LEAST = 2  # smallest number of cells along an edge of a block
+TURNING_DEG = 25.0  # largest angle in degrees by which a wall turns along a cell
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,11 +13,9 @@ from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.kernels._native import nearest_points
 
-GRADING = 0.13
-"""Largest growth of edge lengths per distance from a wall."""
+GRADING = 0.13  # largest growth of edge lengths per distance from a wall
 
-SWEEPS = 20
-"""Number of sweeps that smooth the target lengths."""
+SWEEPS = 20  # number of sweeps that smooth the target lengths
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,8 +17,7 @@ _ROUNDS, _GENTLE = 30, 8
 _SHARES = (0.5, 0.7, 0.85)
 """Factors per round of the displacement of a bad cell's nodes, and of nodes one and two cells away."""
 
-_SMALL = 0.02
-"""Fraction of the displacement below which a node is reset."""
+_SMALL = 0.02  # fraction of the displacement below which a node is reset
 
 
 def held_back(grid: Grid, original: Layout, layout: Layout, before: PlaneMeasures) -> Grid | None:

@@ -9,8 +9,7 @@ from meshonet.geometry.quality.blocks import block_figures
 from meshonet.geometry.quality.checkmesh import faces
 from meshonet.geometry.quality.measure import count_folded_in
 
-_SLACK = 1e-7
-"""Tolerance for rounding, in degrees and for skewness."""
+_SLACK = 1e-7  # tolerance for rounding, in degrees and for skewness
 _NOTHING = 1.0, 0.05, 0.1
 """Non-orthogonality, skewness and mean deviation below which differences are ignored."""
 
@@ -20,12 +19,9 @@ class PlaneMeasures:
     """The number of folded cells, and measures that must not become worse; a smaller `score` is better."""
 
     folded: int
-    angle: float
-    """Largest non-orthogonality of a face in degrees."""
-    skew: float
-    """Largest skewness of a face."""
-    mean: float
-    """Mean deviation of corner angles from 90 degrees."""
+    angle: float  # largest non-orthogonality of a face in degrees
+    skew: float  # largest skewness of a face
+    mean: float  # mean deviation of corner angles from 90 degrees
     score: float
 
     def no_worse(self, than: Self) -> bool:

@@ -10,8 +10,7 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.kernels._native import line_neighbours
 from meshonet.solvers.smoothing.wanted_lengths import THIN, thin_heights
 
-ROWS = 200
-"""Largest number of rows of layers."""
+ROWS = 200  # largest number of rows of layers
 
 
 def with_layers(mesh: QuadMesh, original: QuadMesh) -> tuple[QuadMesh, Bools]:

@@ -10,10 +10,8 @@ from meshonet.geometry.linear import symmetric_eigen
 from meshonet.geometry.volume.hex_mesh import HexMesh
 from meshonet.solvers.energy.hexes import Slides
 
-FLAT = 1e-9
-"""Largest deviation of a patch from a plane, relative to its size."""
-_SAME = 1e-6
-"""Largest difference of unit normals of the same plane."""
+FLAT = 1e-9  # largest deviation of a patch from a plane, relative to its size
+_SAME = 1e-6  # largest difference of unit normals of the same plane
 
 
 def slides_of(grid: Grid, mesh: HexMesh) -> tuple[Slides, Bools]:

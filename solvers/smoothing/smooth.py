@@ -19,8 +19,7 @@ from meshonet.solvers.smoothing.wanted_lengths import wanted_lengths
 from meshonet.solvers.solution import Outcome, Solution, timed
 
 METHOD = "variational"
-EVEN = 1.3
-"""Largest ratio of neighbouring edges that is not evened out."""
+EVEN = 1.3  # largest ratio of neighbouring edges that is not evened out
 ITERATIONS = 300  # of the optimum, at the most
 TOLERANCE = 1e-5  # relative gain of the functional at which it ends before
 _AS_GOOD = "the grid is kept as it was: its optimum is no better"

@@ -9,10 +9,8 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.volumes import measure_volumes, solid_metric
 from meshonet.geometry.volume.hex_mesh import HexMesh
 
-_SLACK = 1e-9
-"""Tolerance for rounding in degrees."""
-_NOTHING = 0.05
-"""Mean deviation below which differences are ignored."""
+_SLACK = 1e-9  # tolerance for rounding in degrees
+_NOTHING = 0.05  # mean deviation below which differences are ignored
 _GOOD, _PART = 0.7, 0.98
 """Scaled Jacobian above which differences are ignored, and the fraction of a smaller one that must remain."""
 
@@ -22,10 +20,8 @@ class VolumeMeasures:
     """Folded cells, and the measures that must not become worse."""
 
     folded: int
-    mean: float
-    """Mean over all cells of the deviation of their angles from 90 degrees."""
-    least: float
-    """Smallest scaled Jacobian of a corner."""
+    mean: float  # mean over all cells of the deviation of their angles from 90 degrees
+    least: float  # smallest scaled Jacobian of a corner
 
     def no_worse(self, than: Self) -> bool:
         """Return whether no measure is worse."""

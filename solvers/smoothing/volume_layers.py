@@ -12,14 +12,11 @@ from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.volume.hex_mesh import HexMesh
 from meshonet.solvers.energy.hex_tables import Targets
 
-THIN = 3.0
-"""Ratio of the shorter of the other sides to the height above which a cell belongs to layers."""
+THIN = 3.0  # ratio of the shorter of the other sides to the height above which a cell belongs to layers
 _LOW = 3.0
 """Ratio of the mean height along a line to that of its first cell above which this cell belongs to layers."""
-_UNLIKE = math.log(1.5)
-"""Largest logarithm of a height over its target that is not an error of the grid."""
-_ROOM = 0.9
-"""Largest fraction of a line, up to its last interior node, that layers may take."""
+_UNLIKE = math.log(1.5)  # largest logarithm of a height over its target that is not an error of the grid
+_ROOM = 0.9  # largest fraction of a line, up to its last interior node, that layers may take
 
 
 @dataclass(frozen=True, eq=False)

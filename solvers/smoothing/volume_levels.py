@@ -16,12 +16,9 @@ from meshonet.geometry.elementary import exp
 from meshonet.geometry.volume.hex_mesh import HexMesh
 from meshonet.solvers.energy.hex_tables import Targets
 
-FEW = 12
-"""Largest number of cells in a piece of a line that is not coarsened."""
-SMALL = 4000
-"""Largest number of nodes of a mesh without a coarser copy."""
-FEWER = 0.6
-"""Largest fraction of nodes in a useful copy."""
+FEW = 12  # largest number of cells in a piece of a line that is not coarsened
+SMALL = 4000  # largest number of nodes of a mesh without a coarser copy
+FEWER = 0.6  # largest fraction of nodes in a useful copy
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,8 +8,7 @@ import numpy as np
 from meshonet.geometry.arrays import Bools, Floats, Indices
 from meshonet.geometry.volume.hex_mesh import HexMesh
 
-_MOST, _SMALL = 500, 1e-8
-"""Largest number of iterations, and the relative residual at which they end."""
+_MOST, _SMALL = 500, 1e-8  # largest number of iterations, and the relative residual at which they end
 
 
 def harmonic(mesh: HexMesh, moves: Bools) -> Floats:

@@ -11,14 +11,11 @@ from meshonet.geometry.elementary import log
 from meshonet.geometry.volume.hex_mesh import HexMesh, exchange, second_layer
 from meshonet.solvers.energy.hex_tables import BlockTargets, Targets
 
-ROUNDS = 12
-"""Number of diffusion steps; they act over about the square root of as many cells."""
-_SHARE = 0.1
-"""Fraction of the second differences in three directions by which an edge changes in a step."""
+ROUNDS = 12  # number of diffusion steps; they act over about the square root of as many cells
+_SHARE = 0.1  # fraction of the second differences in three directions by which an edge changes in a step
 _OUTLIER = math.log(2.0)
 """Largest logarithmic difference between an edge and the mean of its neighbours in the first steps."""
-_CLIPPED = 4
-"""Number of steps in which this limit applies."""
+_CLIPPED = 4  # number of steps in which this limit applies
 
 
 def wanted_edges(mesh: HexMesh, moves: Bools, rounds: int = ROUNDS) -> Targets:

@@ -22,10 +22,8 @@ from meshonet.solvers.solution import Outcome, Solution, timed
 METHOD = "variational"
 ITERATIONS = 40  # of the optimum, at the most
 TOLERANCE = 1e-5  # relative gain of the functional at which it ends before
-_AROUND = (2, 4)
-"""Numbers of cells around folded ones that are untangled first."""
-_SOME = 0.02
-"""Largest fraction of folded cells for which only cells around them are moved first."""
+_AROUND = (2, 4)  # numbers of cells around folded ones that are untangled first
+_SOME = 0.02  # largest fraction of folded cells for which only cells around them are moved first
 _FEW_ROUNDS = 5  # of unfolding, where layers at their heights folded what was valid
 _COARSE = 60  # iterations of the optimum of a coarser copy, at the most
 _ROUNDS, _GENTLE = 12, 5

@@ -9,8 +9,7 @@ from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.kernels._native import line_neighbours
 
-THIN = 3.0
-"""Aspect ratio above which a boundary cell belongs to layers, whose heights are kept."""
+THIN = 3.0  # aspect ratio above which a boundary cell belongs to layers, whose heights are kept
 
 _ROUNDS = 200  # of diffusion, at the most
 

@@ -42,8 +42,7 @@ def check_sides(least: int, nj: int = 2, **sides: Tensor) -> None:
         raise InputError(f"nj is {nj} nodes", "use at least 2")
 
 
-_CLOSE = 1e-5
-"""Corners of two sides nearer than this fraction of the extent coincide."""
+_CLOSE = 1e-5  # corners of two sides nearer than this fraction of the extent coincide
 
 
 def check_corners(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> None:

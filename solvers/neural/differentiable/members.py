@@ -20,8 +20,7 @@ class MemberError(SolverError):
     reasons : by index of a member, from 0: problem and remedy.
     """
 
-    members: tuple[int, ...]
-    """The indices."""
+    members: tuple[int, ...]  # the indices
 
     def __init__(self, reasons: Mapping[int, tuple[str, str]]) -> None:
         self.members, self.reasons = tuple(sorted(reasons)), dict(reasons)

@@ -3,8 +3,7 @@
 import torch
 from torch import Tensor
 
-Sides = tuple[Tensor, ...]
-"""South, north (batch, 2, ni), west and east (batch, 2, nj)."""
+Sides = tuple[Tensor, ...]  # south, north (batch, 2, ni), west and east (batch, 2, nj)
 
 
 def interpolated(sides: Sides, laws: tuple[Tensor, ...]) -> Tensor:

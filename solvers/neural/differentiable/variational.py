@@ -95,8 +95,7 @@ def newton(nodes: Tensor, smoothness: Tensor) -> Tensor:
 
 class _Step(NamedTuple):
     nodes: Tensor
-    moved: Tensor
-    """(batch,) largest displacement of a node in its shortest edges."""
+    moved: Tensor  # (batch,) largest displacement of a node in its shortest edges
 
 
 class _Quadratic:

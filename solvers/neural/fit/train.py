@@ -11,8 +11,7 @@ from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.models.architectures import MODELS
 
-OF_VOLUMES = "meshnet-volume"
-"""Name of ``meshnet`` when it is trained on volumes."""
+OF_VOLUMES = "meshnet-volume"  # name of ``meshnet`` when it is trained on volumes
 
 TRAINERS = {
     "strip": "meshonet.solvers.neural.fit.strip",

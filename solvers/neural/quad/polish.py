@@ -15,8 +15,7 @@ from meshonet.solvers.neural.quad.network import Network
 MOST_SOLVED = 129  # nodes along a direction at the most of the grid that Winslow's equations are solved on
 MOST_DESCENDED, LARGER_DESCENDED = 513, 257  # most nodes that descend in full; larger grids' nodes
 
-LAST = 2
-"""Largest number of steps at full resolution, which remove folds and kinks between coarse nodes."""
+LAST = 2  # largest number of steps at full resolution, which remove folds and kinks between coarse nodes
 
 STILL = 1e-4  # moves at which a descent stops sooner, as `meshonet.solvers.energy.variational.STILL`
 
