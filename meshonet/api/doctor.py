@@ -78,7 +78,6 @@ def _program() -> Iterator[Finding]:
 
 
 def _grid() -> Finding:
-    """Make a grid and return the result."""
     from meshonet.api.grid import infer
 
     begun = time.perf_counter()

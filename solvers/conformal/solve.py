@@ -116,7 +116,6 @@ def _lifted(boundary: Boundary) -> StripWalls | InputError:
 def _corrections(
     lifted: Sequence[StripWalls | InputError], correction: Correction
 ) -> Iterator[Complexes | float]:
-    """Return the correction of each body that has walls in the strip, all made together."""
     bodies = [body for body in lifted if isinstance(body, StripWalls)]
     if not bodies:
         return iter(())
@@ -128,7 +127,6 @@ def _corrections(
 
 
 def _evaluated(boundary: Boundary, body: StripWalls, c: Complexes) -> tuple[Floats, bool]:
-    """Return the nodes of a strip solution, and whether they are finite."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
     grid, shift = StripGrid(c, body.wall, body.far, np.linspace(0.0, 1.0, boundary.nj)), None
     if body.corners and boundary.nj >= 4:

@@ -65,7 +65,6 @@ def _ways(follow: Follow, targets: NodeTargets) -> Iterator[tuple[Grid, tuple[st
 
 
 def _in_steps(follow: Follow, targets: NodeTargets, steps: int) -> Grid:
-    """Return the grid after a deformation of `steps` equal steps."""
     table = now = follow.table
     for number in range(1, steps + 1):
         part = number / steps

@@ -109,7 +109,6 @@ class Follow:
         return there
 
     def _motions(self, field: Field, there: Floats) -> Floats:
-        """Return the motions (d + d², k) of the sources of a field."""
         old, at = self.table.nodes, field.sources
         if self.turning is not None:
             turns = turns_in_plane(self.turning.angles(old, there)[at])

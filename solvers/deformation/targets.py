@@ -227,7 +227,6 @@ def _check(name: str, old: Floats, before: Floats, after: Floats, known: Bools) 
 
 
 def _check_outline(nodes: Floats, name: str) -> None:
-    """Raise InputError where the new outline crosses itself."""
     closed = bool((nodes[0] == nodes[-1]).all())
     crossings = find_crossings(nodes[:-1] if closed else nodes, closed=closed, limit=1)
     if crossings:

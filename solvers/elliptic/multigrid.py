@@ -147,7 +147,6 @@ def relax(nodes: Floats, sweeps: int) -> None:
 
 
 def _thinned(four: Four, xi: Direction, eta: Direction) -> Four:
-    """Return the edges (south, north, west, east) on the next coarser level."""
     south, north, west, east = four
     i, j = xi.kept, eta.kept
     return south[i], north[i], west[j], east[j]

@@ -83,7 +83,6 @@ def largest_lean(nodes: Floats, boundary: Boundary) -> float:
 
 
 def _checked(boundary: Boundary, heights: Mapping[str, float] | None, angle: float) -> Mapping[str, float]:
-    """Return the heights by side, after checks of all settings."""
     if boundary.topology == "c":
         problem, remedy = "steger-sorenson has no C grids", "use topology o or method hyperbolic"
         raise InputError(problem, remedy, parameter="method")
@@ -187,7 +186,6 @@ def _settled(
 
 
 def _angle_note(nodes: Floats, edges: Sequence[ControlledEdge], part: float) -> str:
-    """Return a note on the remaining error of the angles."""
     off = [np.degrees(arcsin(np.clip(np.abs(edge.errors(nodes)[0]), 0.0, 1.0))) for edge in edges]
     sides, most = ", ".join(edge.side for edge in edges), max(map(np.max, off))
     note = f"lines leave {sides} at {edges[0].angle:g} degrees, off by {most:.1f} at most"

@@ -155,7 +155,6 @@ class Problem:
         return np.maximum(np.maximum(area, around), least)
 
     def _loop(self, number: int) -> tuple[object, ...]:
-        """Return a loop in the form of the compiled minimisation."""
         loop = self.mesh.domain.loops[number]
         cubic, table, start, stop, pieces = loop.curve.tables
         cubic = cubic / self.unit

@@ -89,7 +89,6 @@ def _repair_windows(
 
 
 def _smooth_windows(nodes: Floats, periodic: bool, cells: NDArray[np.int64], margin: int) -> None:
-    """Smooth windows around `cells` (n, 2) of valid planar `nodes` (ni, nj, 2), in place."""
     for window in windows(cells, 2 * margin, nodes.shape[:2], periodic, LARGEST_CELLS):
         patch = window.cut(nodes, periodic)
         _smooth(patch)
@@ -116,7 +115,6 @@ def untangle(patch: Floats, periodic: bool, budget: UnfoldingBudget) -> int:
 
 
 def _smooth(patch: Floats, periodic: bool = False) -> None:
-    """Improve the angles of a valid planar `patch` (m, n, 2), in place."""
     if min(patch.shape[:2]) > 2 and count_folded(patch) == 0:
         Descent(patch, SMOOTHING, periodic).run(SMOOTHING_STILL, SMOOTHING_ITERATIONS)
 

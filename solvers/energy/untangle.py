@@ -60,6 +60,5 @@ def widen(nodes: Floats, weights: Weights) -> None:
 
 
 def _cell_area(nodes: Floats) -> float:
-    """Return the mean area of the cells of planar `nodes`."""
     rim = [nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]]
     return abs(polygon_area(np.concatenate(rim))) / ((nodes.shape[0] - 1) * (nodes.shape[1] - 1))

@@ -78,7 +78,6 @@ def _in_order(arc: Floats, edges: Indices, length: Floats, fixed: Bools) -> tupl
 
 
 def _once_around(arc: Floats, edges: Indices, length: Floats, following: Indices) -> bool:
-    """Return whether the edges go around each loop at most once."""
     gap = arc[edges[:, 1]] - arc[edges[:, 0]]
     gap = np.where(gap <= 0, gap + length, gap)
     nowhere = np.zeros(len(arc), dtype=bool)

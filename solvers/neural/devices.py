@@ -78,7 +78,6 @@ def solve_on(
 
 
 def _grids(device: Device, operator: Operator, polish: Polish) -> Callable[[Sequence[Boundary]], Tensor]:
-    """Return the function from boundaries with equal node counts to nodes (batch, ni, nj, 2)."""
     import torch
 
     from meshonet.solvers.neural.differentiable import AirfoilGrids, BodyGrids, QuadGrids

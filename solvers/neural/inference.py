@@ -78,7 +78,6 @@ def _judged(network: Operator, boundary: Boundary, solution: Solution, *, fallba
 
 
 def _solved(boundary: Boundary, goal: Goal) -> Solution:
-    """Return the grid of the method that a network imitates."""
     if goal == "conformal":
         return conformal.solve([boundary], substitute=grid_of_body)[0]
     if goal == "variational":

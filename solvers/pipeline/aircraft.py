@@ -43,7 +43,6 @@ def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) ->
 
 
 def _refuse_thick_cells(aircraft: Aircraft, first: float) -> None:
-    """Raise InputError for first cells that are high beside a section of a wing."""
     shortest = min(float(wing.chords.min()) for wing in aircraft.wings)
     if first > _HIGHEST * shortest:
         problem = f"first cells are {first:g} high at a wing with a chord of {shortest:g}"
@@ -51,7 +50,6 @@ def _refuse_thick_cells(aircraft: Aircraft, first: float) -> None:
 
 
 def _refuse_far_tip(aircraft: Aircraft, far: float) -> None:
-    """Raise InputError for a wing whose tip is not far enough from a far field at this distance."""
     body = aircraft.body
     middle = 0.5 * float(body.meridian[0, 0] + body.meridian[-1, 0])
     for wing, (name, _) in zip(aircraft.wings, aircraft.patches, strict=True):

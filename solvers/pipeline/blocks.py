@@ -114,7 +114,6 @@ def _domain(shape: Shape, request: GridRequest) -> DomainShape:
 
 
 def _blade(shape: Shape, sampling: Sampling) -> DomainShape:
-    """Return the domain whose only hole is the blade of a cascade."""
     if sampling.far_field is not None:
         raise InputError("the passage of a cascade has no far field", "leave {far_field} out")
     around = assembled([shape], ["blade"], sampling, shape.name)
@@ -124,7 +123,6 @@ def _blade(shape: Shape, sampling: Sampling) -> DomainShape:
 
 
 def _for_one(request: GridRequest) -> dict[str, bool]:
-    """Return for each option of single-block grids whether it is given."""
     sampling = request.sampling
     return {
         "blocks": request.blocks == "single",

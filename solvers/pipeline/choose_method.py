@@ -81,7 +81,6 @@ def _at_any_resolution(request: OneBlock, base: Method) -> Method:
 
 
 def _first_cells(request: OneBlock) -> FirstCells:
-    """Return the first-cell heights, and the layers that start with them."""
     from meshonet.solvers.pipeline.first_cells import FirstCells
 
     free_rows = request.growth is not None and request.sampling.nj is None

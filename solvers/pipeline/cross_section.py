@@ -127,7 +127,6 @@ def _four_walls(inside: Shape, request: GridRequest) -> GridRequest:
 
 
 def _loop(curve: Curve) -> Loop:
-    """Return the loop of a smooth curve, with the domain inside."""
     if polygon_area(curve.points) < 0:
         curve = curve.reversed()
     turn = turning(curve.points, closed=True)[curve.corner_index]

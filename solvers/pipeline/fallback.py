@@ -58,7 +58,6 @@ def guard(
 def _ways(
     grid: Grid, boundary: Boundary, others: Sequence[Method], margin: int | None
 ) -> Iterator[tuple[tuple[str, ...], Floats]]:
-    """Yield the stages and the nodes of one attempt after another, until one is valid."""
     from meshonet.solvers.energy.repair import MARGIN, repair
 
     margin = margin or MARGIN

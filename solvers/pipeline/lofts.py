@@ -108,7 +108,6 @@ def duct_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, .
 
 
 def _four_sided(stack: Stack, request: StackRequest, first: float | None) -> list[Grid]:
-    """Return the blocks inside four-sided sections, whose sides are walls."""
     n = _side(request) + 1
     planes = []
     for section in stack.sections:
@@ -124,7 +123,6 @@ def _four_sided(stack: Stack, request: StackRequest, first: float | None) -> lis
 
 
 def _five_blocks(stack: Stack, request: StackRequest, first: float | None) -> list[Grid]:
-    """Return a core and a ring of four blocks inside each section."""
     side = _side(request)
     sections = []
     for section in stack.sections:

@@ -186,7 +186,6 @@ def _solve_together(group: Iterable[_Member], method: Method) -> None:
 
 
 def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
-    """Return the result of a member, which is solved if necessary, checked and measured."""
     boundary, solution, seconds = member.boundary, member.solution, member.seconds
     if isinstance(boundary, Exception):
         raise boundary
@@ -218,7 +217,6 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
 
 
 def _with_history(solve: Callable[[], Solution]) -> tuple[Solution, tuple[HistoryRow, ...]]:
-    """Return a solution and the cycles of its iteration."""
     from meshonet.solvers.progress import History, listening
 
     history = History()
@@ -228,7 +226,6 @@ def _with_history(solve: Callable[[], Solution]) -> tuple[Solution, tuple[Histor
 
 
 def _of_many(shape: BaseWake | DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:
-    """Return the multi-block grid around a base or of a domain, with its quality."""
     from meshonet.geometry.shapes.airfoil.base_wake import BaseWake
 
     if isinstance(shape, BaseWake):
@@ -237,7 +234,6 @@ def _of_many(shape: BaseWake | DomainShape, request: GridRequest, seconds: dict[
 
 
 def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:
-    """Return the multi-block grid of a domain, with its quality."""
     from meshonet.solvers.pipeline.blocks import block_request, smoothed, smooths
 
     reached("grid")
@@ -259,7 +255,6 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
 
 
 def _of_base(lines: BaseWake, request: GridRequest, seconds: dict[str, float]) -> Result:
-    """Return the C grid around a section with a blunt base, with its quality."""
     from meshonet.solvers.hyperbolic.around_base import around_base
 
     reached("grid")
@@ -280,7 +275,6 @@ def _of_base(lines: BaseWake, request: GridRequest, seconds: dict[str, float]) -
 
 
 def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, float]) -> Result:
-    """Return the volume grid of a three-dimensional shape, with its quality."""
     from meshonet.solvers.pipeline.volumes import make_volume
 
     reached("grid")
@@ -304,7 +298,6 @@ def _add_times(seconds: dict[str, float], solution: Solution, spent: float) -> N
 def _repaired(
     solution: Solution, boundary: Boundary, request: GridRequest
 ) -> tuple[Solution, tuple[str, ...]]:
-    """Return the solution of a folded grid after the guard, and notes about it."""
     from meshonet.solvers.layers.redistribute import worst_first_cell
     from meshonet.solvers.pipeline.fallback import guard
 

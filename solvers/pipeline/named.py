@@ -68,7 +68,6 @@ class UnknownSettingError(InputError):
 
 
 def _check_settings(name: str, function: Callable[..., Any], settings: Mapping[str, Any]) -> None:
-    """Raise InputError for a setting that is not a parameter of `function`, the method `name`."""
     known = inspect.signature(function).parameters
     for setting in settings:
         if setting not in known:

@@ -86,7 +86,6 @@ def _along_walls(boundary: Boundary, shape: Shape, sampling: Sampling, request: 
 
 
 def _check_refined(ni: int, nj: int, halvings: int) -> None:
-    """Raise InputError if ni x nj nodes whose cells are halved so often are too many."""
     if halvings:
         from meshonet.geometry.reach import MOST_REFINED, check_reach
 
@@ -135,7 +134,6 @@ def _behind_base(shape: Airfoil, sampling: Sampling, request: GridRequest) -> Ba
 
 
 def _far_field_advice(request: GridRequest, unit: str) -> tuple[str, ...]:
-    """Return advice on forces for grids with layers and the default far field."""
     if not request.at_walls or request.sampling.far_field is not None:
         return ()
     where = f"the far field is {DEFAULT_FAR_FIELD:g} {unit} away, the default"

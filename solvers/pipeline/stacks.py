@@ -119,7 +119,6 @@ def _counted(stack: Stack, request: StackRequest) -> tuple[StackRequest, tuple[s
 
 
 def _march(stack: Stack, request: StackRequest) -> VolumeMarch:
-    """Return the settings of the march from the surface of a wing."""
     from meshonet.solvers.hyperbolic.volume.settings import VolumeMarch
 
     chord = stack.chord
@@ -130,7 +129,6 @@ def _march(stack: Stack, request: StackRequest) -> VolumeMarch:
 
 
 def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
-    """Return the volume between the planar grids of the sections of a blade or duct."""
     with stage("grid", seconds):
         from meshonet.solvers.pipeline.lofts import GROWTH, blade_volume, duct_volume
 
@@ -168,7 +166,6 @@ def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
 
 
 def _remedy(stack: Stack) -> str:
-    """Return what to change where the volume around a wing has folded cells."""
     bends = abs(np.diff(stack.dihedrals, prepend=stack.dihedrals[0]))
     worst = int(bends.argmax())
     if bends[worst] > _BENT:

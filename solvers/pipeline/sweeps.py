@@ -62,7 +62,6 @@ def _tapered(notes: tuple[str, ...], grid: Grid, scale: float, *, layers: bool) 
 
 
 def _crossing_notes(path: Path, section: Grid) -> tuple[str, ...]:
-    """Return notes about a path that comes close to itself."""
     crossing = self_crossing(path, reach_of(section))
     if crossing is None:
         return ()

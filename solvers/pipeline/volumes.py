@@ -88,7 +88,6 @@ def _fill(shape: SpatialShape, request: Volume) -> Solution:
 
 
 def _counts(sampling: Sampling) -> tuple[int, int, int] | None:
-    """Return the requested node counts along each direction."""
     ni, nj, nk = sampling.ni, sampling.nj, sampling.nk
     if ni is None or nj is None:
         return None

@@ -59,7 +59,6 @@ class _Refined:
         self.layout = self._filled()
 
     def _edge(self, k: int) -> Indices:
-        """Place the nodes of an edge and return their numbers."""
         old, own = self.chords.edges[k], self.number
         inner = np.arange(self.first[k], self.first[k + 1])
         new = np.concatenate([own[old[:1]], inner, own[old[-1:]]])
@@ -111,7 +110,6 @@ class _Refined:
         self.nodes[moved] = self.nodes[self.places.partner[moved]] + known.shifts(moved)
 
     def _filled(self) -> Layout:
-        """Return the layout of all blocks between the edges."""
         lattices, parts, count = [], [self.nodes], len(self.nodes)
         for block, sides, turned in zip(
             self.chords.layout.blocks, self.chords.sides, self.chords.reversed, strict=True
@@ -133,7 +131,6 @@ class _Refined:
         return Layout(mesh, tuple(lattices))
 
     def _inside(self, block: Indices, four: list[Indices]) -> Floats:
-        """Return the nodes (k, 2) inside a block between its new edges."""
         if min(len(four[0]), len(four[2])) < 3:
             return np.empty((0, 2))
         coarse = np.ascontiguousarray(self.old.nodes[block].transpose(2, 0, 1))[None]

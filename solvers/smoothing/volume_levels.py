@@ -96,7 +96,6 @@ def _halved(cuts: list[int]) -> Indices:
 
 
 def _thinned(connection: Connection, kept: tuple[tuple[Indices, ...], ...]) -> Connection:
-    """Return a connection between the copies of its blocks."""
     ranges = []
     for block, side, spans in connection.ends:
         axes = [axis for axis in range(3) if axis != PLACES[side][0]]

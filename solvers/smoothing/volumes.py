@@ -105,7 +105,6 @@ def _unfolded(
 def _starts(
     mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides
 ) -> Iterator[tuple[HexMesh, Targets]]:  # fmt: skip
-    """Yield initial meshes for untangling all nodes, each with the target lengths."""
     begun = _begun(mesh, moves, targets, slides)
     if begun is not mesh:
         yield begun, targets
@@ -152,7 +151,6 @@ def _with_fewer(
 
 
 def _around(mesh: HexMesh, reach: int) -> Bools:
-    """Return a mask (n,) of the nodes within `reach` cells of folded cells."""
     near = _nodes_of(mesh, cells_below(mesh, 0.0))
     for _ in range(reach):
         near = _dilated(near, mesh)
@@ -169,7 +167,6 @@ def _nodes_of(mesh: HexMesh, cells: list[Bools]) -> Bools:
 
 
 def _dilated(nodes: Bools, mesh: HexMesh) -> Bools:
-    """Return a mask of the nodes that share a cell with one of `nodes`."""
     return _nodes_of(mesh, [any_corner(nodes[block]) for block in mesh.blocks])
 
 

@@ -52,7 +52,6 @@ class _Past:
         self._products = like.new_zeros(batch, SPACE, SPACE)
 
     def of(self, some: Tensor) -> "_Past":
-        """Return those of `some` of the members, a mask."""
         few = _Past.__new__(_Past)
         few._count = self._count
         for name in ("_x", "_change", "_moves", "_bends", "_products"):
@@ -79,7 +78,6 @@ class _Past:
         return x + change - torch.bmm(self._moves[:, :kept].mT, share)[:, :, 0]
 
     def _add(self, x: Tensor, change: Tensor) -> None:
-        """Put the difference to the step before in the place of the oldest one."""
         at, kept = (self._count - 1) % SPACE, min(self._count, SPACE)
         bend = change - self._change
         self._bends[:, at], self._moves[:, at] = bend, x - self._x + bend

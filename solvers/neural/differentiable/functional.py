@@ -71,7 +71,6 @@ class Functional:
         return stencil
 
     def _harmonic(self, aspect: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the factors of g / J and of h / J."""
         a = aspect[:, None, None, None]
         return 0.5 * (1.0 - self.shape) * a, 0.5 * (1.0 - self.shape) / a
 
@@ -195,7 +194,6 @@ def _changes(family: Tensor, axis: int) -> Iterator[tuple[Tensor, Tensor, int]]:
 
 
 def _outer(a: Tensor, b: Tensor, axis: int = 2) -> Tensor:
-    """Return the products of components, along `axis` and the next one."""
     return a.unsqueeze(axis + 1) * b.unsqueeze(axis)
 
 

@@ -57,7 +57,6 @@ def _together(start: Tensor) -> int:
 
 
 def _limit(start: Tensor) -> tuple[Tensor]:
-    """Return the limit of steps from levels `start` (batch, LEVELS, modes)."""
     levels, near, left = start.clone(), start, torch.arange(len(start), device=start.device)
     for count in (0, *PLAIN):
         near = _plain(near, start[left], count) if count else near
@@ -149,7 +148,6 @@ def _once(inner: Tensor, start: Tensor) -> Tensor:
 
 
 def _stepped(levels: Tensor) -> Tensor:
-    """Return levels (batch, LEVELS, modes) after a Picard step."""
     grid, fields = across(), _Fields(levels)
     residual = strip.from_columns(fields.missed * fields.scale, torch)
     update = _product(grid.vectors, _product(grid.inverse, residual) * fields.smooth)
@@ -173,7 +171,6 @@ class _Fields:
 
     @property
     def beta(self) -> Tensor:
-        """The scalar product of the first derivatives."""
         return _dot(self.Wt, self.We)
 
 
@@ -190,7 +187,6 @@ def _dot(a: Tensor, b: Tensor) -> Tensor:
 
 
 def _product(matrix: Any, levels: Tensor) -> Tensor:
-    """Return a real matrix times complex levels (batch, m, modes)."""
     pairs = torch.view_as_real(levels.contiguous()).flatten(2)
     return torch.view_as_complex((_like(matrix, levels) @ pairs).unflatten(2, (-1, 2)))
 

@@ -228,7 +228,6 @@ def storage(ni: int, nj: int) -> int:
 
 
 def _turned(stencil: Stencil) -> Stencil:
-    """Return the stencil with xi and eta exchanged."""
     turned = {}
     for (di, dj), blocks in stencil.items():
         if dj < 0:  # held by the other node, from which it is an offset with positive dj

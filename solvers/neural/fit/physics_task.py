@@ -65,7 +65,6 @@ class PhysicsTask(ModelTask):
         return _layers(net, [h])[0]
 
     def _residual(self, net: dict[str, Tensor], points: Tensor) -> Tensor:
-        """Return the residual of Winslow's equations (batch, p, 2)."""
         h = self.model.finite
         if h > 0:
             X: Sequence[Tensor] = self._differences(net, points, h)
@@ -74,7 +73,6 @@ class PhysicsTask(ModelTask):
         return left_side(X, lambda a, b: (a * b).sum(-1, keepdim=True))[0]
 
     def _differences(self, net: dict[str, Tensor], points: Tensor, h: float) -> Sequence[Tensor]:
-        """Return the five derivatives by central differences of step h."""
         steps = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)]
         at = torch.cat(
             [points + h * torch.tensor(s, dtype=points.dtype, device=points.device) for s in steps]

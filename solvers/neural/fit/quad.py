@@ -107,7 +107,6 @@ class QuadTask(Task):
         return base[:, None] + answer
 
     def _average(self, step: int) -> None:
-        """Update the exponential moving average of the weights."""
         keep = min(AVERAGED, step / (step + 20.0))
         with torch.no_grad():
             for own, mean in zip(self.net.parameters(), self.mean.parameters(), strict=True):
@@ -211,7 +210,6 @@ def _weights(changed: Mapping[str, float]) -> dict[str, float]:
 
 
 def _in_plane(z: Tensor) -> Complexes:
-    """Return O grids around bodies from unrolled grids (..., m + 1, n)."""
     strips = z.numpy().astype(np.complex128)
     turn = (strips[..., -1:, :1] - strips[..., :1, :1]).real
     return np.asarray(rolled(strips * (TURN / turn)))

@@ -70,7 +70,6 @@ def settings_of(model: Architecture) -> dict[str, Any]:
 
 
 def _fitting(name: str, defaults: Mapping[str, Any], key: str, value: Any) -> Any:
-    """Return a setting's value. Raises InputError unless it has the type of the default."""
     if key not in defaults:
         raise InputError(f"{name} has no setting {key!r}", "use one of " + ", ".join(defaults))
     default = defaults[key]

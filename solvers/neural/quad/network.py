@@ -215,7 +215,6 @@ class _ProgramRecorder(UNet[Reals]):
         return out
 
     def _room(self, name: str, shape: tuple[int, ...], dtype: Any) -> Reals:
-        """Return an array that later layers reuse."""
         if (name, shape) not in self._rooms:
             self._rooms[name, shape] = _aligned(shape, dtype)
         return self._rooms[name, shape]
@@ -235,7 +234,6 @@ def _packed(kernel: Floats, bias: Floats | None, dtype: np.dtype[Any]) -> tuple[
 
 
 def _aligned(shape: tuple[int, ...], dtype: np.dtype[Any]) -> Reals:
-    """Return zeros that begin at a multiple of LINE bytes."""
     count = int(np.prod(shape)) * dtype.itemsize
     raw = np.zeros(count + LINE, np.uint8)
     begin = -raw.ctypes.data % LINE

@@ -84,7 +84,6 @@ class QuadOperator(Operator):
     def _solved(
         self, boundaries: Sequence[Boundary], network: Network, steps: int, threads: int
     ) -> list[Solution]:
-        """Return the solutions of boundaries with equal counts, made together."""
         begun = time.perf_counter()
         # descents amplify rounding: taken in canonical frames they are the same wherever a domain lies
         framed = steps and (self.topology == "o" or self.head != WINSLOW)

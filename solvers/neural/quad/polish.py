@@ -49,7 +49,6 @@ def polished(
 
 
 def _evaluated(grids: Floats, boundaries: Sequence[Boundary], counts: tuple[int, int]) -> Floats:
-    """Return `grids` (batch, 2, m, n) interpolated to `counts` nodes inside `boundaries`."""
     if counts != (boundaries[0].ni, boundaries[0].nj):
         boundaries = [thinned(boundary, *counts) for boundary in boundaries]
     nodes = [refine_grid(np.moveaxis(grid, 0, -1), b) for grid, b in zip(grids, boundaries, strict=True)]
