@@ -13,9 +13,8 @@ from meshonet.api.quality import single_grid
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.deformation.targets import NewWall
-from meshonet.solvers.pipeline.deformations import make_deformed
+from meshonet.solvers.pipeline.deformations import DeformRequest, make_deformed
 
 AnyWall: TypeAlias = NewWall | str | Path
 """A file with an outline or a grid, its content, a designation such as ``naca:2412``, nodes, or a motion."""

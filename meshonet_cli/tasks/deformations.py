@@ -9,9 +9,8 @@ from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.criteria import Criteria
-from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.deformation.targets import NewWall
-from meshonet.solvers.pipeline.deformations import make_deformed
+from meshonet.solvers.pipeline.deformations import DeformRequest, make_deformed
 from meshonet_cli.batch.run import Batch, BatchTask, each
 from meshonet_cli.options.groups import bad_value
 from meshonet_cli.tasks.grids import made_by

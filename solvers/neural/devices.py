@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.conformal.solve import Polish
@@ -61,12 +60,12 @@ def solve_on(
         some = [boundaries[k] for k in rows]
         begun = time.perf_counter()
         try:
-            nodes = _nodes(grids, some, lifted=isinstance(operator, StripOperator))
+            nodes = grids(some).cpu().numpy()
         except torch.OutOfMemoryError as error:
             raise MemoryError(str(error).split("\n")[0]) from error
         spent = (time.perf_counter() - begun) / len(rows)
         for k, boundary, own in zip(rows, some, nodes, strict=True):
-            if own is None or not np.isfinite(own).all():
+            if not np.isfinite(own).all():
                 solution = instead(boundary)
                 solutions[k] = replace(solution, notes=("not made on the device", *solution.notes))
                 continue
@@ -104,11 +103,3 @@ def _grids(device: Device, operator: Operator, polish: Polish) -> Callable[[Sequ
 
 def _steps(polish: Polish) -> int:
     return STEPS if polish == "auto" else 0 if polish == "off" else polish
-
-
-def _nodes(
-    grids: Callable[[Sequence[Boundary]], Tensor], boundaries: Sequence[Boundary], *, lifted: bool
-) -> list[Floats | None]:
-    """Return the nodes of each boundary; if they are `lifted`, None for one without a conformal lift."""
-    nodes = grids(boundaries).cpu().numpy()
-    return [None if lifted and np.isnan(each).any() else each for each in nodes]

@@ -9,8 +9,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.pipeline.methods import OneByOne
-from meshonet.solvers.pipeline.named import method_named, solved
-from meshonet.solvers.pipeline.wrapper import Wrapper
+from meshonet.solvers.pipeline.named import Wrapper, method_named, solved
 from meshonet.solvers.solution import Solution
 
 if TYPE_CHECKING:

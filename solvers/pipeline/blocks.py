@@ -54,7 +54,7 @@ def smoothed(grid: Grid, request: GridRequest) -> Solution:
 
     Raises InputError: see `smooth`; with refinement, also a connection that covers only a part of a side.
     """
-    from meshonet.solvers.smoothing.refine import refined
+    from meshonet.solvers.refinement.refine import refined
     from meshonet.solvers.smoothing.smooth import ITERATIONS, smooth
 
     begun = perf_counter()

@@ -66,7 +66,7 @@ def _at_any_resolution(request: OneBlock, base: Method) -> Method:
     open_method = request.by_network or request.method == "best"
     if request.refine:
         from meshonet.solvers.pipeline.automatic import Anew
-        from meshonet.solvers.pipeline.sequence import Sequenced
+        from meshonet.solvers.pipeline.coarse import Sequenced
 
         return Sequenced(Anew(base) if open_method else base, request.refine)
     if isinstance(request.coarse, int):

@@ -15,9 +15,8 @@ from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.layers.first_cells import Heights
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.pipeline.first_cells import FirstCells
-from meshonet.solvers.pipeline.named import Each, method_named, solved
+from meshonet.solvers.pipeline.named import Each, Wrapper, method_named, solved
 from meshonet.solvers.pipeline.uses import CHANNEL, MARCHED, refuse
-from meshonet.solvers.pipeline.wrapper import Wrapper
 from meshonet.solvers.solution import Solution
 
 if TYPE_CHECKING:

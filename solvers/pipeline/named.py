@@ -59,6 +59,22 @@ class Each(OneByOne):
         return replace(self, settings={**self.settings, **settings})
 
 
+@dataclass(frozen=True)
+class Wrapper(OneByOne):
+    """Base class of methods that solve by another method and have the name of this method."""
+
+    method: Method
+
+    @property
+    def name(self) -> str:
+        """Name of the other method."""
+        return self.method.name
+
+    def inner(self, boundary: Boundary, initial: Grid | None = None) -> Solution:
+        """Return the other method's solution of one boundary."""
+        return solved(self.method, boundary, initial)
+
+
 class UnknownSettingError(InputError):
     """A setting that a method does not have."""
 

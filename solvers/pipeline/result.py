@@ -20,7 +20,7 @@ from meshonet.solvers.stages import stage
 
 if TYPE_CHECKING:
     from meshonet.geometry.quality.lines import Lines
-    from meshonet.solvers.deformation.request import DeformRequest
+    from meshonet.solvers.pipeline.deformations import DeformRequest
     from meshonet.solvers.pipeline.request import GridRequest
     from meshonet.solvers.progress import HistoryRow
     from meshonet.solvers.rows.request import RowRequest

@@ -7,14 +7,13 @@ from solver_shapes import arch, hole
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, NoValidGridError, SolverError
 from meshonet.solvers.algebraic.tfi import solve as interpolate
-from meshonet.solvers.pipeline.coarse import Coarse
+from meshonet.solvers.pipeline.coarse import Coarse, Sequenced
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.pipeline.make_grid import make_grid, make_grids
 from meshonet.solvers.pipeline.methods import METHODS
 from meshonet.solvers.pipeline.named import Each, method_named
 from meshonet.solvers.pipeline.parameters import grid_request
 from meshonet.solvers.pipeline.request import GridRequest
-from meshonet.solvers.pipeline.sequence import Sequenced
 from meshonet.solvers.solution import Outcome, Solution
 
 METHOD_OF = "meshonet.solvers.pipeline.make_grid.method_of"

@@ -9,7 +9,7 @@ from meshonet.geometry.blocks.transform import coarser_grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.energy.variational import solve as minimise
-from meshonet.solvers.pipeline.sequence import solve_refined
+from meshonet.solvers.pipeline.coarse import solve_refined
 from meshonet.solvers.solution import Solution
 
 

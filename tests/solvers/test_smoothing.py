@@ -15,7 +15,7 @@ from meshonet.geometry.layout.from_grid import layout_of
 from meshonet.geometry.quality.blocks import block_figures
 from meshonet.geometry.quality.checkmesh import faces
 from meshonet.geometry.quality.measure import measure
-from meshonet.solvers.smoothing.refine import refined
+from meshonet.solvers.refinement.refine import refined
 from meshonet.solvers.smoothing.smooth import smooth
 from meshonet.solvers.smoothing.wanted_lengths import thin_heights, wanted_lengths
 from meshonet.solvers.solution import Outcome

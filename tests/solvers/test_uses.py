@@ -13,7 +13,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.blocking.request import BlockRequest
-from meshonet.solvers.deformation.request import DeformRequest
+from meshonet.solvers.pipeline.deformations import DeformRequest
 from meshonet.solvers.pipeline.methods import METHODS
 from meshonet.solvers.pipeline.named import method_named
 from meshonet.solvers.pipeline.request import GridRequest, ManyBlocks, OneBlock, Volume

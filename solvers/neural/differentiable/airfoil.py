@@ -12,11 +12,10 @@ from meshonet.solvers.conformal import strip
 from meshonet.solvers.conformal.bisector import LARGEST, fading, shifts
 from meshonet.solvers.conformal.evaluate import StripGrid
 from meshonet.solvers.conformal.strip import MODES, across, wavenumbers
-from meshonet.solvers.neural.differentiable.arguments import batched, check_sides
+from meshonet.solvers.neural.differentiable.arguments import as_numpy, batched, check_sides
 from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls
 from meshonet.solvers.neural.differentiable.members import Failed, MemberError, check_failed
 from meshonet.solvers.neural.differentiable.recorded import recorded
-from meshonet.solvers.neural.differentiable.sides import as_numpy
 from meshonet.solvers.neural.differentiable.strip_limit import Settled, picard
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.registry import load

@@ -1,6 +1,7 @@
 """Arguments of the functions from sides to nodes: checks, batches, types."""
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import torch
 from torch import Tensor
@@ -97,3 +98,18 @@ def unit_of(values: Tensor) -> Tensor:
     flat = values.detach().flatten(1)
     power = torch.frexp(flat.amax(1) - flat.amin(1)).exponent
     return torch.ldexp(torch.ones_like(flat[:, 0]), power).view(-1, *[1] * (values.ndim - 1))
+
+
+def as_complex(planes: Tensor) -> Tensor:
+    """Return planes (batch, 2, ...) of x and y as x + iy."""
+    return torch.complex(planes[:, 0], planes[:, 1])
+
+
+def as_planes(z: Tensor) -> Tensor:
+    """Return complex numbers (batch, ...) as planes (batch, 2, ...) of x and y."""
+    return torch.stack([z.real, z.imag], 1)
+
+
+def as_numpy(values: Tensor) -> Any:
+    """Return `values` as a NumPy array, without gradients."""
+    return values.detach().cpu().numpy()

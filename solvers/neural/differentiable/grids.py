@@ -93,21 +93,21 @@ def variational(
 def _solved(equations: Equations, coarse: int | None, failed: Failed, *four: Tensor) -> Tensor:
     check_failed(failed)
 
+    if coarse is not None:
+        check_coarse(coarse)
+
     def make(sides: Sides) -> Tensor:
-        start = interpolated(sides, arc_lengths(sides))
+        counts = [min(coarse or n, n) for n in (side.shape[-1] for side in sides)]
+        few = tuple(between(side, n) for side, n in zip(sides, counts, strict=True))
+        start = interpolated(few, arc_lengths(few))
         nodes: Tensor = Converged.apply(equations, start)[0]  # type: ignore[no-untyped-call]
-        return nodes
+        return (
+            nodes
+            if coarse is None or coarse >= max(side.shape[-1] for side in sides)
+            else refined(nodes, sides)
+        )
 
-    if coarse is None:
-        return _four_sided(make, *four, decides=failed == "nan", failed=failed)
-    check_coarse(coarse)
-
-    def lifted(sides: Sides) -> Tensor:
-        few = tuple(between(side, min(coarse, side.shape[-1])) for side in sides)
-        nodes = make(few)
-        return refined(nodes, sides) if coarse < max(side.shape[-1] for side in sides) else nodes
-
-    return _four_sided(lifted, *four, decides=True, failed=failed)
+    return _four_sided(make, *four, decides=coarse is not None or failed == "nan", failed=failed)
 
 
 def _four_sided(

@@ -11,7 +11,7 @@ from torch import Tensor
 
 from meshonet.geometry.conformal.lift import SECOND_PRONG, Corner, Lift, follow, lift_body, removable
 from meshonet.geometry.polygon.mirror import farthest, handedness
-from meshonet.solvers.neural.differentiable.sides import as_numpy
+from meshonet.solvers.neural.differentiable.arguments import as_numpy
 from meshonet.solvers.neural.quad.unrolled import middles
 
 
