@@ -9,7 +9,7 @@ import torch
 from torch import Tensor
 
 from meshonet.solvers.neural.differentiable.arguments import unit_of
-from meshonet.solvers.neural.differentiable.members import as_one_batch, in_parts
+from meshonet.solvers.neural.differentiable.members import BatchFunction, FirstDerivative, in_parts
 
 
 class Equations(Protocol):
@@ -34,7 +34,7 @@ class Equations(Protocol):
         ...
 
 
-class Converged(torch.autograd.Function):
+class Converged(BatchFunction):
     """The solution of equations as a function of nodes (batch, 2, ni, nj); inner nodes have no effect."""
 
     @staticmethod
@@ -56,13 +56,8 @@ class Converged(torch.autograd.Function):
         """Return the derivative with respect to the boundary nodes, zero at inner nodes."""
         return None, Adjoint.apply(ctx.equations, *ctx.saved_tensors, gradient)  # type: ignore[no-untyped-call]
 
-    @staticmethod
-    def vmap(info: Any, in_dims: Any, *inputs: Any) -> Any:
-        """Solve all members of both batches as one batch."""
-        return as_one_batch(Converged.apply, info.batch_size, in_dims, *inputs)
 
-
-class Adjoint(torch.autograd.Function):
+class Adjoint(FirstDerivative):
     """The derivative by boundary nodes of a function whose derivative by all nodes of the grid is given."""
 
     @staticmethod
@@ -77,20 +72,6 @@ class Adjoint(torch.autograd.Function):
         )
         inner(result).zero_()
         return result
-
-    @staticmethod
-    def setup_context(ctx: Any, inputs: tuple[Any, ...], output: Tensor) -> None:
-        """Keep nothing: second derivatives are not available."""
-
-    @staticmethod
-    def backward(ctx: Any, *gradients: Tensor) -> None:
-        """Raise NotImplementedError: there are no second derivatives."""
-        raise NotImplementedError("these grids have no second derivatives")
-
-    @staticmethod
-    def vmap(info: Any, in_dims: Any, *inputs: Any) -> Any:
-        """Solve all members of both batches as one batch."""
-        return as_one_batch(Adjoint.apply, info.batch_size, in_dims, *inputs)
 
 
 def inner(nodes: Tensor) -> Tensor:

@@ -84,19 +84,32 @@ def in_parts(function: Callable[..., tuple[Tensor, ...]], most: int, *tensors: T
     return tuple(torch.cat(values) for values in zip(*parts, strict=True))
 
 
-def as_one_batch(function: Callable[..., Any], count: int, in_dims: Any, *inputs: Any) -> tuple[Any, Any]:
-    """Return the values of `function` for `count` batches, computed as one batch, and the batch dimension.
+class BatchFunction(torch.autograd.Function):
+    """A function of a batch; `vmap` computes batches of batches as one batch."""
 
-    `inputs` that are no tensors are the same for all batches.
-    """
-    flat = []
-    for value, dim in zip(inputs, in_dims, strict=True):
-        if isinstance(value, Tensor):
-            moved = value.expand(count, *value.shape) if dim is None else value.movedim(dim, 0)
-            flat.append(moved.flatten(0, 1))
-        else:
+    @classmethod
+    def vmap(cls, info: Any, in_dims: Any, *inputs: Any) -> Any:
+        """Return values and their batch dimensions; `inputs` that are no tensors belong to all batches."""
+        flat, count = [], info.batch_size
+        for value, dim in zip(inputs, in_dims, strict=True):
+            if isinstance(value, Tensor):
+                moved = value.expand(count, *value.shape) if dim is None else value.movedim(dim, 0)
+                value = moved.flatten(0, 1)
             flat.append(value)
-    values = function(*flat)
-    if isinstance(values, Tensor):
-        return values.unflatten(0, (count, -1)), 0
-    return tuple(value.unflatten(0, (count, -1)) for value in values), (0,) * len(values)
+        values = cls.apply(*flat)  # type: ignore[no-untyped-call]
+        if isinstance(values, Tensor):
+            return values.unflatten(0, (count, -1)), 0
+        return tuple(value.unflatten(0, (count, -1)) for value in values), (0,) * len(values)
+
+
+class FirstDerivative(BatchFunction):
+    """A derivative that has no derivatives itself."""
+
+    @staticmethod
+    def setup_context(ctx: Any, inputs: tuple[Any, ...], output: Any) -> None:
+        """Keep nothing."""
+
+    @staticmethod
+    def backward(ctx: Any, *gradients: Tensor) -> None:
+        """Raise NotImplementedError."""
+        raise NotImplementedError("these grids have no second derivatives")

@@ -9,7 +9,12 @@ import torch
 from torch import Tensor
 
 from meshonet.solvers.neural.differentiable.arguments import unit_of
-from meshonet.solvers.neural.differentiable.members import as_one_batch, check_finite, without_failed
+from meshonet.solvers.neural.differentiable.members import (
+    BatchFunction,
+    FirstDerivative,
+    check_finite,
+    without_failed,
+)
 
 
 def recorded(
@@ -40,7 +45,7 @@ class _Record:
     nodes: Tensor | None = None
 
 
-class _Function(torch.autograd.Function):
+class _Function(BatchFunction):
     @staticmethod
     def forward(record: _Record, *sides: Tensor) -> Tensor:
         if not record.wanted:
@@ -58,12 +63,8 @@ class _Function(torch.autograd.Function):
     def backward(ctx: Any, gradient: Tensor) -> tuple[Tensor | None, ...]:
         return None, *_Pulled.apply(ctx.record, gradient)  # type: ignore[no-untyped-call]
 
-    @staticmethod
-    def vmap(info: Any, in_dims: Any, *inputs: Any) -> Any:
-        return as_one_batch(_Function.apply, info.batch_size, in_dims, *inputs)
 
-
-class _Pulled(torch.autograd.Function):
+class _Pulled(FirstDerivative):
     """The derivative with respect to the sides, from that with respect to the nodes."""
 
     @staticmethod
@@ -71,15 +72,3 @@ class _Pulled(torch.autograd.Function):
         if record.nodes is None or not record.nodes.requires_grad:  # no member has a grid
             return tuple(map(torch.zeros_like, record.sides))
         return torch.autograd.grad(record.nodes, record.sides, gradient, retain_graph=True)
-
-    @staticmethod
-    def setup_context(ctx: Any, inputs: tuple[Any, ...], output: tuple[Tensor, ...]) -> None:
-        """Keep nothing: second derivatives are not available."""
-
-    @staticmethod
-    def backward(ctx: Any, *gradients: Tensor) -> None:
-        raise NotImplementedError("these grids have no second derivatives")
-
-    @staticmethod
-    def vmap(info: Any, in_dims: Any, *inputs: Any) -> Any:
-        return as_one_batch(_Pulled.apply, info.batch_size, in_dims, *inputs)
