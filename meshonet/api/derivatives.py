@@ -69,10 +69,9 @@ def optimum_derivative(
     -------
     OptimumDerivative
         ``grid`` is the grid, solved to rounding. ``along(moves)`` returns the displacements (ni, nj, 2) of
-        all
-        nodes for displacements (ni, nj, 2) of the boundary nodes. ``transposed(pull)`` returns the derivative
-        of a functional by the boundary nodes, from its derivative (ni, nj, 2) by all nodes. Each call solves
-        one linear system, whose factors are stored.
+        all nodes for displacements (ni, nj, 2) of the boundary nodes. ``transposed(pull)`` returns the
+        derivative of a functional by the boundary nodes, from its derivative (ni, nj, 2) by all nodes. Each
+        call solves one linear system, whose factors are stored.
 
     Raises
     ------

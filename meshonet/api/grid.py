@@ -50,9 +50,8 @@ def grid(
     shape : str, Path, array, Grid, Boundary or Domain, or a list of these
         A plane shape: a file, a designation such as ``naca:0012``, points (n, 2) of a closed outline, a
         boundary, a `meshonet.Domain`, or a grid, of which only the boundary is used; with `assemble` a list
-        of
-        these. A shape in space: nodes (ni, nj, nk, 3) of a volume, of which only the six faces are used, or a
-        list of surface patches (ni, nj, 3).
+        of these. A shape in space: nodes (ni, nj, nk, 3) of a volume, of which only the six faces are used,
+        or a list of surface patches (ni, nj, 3).
     assemble : bool, optional
         Combine all shapes in the list into one domain.
     res : int or tuple of int, optional

@@ -21,20 +21,15 @@ CORNER = np.radians(85.0)  # turn at a node, trailing edge aside, that makes a b
 
 
 class StripWalls(NamedTuple):
-    """The two walls of a body in the strip.
+    """The two walls of a body in the strip; n = ni - 1."""
 
-    `lift` maps the strip to the plane. `wall` and `far` (n,) are F = w - i theta, periodic in theta, at the n
-    = ni - 1 nodes of each wall; `z` are the nodes of the wall in the plane, `corners` its trailing corners.
-    `axis` is the mirror axis of a symmetric boundary; `hand` tells others from their mirror images.
-    """
-
-    lift: Lift
-    wall: Complexes
-    far: Complexes
-    z: Complexes
-    corners: tuple[int, ...]
-    axis: Axis | None
-    hand: int
+    lift: Lift  # maps the strip to the plane
+    wall: Complexes  # (n,) F = w - i theta, periodic in theta, at the nodes of the wall
+    far: Complexes  # (n,) the same at the nodes of the far field
+    z: Complexes  # (n,) nodes of the wall in the plane
+    corners: tuple[int, ...]  # trailing corners
+    axis: Axis | None  # mirror axis of a symmetric boundary
+    hand: int  # tells others from their mirror images
     rough: bool = False  # whether uneven spacing slightly exceeds the resolution of the strip (`is_rough`)
 
 

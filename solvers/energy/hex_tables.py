@@ -25,28 +25,16 @@ without an edge are arbitrary.
 
 @dataclass(frozen=True, eq=False)
 class HexTables:
-    """Concatenated tables of all blocks.
+    """Concatenated tables of all blocks."""
 
-    Parameters
-    ----------
-    blocks : (b, 6) node counts along each direction, and the starts of positions, cells and rows.
-    node : (p,) index of the node at each position, -1 for none.
-    target : (3, p) logarithms of the target lengths of the three edges that start at each position.
-    inverse : (3, c) inverse target lengths of cells.
-    skip : (c,) for each cell, bits that say which of its corners are ignored.
-    busy : for each row of cells, whether it has a corner that is not ignored.
-    free : (k,) free nodes.
-    start, place : positions whose forces act on free node k: place[start[k]] to place[start[k + 1] - 1].
-    """
-
-    blocks: NDArray[np.int64]
-    node: NDArray[np.int32]
-    target: NDArray[np.float32]
-    inverse: Floats
-    skip: NDArray[np.uint8]
-    busy: Bools
-    free: Indices
-    start: Indices
+    blocks: NDArray[np.int64]  # (b, 6) node counts, and starts of positions, cells and rows
+    node: NDArray[np.int32]  # (p,) index of the node at each position, -1 for none
+    target: NDArray[np.float32]  # (3, p) log target lengths of the three edges that start at each position
+    inverse: Floats  # (3, c) inverse target lengths of cells
+    skip: NDArray[np.uint8]  # (c,) for each cell, bits that say which of its corners are ignored
+    busy: Bools  # for each row of cells, whether it has a corner that is not ignored
+    free: Indices  # (k,) free nodes
+    start: Indices  # (k + 1,) first of the positions in `place` whose forces act on each free node
     place: NDArray[np.int32]
 
 

@@ -28,18 +28,11 @@ ITERATIONS = 16  # of the minimisation of the variational functional
 
 @dataclass(frozen=True)
 class Confidence:
-    """Confidence in the grid of a neural operator.
+    """Confidence in the grid of a neural operator."""
 
-    Parameters
-    ----------
-    expected_error : expected relative L2 distance from the imitated solution; infinite if it is unknown.
-    threshold : largest expected error of accepted grids.
-    accepted : whether the expected error is small enough and no cell is folded.
-    """
-
-    expected_error: float
-    threshold: float
-    accepted: bool
+    expected_error: float  # expected relative L2 distance from the imitated solution; infinite if unknown
+    threshold: float  # largest expected error of accepted grids
+    accepted: bool  # whether the expected error is small enough and no cell is folded
 
 
 def expected_error(grid: Grid, boundary: Boundary, goal: Goal) -> float:

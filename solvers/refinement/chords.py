@@ -22,24 +22,17 @@ TURNING_DEG = 25.0  # largest angle in degrees by which a wall turns along a cel
 
 @dataclass(frozen=True, eq=False)
 class Chords:
-    """The distinct edges of a layout's blocks, and chords: opposite edges, which have equally many cells.
-
-    `sides` (b, 4) are the indices of the edges at south, north, west and east of each block; `reversed` (b,
-    4) says whether the edge runs against the direction of the block; `wall` (e,) whether an edge is on a
-    wall. `partner` (e,) is the corresponding edge of the other periodic side, or -1; `chord` (e,) is the
-    index of the edge's chord. `images` has, for each mirror, the index (n,) of each node's mirror image; an
-    edge and its mirror image belong to the same chord.
-    """
+    """The distinct edges of a layout's blocks, and chords: opposite edges, which have equally many cells."""
 
     layout: Layout
     edges: tuple[Indices, ...]
-    sides: Indices
-    reversed: Bools
-    wall: Bools
-    partner: Indices
-    chord: Indices
+    sides: Indices  # (b, 4) edges at south, north, west and east of each block
+    reversed: Bools  # (b, 4) whether the edge runs against the direction of the block
+    wall: Bools  # (e,) whether an edge is on a wall
+    partner: Indices  # (e,) the corresponding edge of the other periodic side, or -1
+    chord: Indices  # (e,) chord of each edge and of its mirror image
     count: int
-    images: Sequence[Indices]
+    images: Sequence[Indices]  # for each mirror, (n,) each node's mirror image
 
     @classmethod
     def of(cls, layout: Layout, images: Sequence[Indices] = ()) -> Chords:

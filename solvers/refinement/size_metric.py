@@ -20,18 +20,11 @@ SWEEPS = 20  # number of sweeps that smooth the target lengths
 
 @dataclass(frozen=True, eq=False)
 class Near:
-    """For edges: the nearest point of each part of a metric, and how the edge lies relative to it.
+    """Nearest points of each part of a metric to edges."""
 
-    Parameters
-    ----------
-    point : (p, m) nearest point to each of m edges, for each of p parts.
-    distance : (p, m) distance to this point.
-    square : (p, m) squared cosine of the angle between the edge and the normal at this point.
-    """
-
-    point: Indices
-    distance: Floats
-    square: Floats
+    point: Indices  # (p, m) nearest point to each of m edges, for each of p parts
+    distance: Floats  # (p, m) distance to this point
+    square: Floats  # (p, m) squared cosine of the angle between the edge and the normal at this point
 
     def length(self, sizes: SizeMetric) -> Floats:
         """Return the target lengths (m,) of the edges for `sizes`: the smallest over all parts."""
@@ -44,27 +37,15 @@ class Near:
 
 @dataclass(frozen=True, eq=False)
 class SizeMetric:
-    """Target lengths of edges across and along walls, the axes of an ellipse of lengths in other directions.
+    """Target lengths of edges across and along walls, the axes of an ellipse for other directions."""
 
-    Parameters
-    ----------
-    points : (n, 2) points on walls and fronts.
-    normals : (n, 2) unit normals at the points.
-    across, along : (n,) target lengths of edges along the normal, and along the wall.
-    largest : length of edges far from all points.
-    grading : increase of the target length per distance from a point.
-    starts : indices of the points at which parts start, which are walls with sizes of their own; an edge gets
-        the
-        smallest of the lengths of all parts.
-    """
-
-    points: Floats
-    normals: Floats
-    across: Floats
-    along: Floats
-    largest: float
-    grading: float = GRADING
-    starts: tuple[int, ...] = (0,)
+    points: Floats  # (n, 2) points on walls and fronts
+    normals: Floats  # (n, 2) unit normals at the points
+    across: Floats  # (n,) target lengths of edges along the normal
+    along: Floats  # (n,) target lengths of edges along the wall
+    largest: float  # length of edges far from all points
+    grading: float = GRADING  # increase of the target length per distance from a point
+    starts: tuple[int, ...] = (0,)  # first points of parts; edges have the least length of all parts
 
     @classmethod
     def joined(cls, metrics: Sequence[SizeMetric]) -> SizeMetric:

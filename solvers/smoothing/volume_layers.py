@@ -21,15 +21,11 @@ _ROOM = 0.9  # largest fraction of a line, up to its last interior node, that la
 
 @dataclass(frozen=True, eq=False)
 class VolumeLayers:
-    """Lines from outer sides into the volume, as node indices; the first node is on the side.
+    """Lines from outer sides into the volume."""
 
-    For each of m lines (m, n), `rows` (m,) is the number of thin cells and `heights` (m, n-1) are the target
-    lengths of the edges.
-    """
-
-    lines: Indices
-    rows: Indices
-    heights: Floats
+    lines: Indices  # (m, n) node indices; the first node is on the side
+    rows: Indices  # (m,) number of thin cells of each line
+    heights: Floats  # (m, n - 1) target lengths of the edges
 
     def only_first(self) -> Self:
         """Return layers with one row."""

@@ -23,18 +23,11 @@ FEWER = 0.6  # largest fraction of nodes in a useful copy
 
 @dataclass(frozen=True, eq=False)
 class CoarserCopy:
-    """A copy of a mesh with fewer nodes.
-
-    Parameters
-    ----------
-    mesh : the copy.
-    nodes : (m,) for each node of the copy, its index in the finer mesh.
-    kept : for each block and direction, the indices of the layers of nodes that the copy contains.
-    """
+    """A copy of a mesh with fewer nodes."""
 
     mesh: HexMesh
-    nodes: Indices
-    kept: tuple[tuple[Indices, Indices, Indices], ...]
+    nodes: Indices  # (m,) for each node of the copy, its index in the finer mesh
+    kept: tuple[tuple[Indices, Indices, Indices], ...]  # layers of nodes of each block that remain
 
 
 def coarser(mesh: HexMesh) -> CoarserCopy | None:

@@ -24,16 +24,10 @@ Of two opposite offsets only one is stored: that with positive di, or, if di is 
 
 @dataclass(frozen=True)
 class Functional:
-    """The functional of `energy.functional` for a batch.
+    """The functional of `energy.functional` for a batch."""
 
-    Parameters
-    ----------
-    shape : weight w of the angle term, 0 to 1.
-    smoothness : (batch,) weights β of the lengths' term.
-    """
-
-    shape: float
-    smoothness: Tensor
+    shape: float  # weight w of the angle term, 0 to 1
+    smoothness: Tensor  # (batch,) weights β of the lengths' term
 
     def value(self, nodes: Tensor, aspect: Tensor) -> Tensor:
         """Return the value E (batch,) for `nodes` (batch, 2, ni, nj) without folded cells.

@@ -67,23 +67,18 @@ class Run:
 
 @dataclass(frozen=True)
 class Progress:
-    """Progress of a run: figures of the epochs since the last report.
-
-    `loss` and its `parts`: means over the steps; `held_out`: figures of the held-out shapes, or nothing;
-    `rate`: learning rate; `seen`: shapes since the start, counted once per epoch; `seconds`, `speed` (shapes
-    per second) and `done` (epochs): of this process.
-    """
+    """Progress of a run: figures of the epochs since the last report."""
 
     epoch: int
     epochs: int
-    loss: float
-    parts: Mapping[str, float]
-    held_out: Mapping[str, float]
-    rate: float
-    seen: int
-    seconds: float
-    speed: float
-    done: int
+    loss: float  # mean over the steps
+    parts: Mapping[str, float]  # means of the parts of the loss
+    held_out: Mapping[str, float]  # figures of the held-out shapes, if evaluated
+    rate: float  # learning rate
+    seen: int  # shapes since the start, counted once per epoch
+    seconds: float  # of this process, as the following
+    speed: float  # shapes per second
+    done: int  # epochs
 
 
 @dataclass

@@ -25,8 +25,8 @@ class MGNet(Architecture):
 
     ::
 
-        (x, y) = N_g(phi(xi, eta))    phi = (2 xi - 1, 2 eta - 1); of an O grid (sin, cos of 2 pi xi, 2 eta -
-        1)
+        (x, y) = N_g(phi(xi, eta))    phi = (2 xi - 1, 2 eta - 1), or for O grids
+                                      (sin 2 pi xi, cos 2 pi xi, 2 eta - 1)
         loss   = mean |alpha X_xx - 2 beta X_xe + gamma X_ee|^2 + boundary * mean |X - U|^2
 
     Lengths are relative to the size of each geometry.

@@ -24,15 +24,11 @@ ACCEPTED = 1e-4  # a slower one is still kept below this: the rest is in the hig
 
 @dataclass(frozen=True)
 class Strips:
-    """n strips, the conformal images of domains around bodies, as Fourier modes.
+    """n strips, the conformal images of domains around bodies, as Fourier modes."""
 
-    `wall`, `far`: (n, 2 MODES + 1) modes of the position F on the two walls of each strip; `residual`: (n, 2
-    MODES + 1, LEVELS) modes of R, Winslow's solution minus the harmonic base.
-    """
-
-    wall: Complexes
-    far: Complexes
-    residual: Complexes
+    wall: Complexes  # (n, 2 MODES + 1) modes of the position F on the wall
+    far: Complexes  # (n, 2 MODES + 1) the same on the far field
+    residual: Complexes  # (n, 2 MODES + 1, LEVELS) modes of R, Winslow's solution minus the harmonic base
 
     def __len__(self) -> int:
         return len(self.wall)
