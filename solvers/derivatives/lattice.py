@@ -31,11 +31,11 @@ class Jacobian:
     """Number of coordinates, 2 ni nj."""
 
     def times(self, x: Floats) -> Floats:
-        """Return J x of x (size,)."""
+        """Return the product J x for x (size,)."""
         return np.bincount(self.rows, self.values * x[self.columns], self.size).astype(float, copy=False)
 
     def transposed_times(self, y: Floats) -> Floats:
-        """Return Jᵀ y of y (size,)."""
+        """Return the product Jᵀ y for y (size,)."""
         return np.bincount(self.columns, self.values * y[self.rows], self.size).astype(float, copy=False)
 
 

@@ -18,7 +18,7 @@ OURS = "use a file made by meshonet train"  # remedy for a file that is no model
 
 
 class Kind(NamedTuple):
-    """A kind of model, by its header: `text` is the value of ``kind``, `version` the value of `key`."""
+    """A kind of model file, whose header has the entries ``kind``: `text` and `key`: `version`."""
 
     text: str
     key: str

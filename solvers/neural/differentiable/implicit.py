@@ -58,7 +58,7 @@ class Converged(BatchFunction):
 
 
 class Adjoint(FirstDerivative):
-    """The derivative by boundary nodes of a function whose derivative by all nodes of the grid is given."""
+    """The derivative of a functional by boundary nodes, from its derivative by all nodes."""
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:

@@ -47,7 +47,7 @@ def check_finite(*parts: Tensor) -> None:
 
 
 def check_failed(failed: str) -> None:
-    """Raise InputError: not one of `Failed`."""
+    """Raise InputError unless `failed` is one of `Failed`."""
     if failed not in ("raise", "nan"):
         raise InputError(f"failed={failed!r}", 'use "raise" or "nan"')
 

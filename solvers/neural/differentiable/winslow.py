@@ -32,7 +32,7 @@ class Winslow:
         return len(nodes) if nodes.is_cuda else MOST // nodes[0].numel()
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions (batch, 2, ni, nj), and zeros (batch,), because equations are equal."""
+        """Return the solutions (batch, 2, ni, nj), and zeros (batch,): members have the same equations."""
         check_finite(nodes)
         return nested(nodes), nodes.new_zeros(len(nodes))
 

@@ -74,7 +74,7 @@ class OperatorTask(ModelTask):
         return parts if penalty is None else torch.cat([parts, penalty.float()[None]])
 
     def validate(self) -> dict[str, float]:
-        """Return the loss over the held-out shapes and the median of their relative L2 error."""
+        """Return the loss over the held-out shapes and the mean square distance of their nodes."""
         if self.held_out is None:
             return {}
         inputs, goal = self.held_out

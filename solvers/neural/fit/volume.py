@@ -32,7 +32,7 @@ HELD_OUT = 0
 
 
 class VolumeTask(Task):
-    """Training of `model` on `volumes`; `points` are how many are drawn per step, inside and on faces."""
+    """Training of `model` on `volumes`; `points`: numbers of points drawn per step, inside and on faces."""
 
     parts = ("winslow", "faces", "weights")
 

@@ -36,7 +36,7 @@ class Architecture:
 
     @property
     def native(self) -> bool:
-        """Whether the model has answers only at the nodes of its training grids, for splines between."""
+        """Whether the network's output is known only at the nodes of its training grids."""
         return False
 
     def shapes(self, frame: Frame) -> Shapes:
@@ -62,7 +62,7 @@ class Architecture:
         return None
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return the trunk's input (p, features) at `points` (p, 2) in (xi, eta), which is not trained."""
+        """Return the trunk's input (p, features) at `points` (p, 2) in (xi, eta)."""
         return points
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:

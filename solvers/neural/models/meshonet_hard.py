@@ -70,7 +70,7 @@ class MeshONetHard(Architecture):
         return {**fixed, "fixed/modes": _modes(targets, self.modes)} if self.modes else fixed
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return sines, cosines and a function that is 0 on the boundary; with `modes`, `points`."""
+        """Return sines, cosines and a function that is 0 on the boundary; with `modes`, return `points`."""
         if self.modes:
             return points
         return xp.concatenate([self._lifted(xp, points), self._bubble(points)], -1)

@@ -46,7 +46,7 @@ def frame(z: Any, xp: Any) -> tuple[Any, Any]:
 
 
 def planes_of(z: Complexes) -> Floats:
-    """Return the nodes (batch, 2, m, n), as kernels take them, of complex grids (batch, m, n)."""
+    """Return complex grids (batch, m, n) as planes (batch, 2, m, n) of x and y."""
     return np.ascontiguousarray(np.stack([z.real, z.imag], axis=1))
 
 
