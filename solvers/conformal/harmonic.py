@@ -18,9 +18,8 @@ def extend(boundary: Boundary) -> Floats:
     With eta from the side of the coefficients, a the height of the rectangle over its length, from the
     lengths of sides, and T = log(outer length / inner length) of the ring::
 
-        quad   u = corners, bilinear + sum over sides, k of b_k sin(k pi xi) sinh(k pi a (1 - eta)) / sinh(k
-        pi a)
-        o      u = means, linear + sum over walls, k of c_k exp(2 pi i k xi) sinh(k T (1 - eta)) / sinh(k T)
+        quad   corners, bilinear + sum over sides, k of b_k sin(k pi xi) sinh(k pi a (1 - eta)) / sinh(k pi a)
+        o      means, linear + sum over walls, k of c_k exp(2 pi i k xi) sinh(k T (1 - eta)) / sinh(k T)
 
     >>> s, zero, one = np.linspace(0.0, 1.0, 5), np.zeros(5), np.ones(5)
     >>> square = Boundary(*(np.stack(edge, axis=1) for edge in [(s, zero), (s, one), (zero, s), (one, s)]))

@@ -44,8 +44,7 @@ def solve_steger_sorenson(
 
     Parameters
     ----------
-    heights : first-cell heights of controlled sides of a quad or O boundary, in its unit; 0 for a free
-        height.
+    heights : first-cell heights of controlled sides of a quad or O boundary, in its unit; 0 for a free one.
         None: free heights at south and north, or at a body.
     angle : angle in degrees between an edge and the lines that leave it.
     tol, max_cycles, initial : as in `solve`.
