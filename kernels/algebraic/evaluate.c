@@ -2,9 +2,8 @@
 
        x = L X Lᵀ + C (K∘B X) Lᵀ + L (K∘X Bᵀ) Cᵀ + C (K∘B X Bᵀ) Cᵀ + what that misses of the edges, fading inwards
 
-   with X the nodes, L and C the weights of values and of second derivatives (`places` of spline.py), B second
-   derivatives of not-a-knot splines, and K the share of them that is left (acute.py, evaluation.py). Sums along eta
-   are made row by row when the pass reaches them, what is missed of west and east among them. */
+   X are the nodes, L and C weights of values and second derivatives (`places` of spline.py), B second derivatives of
+   not-a-knot splines, K the share of these that is left (corner_damping.py). */
 #include "evaluate.h"
 
 #include <math.h>

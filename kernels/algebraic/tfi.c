@@ -1,12 +1,7 @@
-/* Transfinite interpolation of four edges: one pass, one division a node.
-
-   At node (i, j) the straight lines that join equal parameters on opposite edges,
-       u = s + (n - s) v,    v = w + (e - w) u        s, n, w, e: parameter of the node's foot on each edge,
-   cross at
+/* Transfinite interpolation of four edges: the Boolean sum x of the interpolations between opposite edges, at the
+   point (u, v) where lines between equal parameters s and n, w and e of opposite edges cross:
        u = (s + (n - s) w) / (1 - (n - s)(e - w)),    v = w + (e - w) u,
-   and the Boolean sum of the two edge interpolations is taken there:
-       x = (1-v) S_i + v N_i  +  (1-u) W_j + u E_j  -  (1-u)(1-v) a - u (1-v) b - u v c - (1-u) v d.
-   With south and north weights equal (n = s, e = w) this is the separable blending of Gordon and Hall. */
+       x = (1-v) S_i + v N_i  +  (1-u) W_j + u E_j  -  (1-u)(1-v) a - u (1-v) b - u v c - (1-u) v d. */
 #include "tfi.h"
 
 #include <string.h>

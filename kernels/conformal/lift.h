@@ -6,12 +6,9 @@ typedef struct { double re, im; } Cplx; /* a complex number that every compiler 
 
 #define TERMS 13 /* of the series below */
 
-/* One corner removal: p, q before, P, Q after, exterior angle k pi. With m the middle of p and q, m' and h' that of P
-   and Q and half their distance, e = h'/(v' - m'):
-
-       v = m + k h' coth(k artanh e) = m + (v' - m') (series[0] + series[1] e^2 + ...)
-
-   restores it without any power, for all points that are not near the corner. */
+/* One corner removal: p, q before, P, Q after, exterior angle k pi. Far from the corner it is undone by
+       v = m + k h' coth(k artanh e) = m + (v' - m') (series[0] + series[1] e^2 + ...),    e = h'/(v' - m'),
+   m the middle of p and q, m' that of P and Q, and h' half their distance. */
 typedef struct { Cplx p, q, P, Q; double k; double series[TERMS]; } LiftCorner;
 
 typedef struct {

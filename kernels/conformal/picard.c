@@ -1,7 +1,5 @@
-/* Transforms of many series at once, Picard's step in the strip, and Fourier sums of its solution.
-
-   Modes and columns lie in rows of levels, so that every operation of a transform or product is one on whole rows;
-   transforms leave and take the modes where their reversed bits say. Cooley & Tukey (1965). */
+/* Transforms of many series at once, Picard's step in the strip, and Fourier sums of its solution. Modes and columns
+   lie in rows of levels; transforms leave and take modes in bit-reversed order. Cooley & Tukey (1965). */
 #include "picard.h"
 #include "clones.h"
 #include "lanes.h"

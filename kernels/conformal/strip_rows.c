@@ -1,8 +1,5 @@
-/* One row after another, so that its points stay in the first-level cache from the strip to the plane.
-
-   A row's points are sums over the columns around it (waves.py), go through the maps (lift_maps.h), and are then
-   levels themselves or the points of a panel, whose levels are a product with a matrix (panels.py). BLAS is slow
-   at both products: one side is 14 or 16 long, and a grid's rows lie far apart. */
+/* Rows of the grid, one after another: sums over columns (waves.py), maps to the plane (lift_maps.h), and products of
+   panels' points with a matrix. A row stays in the first-level cache. */
 
 #include "strip_rows.h"
 #include "lanes.h"

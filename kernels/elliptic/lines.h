@@ -1,6 +1,5 @@
-/* Zebra line relaxation along eta and along xi, both colours in one pass over memory: a group of lines of the second
-   colour is relaxed as soon as the adjacent lines of the first colour are done. Each thread has its own groups; its first
-   line of the second colour waits for the last line of the first colour of the neighbouring thread. */
+/* Zebra line relaxation along eta and along xi, both colours in one pass: a group of lines of the second colour
+   follows the adjacent lines of the first. A thread's first line of the second colour waits for the thread before. */
 #pragma once
 #include "stencil.h"
 #include "team.h"

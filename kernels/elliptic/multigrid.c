@@ -1,10 +1,6 @@
-/* Kernels of the multigrid solver for Winslow's equations
-
-       L(x) = α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = f,
-       α = x_η·x_η,  β = x_ξ·x_η,  γ = x_ξ·x_ξ,    x = (x, y),
-
-   by central differences, with the control functions φ and ψ of stencil.h. x and y share their coefficients, so a line of nodes is one tridiagonal matrix with
-   two right sides. Signs: the matrix of a line has diagonal -(east + west + north + south) < 0. */
+/* Multigrid for Winslow's equations by central differences, with the control functions φ and ψ of stencil.h,
+       L(x) = α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = f,    α = x_η·x_η,  β = x_ξ·x_η,  γ = x_ξ·x_ξ.
+   A line of nodes is one tridiagonal matrix with two right sides and a diagonal -(east + west + north + south) < 0. */
 #include "multigrid.h"
 #include "lines.h"
 #include "stencil.h"

@@ -9,9 +9,8 @@ typedef struct {
     const double *forward, *backward, *centred;
 } Differences;
 
-/* A control function: the logarithm of the ratio by which neighbouring steps grow along one direction, as a sum of
-   products  l(i, j) = Σ_t along[t][i] across[t][j],  so that it needs no memory on the grid. `reach` is the longer
-   of the two steps at each node of that direction. */
+/* A control function: the logarithm of the ratio of neighbouring steps, l(i, j) = Σ_t along[t][i] across[t][j];
+   `reach` is the longer of the two steps at each node. */
 typedef struct {
     ptrdiff_t terms;
     const double *along, *across; /* terms x (mi + 1) and terms x (mj + 1) */

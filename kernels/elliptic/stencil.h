@@ -68,10 +68,8 @@ static ptrdiff_t padded(ptrdiff_t n)
     return (n + 8) / 8 * 8 + 8;
 }
 
-/* Control functions evaluated along rows: φ = -(2/h) tanh(h l/2) from the logarithm l of the ratio of steps.
-
-   With this a line whose steps h grow by exp(l h) satisfies  x_ξξ + φ x_ξ = 0  exactly by central differences, on
-   every level, and the weights of both neighbours stay positive however large l is. */
+/* Control functions along rows: φ = -(2/h) tanh(h l/2) from the logarithm l of the ratio of steps. A line whose
+   steps grow by exp(l h) is then exact on every level, and the weights of both neighbours are positive. */
 
 /* tanh to 2e-7 for |z| < 1/2 and 5e-4 elsewhere, below 1 always: a quotient that vectorises. */
 MESHONET_INLINE double soft_sign(double z)

@@ -1,9 +1,6 @@
-/* The preconditioner of a minimisation: gradients are rotated and scaled to the frame of each node, divided as in
-   spectral.h, and transformed back. The frame is the step along xi, so that displacements are measured in cells.
-
-   The spectral part P neglects the coupling of both coordinates in the softest modes, p = ψ_ξ with q = -ψ_η, and the
-   variation of cells, so that smooth errors would converge last. S H⁻¹ Sᵀ is therefore added to P, with S splines from the
-   inner nodes of a coarse grid and H the Hessian there (hessian.h), as a banded Cholesky factor. */
+/* The preconditioner of a minimisation: P as in spectral.h in the frame of each node, the step along xi, plus
+   S H⁻¹ Sᵀ for smooth displacements, with S splines from the inner nodes of a coarse grid and H the Hessian there
+   (hessian.h). */
 #pragma once
 #include "hessian.h"
 #include "spectral.h"

@@ -1,14 +1,12 @@
-/* The functional, with u and v the edges along xi and eta that meet at a cell's corner, g = |u|², h = |v|²,
-   J = u × v, χ = J (or (J + √(J² + ε²)) / 2 when regularised):
+/* The functional, with u and v the edges along xi and eta at a cell's corner, or their means at its centre,
+   g = |u|², h = |v|², J = u × v, χ = J (or (J + √(J² + ε²)) / 2 when regularised):
 
        E = mean over cells of ( mean over corners + 2 at the centre ) / 3 of
                (1-w) (a g + h/a) / (2χ) + w (g h / χ²)²
          + β mean over cells of the squares of (ni-1) Δ_i log l and (nj-1) Δ_j log l, l the edge lengths
 
-   At the centre u and v are the means of opposite edges. Δ_i and Δ_j are the differences to the next edge of the
-   same family in either direction; those along the boundary have weight one half. Where the boundary turns so much that
-   angles cannot be near 90 degrees, the angle terms of corners are reduced. One row of cells or edges is processed at a
-   time: first the forces of each are stored in row buffers, which vectorises, then they are added to the nodes. */
+   Δ_i and Δ_j are differences to the next edge of the same family, with weight one half along the boundary. Angle
+   terms are reduced where the boundary turns sharply. Rows of forces are stored in buffers, then added to the nodes. */
 #pragma once
 #include "corner.h"
 #include "sums.h"

@@ -1,12 +1,9 @@
-/* Second derivatives of the functional with respect to the inner nodes of a grid, as the lower triangle of a banded matrix,
-   and its Cholesky factor. Single precision suffices, because they are only a preconditioner.
-
-   If ∇²J, ∇²c and ∇²log l are neglected in the Hessian of
+/* Second derivatives of the functional by the inner nodes of a grid, as the lower triangle of a banded matrix, and its
+   Cholesky factor, in single precision. Without ∇²J, ∇²c and ∇²log l in the Hessian of
 
        A g / J (and so h),  f(c) = w (1 + c²)², c = (u·v) / J = cot of the angle,  Σ β (Δ log l)²
 
-   the rest is positive semi-definite: sums of squares, and for the first term a convex function of u and J (Gauss-Newton).
-   The fraction `bent` of the neglected part is added; with all of it the Hessian is exact. */
+   the rest is positive semi-definite (Gauss-Newton); the fraction `bent` of them is added. */
 #pragma once
 #include "clones.h"
 #include "functional.h"

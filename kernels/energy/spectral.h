@@ -1,13 +1,8 @@
-/* The inverse of the functional's Hessian on a uniform grid, in the frame of each node.
+/* The inverse of the functional's Hessian on a uniform grid, in the frame of each node, in single precision.
 
-   Displacements of the nodes, as complex numbers, are c w with c the step along xi at the node, so that w does not depend
-   on size and orientation of cells. For w the Hessian is about that of a grid of unit squares, which is diagonalised by
-   transforms along both directions: d = c Q_i (scale · (Q_iᵀ (conj(c) g) Q_j)) Q_jᵀ, with scales of their own along xi and
-   eta. Modes that the transforms do not include are divided by `rest`.
-
-   Every mode is even or odd about the middle of its direction. Values v(k) and their mirror images are therefore first
-   combined to (v(k) + v(-k)) / √2 and (v(k) - v(-k)) / √2, and each half has its own modes, which halves the work. Single
-   precision suffices. */
+   Displacements are c w with c the step along xi. For w the Hessian is about that of unit squares, diagonalised by
+   transforms: d = c Q_i (scale · (Q_iᵀ (conj(c) g) Q_j)) Q_jᵀ; modes that are left out are divided by `rest`. Modes are
+   even or odd about the middle: halves (v(k) ± v(-k)) / √2 have their own. */
 #pragma once
 #include "clones.h"
 #include "panel.h"

@@ -1,11 +1,6 @@
-/* What a descent remembers of its steps, and the direction that comes of it.
-
-   Steps s and preconditioned changes z = P y of the gradient are the rows of one table, read once for the products
-   with the gradient and once for the new direction; the two-loop recursion runs on the small tables of the products
-   s·y and y·z. Rows are in single precision: they steer the descent, they are not its result.
-
-   Nocedal and Wright, Numerical Optimization (2006), algorithm 7.4; the form in products: Chen, Wang and Zhou,
-   NIPS 27 (2014). */
+/* L-BFGS: steps s and preconditioned changes z = P y of the gradient are rows of one table, in single precision; the
+   two-loop recursion runs on the products s·y and y·z. Nocedal and Wright, Numerical Optimization (2006), algorithm
+   7.4; the form in products: Chen, Wang and Zhou, NIPS 27 (2014). */
 #include "steps.h"
 #include "clones.h"
 #include "sums.h"
@@ -70,31 +65,27 @@ typedef struct {
     float scale;
 } Sum;
 
-/* direction = Σ share[r] row r - scale steepest, in a chunk. */
+/* direction = Σ share[r] row r - scale steepest, in chunks. */
 MESHONET_CLONES
-static void chunk_sum(const Sum *sum, ptrdiff_t start)
+static void sum_chunks(const Sum *sum, ptrdiff_t first, ptrdiff_t last)
 {
     const Steps *s = sum->s;
-    const ptrdiff_t n = s->n, stop = start + CHUNK < n ? start + CHUNK : n;
+    const ptrdiff_t n = s->n;
     const float *restrict steepest = s->steepest, scale = sum->scale;
     float *restrict direction = s->direction;
-    for (ptrdiff_t k = start; k < stop; k++)
-        direction[k] = -scale * steepest[k];
-    for (int r = 0; r < 2 * s->count; r++) {
-        const float *restrict row = s->table + r * n, factor = sum->share[r];
+    for (ptrdiff_t start = first * CHUNK; start < last * CHUNK; start += CHUNK) {
+        const ptrdiff_t stop = start + CHUNK < n ? start + CHUNK : n;
         for (ptrdiff_t k = start; k < stop; k++)
-            direction[k] += factor * row[k];
+            direction[k] = -scale * steepest[k];
+        for (int r = 0; r < 2 * s->count; r++) {
+            const float *restrict row = s->table + r * n, factor = sum->share[r];
+            for (ptrdiff_t k = start; k < stop; k++)
+                direction[k] += factor * row[k];
+        }
     }
 }
 
-static void sum_share(void *data, Member member)
-{
-    const Sum *sum = data;
-    ptrdiff_t first, last;
-    team_share((sum->s->n + CHUNK - 1) / CHUNK, member, &first, &last);
-    for (ptrdiff_t k = first; k < last; k++)
-        chunk_sum(sum, k * CHUNK);
-}
+TEAM_ROWS(sum_share, Sum, (task->s->n + CHUNK - 1) / CHUNK, sum_chunks)
 
 /* The direction -H g from the gradient and P g, and its slope. */
 static double choose_direction(Steps *s)
@@ -184,22 +175,16 @@ static void change_share(void *data, Member member)
 
 /* The step and the change of P gradient into the table. */
 MESHONET_CLONES
-static void span_kept(const Steps *s, ptrdiff_t start, ptrdiff_t stop, float factor, int slot)
+static void keep_step(const Remembered *r, ptrdiff_t first, ptrdiff_t last)
 {
-    const float *restrict step = s->direction;
-    float *restrict moves = s->table + 2 * slot * s->n, *restrict z = moves + s->n;
-    for (ptrdiff_t k = start; k < stop; k++)
+    const Steps *s = r->s;
+    const float *restrict step = s->direction, factor = r->factor;
+    float *restrict moves = s->table + 2 * r->slot * s->n, *restrict z = moves + s->n;
+    for (ptrdiff_t k = first; k < last; k++)
         moves[k] = factor * step[k], z[k] = s->turned[k] - s->steepest[k];
 }
 
-static void kept_share(void *data, Member member)
-{
-    const Remembered *r = data;
-    ptrdiff_t first, last;
-    team_share((r->s->n + SPAN - 1) / SPAN, member, &first, &last);
-    for (ptrdiff_t k = first; k < last; k++)
-        span_kept(r->s, k * SPAN, end_of_span(r->s, k), r->factor, r->slot);
-}
+TEAM_ROWS(kept_share, Remembered, task->s->n, keep_step)
 
 /* Add the step, whose slope was `slope`, the gradient's change y and P y, unless the functional bends down along the
    step; then the products of all rows with the new gradient. Those with y are the changes of these. */
@@ -230,14 +215,13 @@ static void remember(Steps *s, double factor, double slope)
 }
 
 /* The gradient and P gradient of the step are those here now. */
-static void copy_share(void *data, Member member)
+static void copy_values(const Steps *s, ptrdiff_t first, ptrdiff_t last)
 {
-    Steps *s = data;
-    ptrdiff_t first, last;
-    team_share(s->n, member, &first, &last);
     memcpy(s->gradient + first, s->fresh + first, (size_t)(last - first) * sizeof *s->gradient);
     memcpy(s->steepest + first, s->turned + first, (size_t)(last - first) * sizeof *s->steepest);
 }
+
+TEAM_ROWS(copy_share, Steps, task->n, copy_values)
 
 double shorter(double rise, double slope)
 {

@@ -5,12 +5,9 @@
 
        E = a S / χ + b (g h q / χ²)^p [+ c (χ + 1/χ)],    S = |u × v|² + |v × w|² + |w × u|²
 
-   S / J is the density of Winslow's functional: with dx/dξ as its columns, |dξ/dx|² J. It grows without bound at
-   J = 0 and keeps a valid grid valid. The second term is a power of the inverse squared sines of the angles, 1 for right
-   angles. The third is for regularised corners only: because χ > J, cells of unconstrained size would otherwise shrink to
-   points. All terms depend only on products of edges; dJ/du = v × w, dS/du = 2 ((h + q) u - (u·v) v - (u·w) w).
-
-   Another functional favours cubes; it is 1 if u, v and w are equally long and perpendicular, and infinite at J = 0:
+   S / J is the density of Winslow's functional, infinite at J = 0; the second term is a power of the inverse squared
+   sines of the angles; the third keeps regularised cells from shrinking. dJ/du = v × w, dS/du = 2 ((h + q) u - (u·v) v
+   - (u·w) w). Another functional favours cubes, for which it is 1:
 
        E = (g + h + q) / (3 J^(2/3))
 

@@ -1,9 +1,6 @@
-/* Threads that work on the same arrays together. `team_run` calls `work(data, member)` once on each of them and
-   returns when all are done; `team_wait` is a barrier inside `work`.
-
-   Results must be bitwise equal for any number of threads, so they must not depend on where the share of a thread
-   starts: shares are whole rows, or whole chunks of a fixed size, and sums over these are added in order by one thread.
-   On Windows a team is one thread. */
+/* Threads that work on the same arrays together: `team_run` calls `work(data, member)` on each; `team_wait` is a
+   barrier. For equal bits with any number of threads, shares are whole rows or chunks of a fixed size, and one thread
+   adds sums over these in order. On Windows a team is one thread. */
 #pragma once
 
 #include <stddef.h>

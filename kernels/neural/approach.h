@@ -11,9 +11,8 @@ typedef struct {
     const double *table, *values;
 } Waves;
 
-/* Planes of (m, n) nodes, the unknown ones off the rim; `around`, m rows that go round, unknown but at both ends.
-   Before the steps comes Laplace's solution when
-   `harmonic`; else the steps after the first are extrapolated. */
+/* Planes of (m, n) nodes; `around`: rows go round and are unknown but at both ends, else off the rim. `harmonic`:
+   from Laplace's solution; else steps after the first are extrapolated. */
 typedef struct {
     ptrdiff_t m, n;
     int around, harmonic, steps;

@@ -1,6 +1,5 @@
-/* The matrix' graph while it is eliminated, as a quotient graph: an eliminated vertex becomes an element, the clique of
-   its neighbours, written as one list. A variable's list has its elements first, then the variables it is joined to
-   by an entry of the matrix itself. Variables that cannot be told apart are one, of larger weight. */
+/* The quotient graph of the elimination: an eliminated vertex becomes an element, the clique of its neighbours. A
+   variable's list has its elements first, then variables joined by entries. Equal variables are one of larger weight. */
 #include "ordering.h"
 
 #include <stdlib.h>
