@@ -28,8 +28,8 @@ class MeshonetError(Exception):
 class InputError(MeshonetError):
     """Error: an input cannot be used. The message has the form ``place: problem; remedy``.
 
-    In `problem` and `remedy`, names of parameters are in braces, such as ``{far_field}``. In Python the
-    message then contains ``far_field``, on the command line ``--far-field``.
+    In `problem` and `remedy`, names of parameters are in braces: ``{far_field}`` becomes ``far_field`` in
+    Python, ``--far-field`` on the command line.
 
     Parameters
     ----------

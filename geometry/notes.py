@@ -3,8 +3,7 @@
 from collections.abc import Iterable
 
 UNJUDGED = {"verdict": None, "limits_exceeded": None}
-"""Facts in the provenance of a grid that are removed when nodes change, since they describe the judged nodes.
-"""
+"""Facts in the provenance of a grid that are removed when nodes change."""
 
 
 class Change(str):

@@ -26,8 +26,7 @@ class NormalEquations:
     ----------
     size : number n of unknowns, or of pairs of unknowns.
     kinds : for each kind of residuals, the indices (k, m) of the unknowns, -1 for values that are fixed.
-    block : 2 if an index is that of a pair of unknowns (0 and 1, 2 and 3, ...); then derivatives are (k, 2
-        m).
+    block : 2 if indices are those of pairs of unknowns; then derivatives are (k, 2 m).
 
     >>> equations = NormalEquations(1, [np.array([[0], [0]])])
     >>> two = Residuals(np.array([[1.0], [1.0]]), np.ones(2), np.array([-1.0, -3.0]))

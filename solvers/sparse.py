@@ -21,10 +21,9 @@ class SparsePattern:
     Parameters
     ----------
     size : number of rows, n.
-    rows, columns : (m,) position of each entry. An entry at (i, j) is also the entry at (j, i), so that only
-        one of the two may be given. Entries at the same position are added.
-    block : number of unknowns per row, 1 or 2. With 2, entries are matrices (2, 2), and there are 2 n
-        unknowns.
+    rows, columns : (m,) position of each entry, on one side of the diagonal. Entries at the same position are
+        added.
+    block : number of unknowns per row, 1 or 2; with 2, entries are matrices (2, 2).
 
     Attributes
     ----------

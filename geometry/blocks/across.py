@@ -17,11 +17,11 @@ from meshonet.geometry.errors import InputError
 
 
 def across(grid: Grid, connection: Connection, depth: int) -> tuple[Floats, Floats]:
-    """Return the rows of nodes next to a connection, first in the block of the side, then in the donor's.
+    """Return the rows of nodes next to a connection: those in the block of the side, those in the donor.
 
-    Both arrays are (depth, n, d), in volumes (depth, n, m, 3); a block with fewer rows gives fewer. The
-    shared row comes first; in both arrays nodes have the order of the side. At a periodic connection the rows
-    of the side are moved to the donor by the periodic motion.
+    Both arrays are (depth, n, d), in volumes (depth, n, m, 3), with fewer rows if the block has fewer. The
+    shared row comes first; nodes have the order of the side. Rows of the side are moved by the periodic
+    motion, if there is one.
     """
     own, donor = (rows_beside(grid, *end, depth) for end in connection.ends)
     if connection.transform:

@@ -38,11 +38,11 @@ _KINDS = {(2, 2), (2, 3), (3, 3)}  # number of index directions of a block, numb
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """The nodes of one block; they are checked when it is made.
+    """The nodes of one block.
 
     `nodes` are (ni, nj, 2), (ni, nj, nk, 3), or (ni, nj, 3) on a surface, in any unit of length; they are
-    kept as float64 in planar layout (see `meshonet.geometry.arrays`). `finite` says that the nodes are known
-    to be finite; they are then not checked for it, which would take a tenth of the run time of some methods.
+    kept as float64 in planar layout (see `meshonet.geometry.arrays`). With `finite`, no check is made that
+    they are finite, which would take a tenth of the run time of some methods.
 
     Raises InputError: nodes of another shape, fewer than 2 along a direction, or not finite.
     """

@@ -41,9 +41,7 @@ class Connection:
     donor_side: Side
     donor_range: Range
     orientation: tuple[int, ...]
-    """For each direction of the side the number (1 or 2) of the same direction of the donor, negative if
-    opposite.
-    """
+    """For each direction of the side, the number of that of the donor (1 or 2), negative if opposite."""
     transform: Motion | None = None
     """Motion from the nodes of the side to those of the donor, if they are periodic."""
 
@@ -100,9 +98,7 @@ class Connection:
         return Connection(*donor, *own, tuple(ways), self.transform.inverse() if self.transform else None)
 
     def __str__(self) -> str:
-        own, donor = (
-            ascii(side)[1:-1] for side in (self.side, self.donor_side)
-        )  # of a file, perhaps damaged
+        own, donor = (ascii(side)[1:-1] for side in (self.side, self.donor_side))  # files may be damaged
         return f"the connection of {own} of block {self.block} to {donor} of block {self.donor}"
 
     def stretches(self, block: int) -> list[tuple[Side, int, int]]:
@@ -113,9 +109,7 @@ class Connection:
 def cells_at(connection: Connection, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return views (n, d) or (n, m, d) of the values of the cells next to the side and next to the donor.
 
-    Both have the order of the side.
-
-    `face` is a function that returns the values of the cells at a side of a block.
+    Both have the order of the side. `face` returns the values of the cells at a side of a block.
     """
     spans = [tuple((a, b - 1) for a, b in span) for span in (connection.range, connection.donor_range)]
     return replace(connection, range=spans[0], donor_range=spans[1], transform=None).nodes(face)
@@ -186,8 +180,8 @@ def wake_nodes(south: Floats) -> int:
 def connections_of(topology: Topology, south: Floats, nj: int) -> tuple[Connection, ...]:
     """Return the connections of a block of `topology` to itself: the seam of an O grid, the wake of a C grid.
 
-    `south` (ni, 2) holds the nodes of the south side, from which the wake is found; `nj` is the number of
-    nodes along eta. Raises InputError: an unknown topology; a C block without a wake.
+    `south` (ni, 2) are the nodes of the south side; `nj` is the number of nodes along eta. Raises InputError:
+    an unknown topology; a C block without a wake.
     """
     if topology == "quad":
         return ()
@@ -222,8 +216,5 @@ class Connected:
 
     @property
     def wake(self) -> int:
-        """Number of wake cells at each end of the south side.
-
-        For all i up to this number, the nodes (i, 0) and (ni-1-i, 0) coincide.
-        """
+        """Number of wake cells at each end of the south side, where (i, 0) and (ni-1-i, 0) coincide."""
         return wake_cells(self.connections)

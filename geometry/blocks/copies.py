@@ -58,8 +58,7 @@ def copied(grid: Grid, copies: int | Sequence[int]) -> Grid:
         grid = _along(grid, _periods(grid)[0], count)
     if len(counts) > 1:  # shifted in another order, corners differ by rounding
         grid = replace(grid, blocks=with_equal_nodes(grid.blocks, grid.connections))
-    total = math.prod(counts)
-    return grid.with_provenance(copies=total)
+    return grid.with_provenance(copies=math.prod(counts))
 
 
 def _along(grid: Grid, periodic: Sequence[Connection], copies: int) -> Grid:
@@ -82,8 +81,14 @@ def _along(grid: Grid, periodic: Sequence[Connection], copies: int) -> Grid:
         table[second] = motions[k + 1](nodes[first])
         blocks += [Block(table[number], finite=True) for number in numbers]
     patches = [replace(each, block=each.block + k * step) for k in range(copies) for each in grid.patches]
-    own = [each for each in grid.connections if not _repeats(each, periodic)]
-    connections = (*_within(own, step, copies), *_between(periodic, step, copies, motions[-1]))
+    taken = [ends for other in periodic for ends in (other.ends, other.ends[::-1])]
+    own = [each for each in grid.connections if each.ends not in taken]
+    inside = (
+        replace(each, block=each.block + k * step, donor=each.donor + k * step)
+        for k in range(copies)
+        for each in own
+    )
+    connections = (*inside, *_between(periodic, step, copies, motions[-1]))
     facts = {name: fact for name, fact in grid.provenance.items() if name != "zones"}
     return replace(
         grid, blocks=tuple(blocks), patches=tuple(patches), connections=connections, provenance=facts
@@ -91,7 +96,7 @@ def _along(grid: Grid, periodic: Sequence[Connection], copies: int) -> Grid:
 
 
 def _periods(grid: Grid) -> list[list[Connection]]:
-    """Return the periodic connections by their motions, those of a period all with its first motion."""
+    """Return the periodic connections grouped by their motions; those of a group get its first motion."""
     periods: list[list[Connection]] = []
     for each in grid.connections:
         if each.transform is None:
@@ -115,7 +120,7 @@ def _periods(grid: Grid) -> list[list[Connection]]:
 
 
 def _unlike(periods: Sequence[Sequence[Connection]], numbers: int) -> InputError:
-    """Return the error for a number of copies that is not one for each period."""
+    """Return the error for another number of copies than of periods."""
     if len(periods) == 1:
         return InputError(f"{numbers} numbers for a grid with one period", "give one", parameter="copies")
     shifts = [group[0].transform.shift for group in periods if group[0].transform]
@@ -126,9 +131,9 @@ def _unlike(periods: Sequence[Sequence[Connection]], numbers: int) -> InputError
 
 
 def _period(motion: Motion) -> tuple[Screw, float]:
-    """Return a motion as a screw, and how many of it are a whole turn, 0 for a translation.
+    """Return a motion as a screw, and the number of its repetitions in a whole turn, 0 for a translation.
 
-    An angle that is a whole turn over a whole number, to rounding, becomes this.
+    If this number is whole, up to rounding, the angle is made exact.
     """
     screw = screw_of(motion)
     if not screw.angle:
@@ -140,7 +145,7 @@ def _period(motion: Motion) -> tuple[Screw, float]:
 
 
 def _repeated(screw: Screw, times: int, dimension: int) -> Motion:
-    """Return the motion of a screw repeated so many times (Rodrigues' formula)."""
+    """Return the motion of a screw repeated `times` times (Rodrigues' formula)."""
     shift = times * screw.shift
     if not screw.angle or not times:
         return Motion(tuple(shift[:dimension].tolist()) if times else ())
@@ -152,18 +157,6 @@ def _repeated(screw: Screw, times: int, dimension: int) -> Motion:
     shift = shift + screw.centre - product(turn, screw.centre)
     rows = tuple(map(tuple, turn[:dimension, :dimension].tolist()))
     return Motion(tuple(shift[:dimension].tolist()) if shift.any() else (), rows)
-
-
-def _repeats(each: Connection, periodic: Sequence[Connection]) -> bool:
-    """Return whether a connection is one of those along whose period copies are made."""
-    return any(each.ends in (other.ends, other.reversed().ends) for other in periodic)
-
-
-def _within(connections: Sequence[Connection], step: int, copies: int) -> Iterator[Connection]:
-    """Yield the connections of each copy, of `step` blocks, that it has by itself."""
-    for k in range(copies):
-        for each in connections:
-            yield replace(each, block=each.block + k * step, donor=each.donor + k * step)
 
 
 def _between(periodic: Sequence[Connection], step: int, copies: int, whole: Motion) -> Iterator[Connection]:

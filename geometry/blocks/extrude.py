@@ -37,8 +37,8 @@ def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
 
     `heights` are at least two and increase. Patches and connections extend over all heights. A body that
     counts as a wall only because of its position gets the kind wall. The sides `bottom` of all blocks form
-    the patch ``back``, the sides `top` the patch ``front``; both are symmetry planes. If a patch of `grid`
-    already has one of these names, it is renamed.
+    the symmetry plane ``back``, the sides `top` the symmetry plane ``front``; patches of `grid` with these
+    names are renamed.
 
     Raises InputError: blocks that are not planar, fewer than two heights, heights that do not increase.
     """
@@ -59,10 +59,9 @@ def thickened(
 ) -> Grid:
     """Return volumes with the patches and connections of a planar grid.
 
-    `nodes` are the finite nodes (ni, nj, nk, 3) of each block. Patches and connections extend over all planes
-    of nodes. `ends` are names and kinds of the patches at the first and at the last plane. If `ends` is None,
-    the first plane of each block is connected to its last plane; `motion` is the periodic motion from the
-    first plane to the last, None if the planes coincide.
+    `nodes` are the finite nodes (ni, nj, nk, 3) of each block; patches and connections extend over all planes
+    of nodes. `ends` are names and kinds of the patches at the first and at the last plane. If it is None,
+    both are connected by the periodic `motion`, or coincide if that is None too.
 
     Raises InputError: blocks that are not planar; nodes that differ where blocks are connected.
     """
@@ -114,7 +113,7 @@ def plane_of_extruded(grid: Grid) -> Grid | None:
 
 
 def _with_walls(grid: Grid) -> list[Patch]:
-    """Return the patches of a planar grid; those of a body become walls, which a volume cannot infer."""
+    """Return the patches of a planar grid, with those of a body as walls, which a volume cannot infer."""
     if not grid.around_body:
         return list(grid.patches)
     body = [p for p in grid.outer_patches() if p.side == "south"]

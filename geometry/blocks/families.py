@@ -18,10 +18,9 @@ from meshonet.geometry.blocks.grid import Grid
 class Member:
     """The grid lines of a block along the direction `axis` (0 is xi, 1 is eta), as a part of a family.
 
-    A family contains all grid lines that continue each other from block to block. The index of a line is that
-    of its nodes in the other direction. If `aligned`, each line has the same index as its continuation in the
-    family's first block; if also `flipped`, the same index counted from the other end. If not `aligned`, only
-    some lines of this block continue into the family's first block.
+    A family contains all grid lines that continue each other from block to block. If `aligned`, each line has
+    the same index in the other direction as its continuation in the family's first block, counted from the
+    other end if also `flipped`. If not `aligned`, only some lines continue into the first block.
     """
 
     block: int
@@ -52,9 +51,7 @@ def families(grid: Grid) -> list[list[Member]]:
         beyond.setdefault(donor, []).append((own, flip, whole))
     families: list[list[Member]] = []
     seen: set[tuple[int, int]] = set()
-    for start in (
-        (block, axis) for block in range(len(grid.blocks)) for axis in range(len(grid.blocks[block].counts))
-    ):
+    for start in ((number, k) for number, block in enumerate(grid.blocks) for k in range(len(block.counts))):
         if start in seen:
             continue
         seen.add(start)

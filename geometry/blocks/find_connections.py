@@ -35,10 +35,9 @@ def find_connections(
     """Return the connections of right-handed `blocks`, sorted by block and side.
 
     Nodes count as equal if they are at most `tolerance` edge lengths or one unit of the last digit of the
-    coordinates (`rounding`) apart, whichever is larger. `with_equal_nodes`
-    (`meshonet.geometry.blocks.shared_nodes`) can then make them bitwise equal. `without` lists parts of sides
-    that must not be connected. Where more than two sides coincide, two sides of one block are joined first,
-    then the sides of successive blocks.
+    coordinates (`rounding`) apart, whichever is larger. `with_equal_nodes` can then make them bitwise equal.
+    `without` lists parts of sides that must not be connected. If more than two sides coincide, two sides of
+    one block are joined first, then the sides of successive blocks.
 
     Raises InputError: planar blocks mixed with blocks in space.
     """

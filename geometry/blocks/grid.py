@@ -49,8 +49,8 @@ _MOST_SHOWN = 6
 class Origin:
     """Origin of a sample of a dataset.
 
-    `parameters` are names and values of the parameters of the shape; `split` is ``train``, ``test`` or empty;
-    `title` is the name of the shape inside its file, if the sample itself is named after the file.
+    `parameters` are those of the shape; `split` is ``train``, ``test`` or empty; `title` is the name of the
+    shape inside its file, if the sample is named after the file.
     """
 
     parameters: tuple[tuple[str, float], ...] = ()
@@ -285,7 +285,7 @@ class Grid(Connected):
         Returns
         -------
         Quality
-            The summaries of all metrics (`meshonet.geometry.quality.measure.measure`).
+            Statistics by the name of the metric.
         """
         quality: Quality = ABOVE["measure"](self)
         return quality

@@ -36,11 +36,8 @@ def with_image(half: Grid) -> Grid:
         sides = face_counts(block.counts, patch.side)
         if patch.kind == "symmetry":
             ways = _ways(tuple(range(1, len(sides) + 1)), patch.side)
-            ends = (
-                (patch.block, patch.side, patch.range(sides)),
-                (other.block + step, other.side, other.range(sides)),
-            )
-            joints.append(Connection(*ends[0], *ends[1], ways))
+            own_end = patch.block, patch.side, patch.range(sides)
+            joints.append(Connection(*own_end, other.block + step, other.side, other.range(sides), ways))
             continue
         own.append(patch)
         images.append(replace(other, block=other.block + step))
@@ -63,13 +60,9 @@ def with_i_reversed(grid: Grid) -> Grid:
         sides = face_counts(counts[patch.block], patch.side)
         patches.append(_on(patch, *_reversed(patch.side, patch.range(sides), counts[patch.block])))
     for each in grid.connections:
-        (block, first, span), (donor, second, other) = each.ends
-        ends = (
-            (block, *_reversed(first, span, counts[block])),
-            (donor, *_reversed(second, other, counts[donor])),
-        )
-        ways = _ways(_ways(each.orientation, first), second, donor=True)
-        joints.append(Connection(*ends[0], *ends[1], ways))
+        own_end, donor_end = ((k, *_reversed(side, span, counts[k])) for k, side, span in each.ends)
+        ways = _ways(_ways(each.orientation, each.side), each.donor_side, donor=True)
+        joints.append(Connection(*own_end, *donor_end, ways))
     blocks = tuple(Block(np.array(block.nodes[::-1], order="K"), finite=True) for block in grid.blocks)
     return replace(grid, blocks=blocks, patches=tuple(patches), connections=tuple(joints))
 
@@ -82,7 +75,7 @@ def _mirrored(block: Block) -> Block:
 
 
 def _reversed(side: Side, span: Range, counts: tuple[int, ...]) -> tuple[Side, Range]:
-    """Return a side of a block with `counts` nodes, and a range of its nodes, where i is reversed."""
+    """Return a side, and a range of its nodes, of a block with `counts` nodes after i is reversed."""
     if side in _OTHER:
         return _OTHER[side], span
     first, last = span[0]
@@ -90,7 +83,7 @@ def _reversed(side: Side, span: Range, counts: tuple[int, ...]) -> tuple[Side, R
 
 
 def _ways(ways: tuple[int, ...], side: Side, *, donor: bool = False) -> tuple[int, ...]:
-    """Return the orientation of a connection where i of the block of a side is reversed."""
+    """Return the orientation of a connection after i of the block of a side is reversed."""
     if side in _OTHER:
         return ways
     return tuple(-way if (abs(way) if donor else k) == 1 else way for k, way in enumerate(ways, start=1))

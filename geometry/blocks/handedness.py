@@ -11,8 +11,7 @@ def signed_volume(coordinates: Sequence[Floats]) -> float:
     """Return the volume of a block, negative if left-handed; `coordinates` are x, y, z, (ni, nj, nk) each.
 
     By the divergence theorem, V = 1/3 ∮ r·n dA over the six faces. For each quadrilateral, r is its centre
-    and n dA is half the cross product of its diagonals; the curvature of the quadrilateral is neglected. The
-    unit is the cube of the unit of the nodes.
+    and n dA is half the cross product of its diagonals, which neglects its curvature.
     """
     centre = [float(values[0, 0, 0]) for values in coordinates]
     total = 0.0

@@ -29,9 +29,7 @@ from meshonet.geometry.blocks.outer_patches import JOINED, rectangles
 AROUND: Mapping[Side, int] = {"west": -1, "east": 1, "south": 1, "north": -1}
 """Whether the nodes of a side of a planar block run counter-clockwise around it."""
 _DIRECTION = np.array([0.5403023, 0.6710117, 0.5076571])
-"""Direction along which cells are sorted. It is oblique, so that hardly any grid has many cells at one
-position.
-"""
+"""Direction along which cells are sorted; as it is oblique, few cells have equal positions."""
 _MOST = 0.25
 """Nodes farther apart than this fraction of an edge are different, whatever their rounding."""
 _FLAT = 1e-12
@@ -146,7 +144,7 @@ def _edges(corners: Floats) -> Floats:
 
 
 def _extended(corners: Floats) -> Bools:
-    """Return for each cell of a side whether it has an extent: length of edges, area of quadrilaterals."""
+    """Return whether each cell of a side has an extent: a length of edges, an area of quadrilaterals."""
     shape = corners.shape[: (corners.ndim - 1) // 2]
     flat = corners.reshape(-1, *corners.shape[len(shape) :])
     longest = _edges(flat).max(axis=1)
@@ -246,9 +244,8 @@ def rounding(values: Floats) -> Callable[[Floats], Floats]:
     """Return a function that maps magnitudes (n,) of coordinates to the units (n,) of their last digits.
 
     The units are estimated from `values` (m,), the coordinates of a file, which have single precision, a
-    fixed number of digits, or a fixed number of decimals. If a point that two blocks share was computed twice
-    and then rounded, its two positions can differ by one unit of the last digit; next to walls this can be a
-    large part of a cell.
+    fixed number of digits, or a fixed number of decimals. The copies of a point in two blocks may differ by
+    one such unit, which next to walls can be a large part of a cell.
 
     >>> unit = rounding(np.array([0.123457, 12.345679, 3.0]))  # written by %.6f
     >>> unit(np.array([1.0, 2.0])).tolist()

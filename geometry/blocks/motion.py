@@ -28,7 +28,7 @@ class Motion:
     def __call__(self, nodes: Floats) -> Floats:
         """Return `nodes` (..., d) moved; the result for a node is bitwise the same alone or among others."""
         moved = nodes
-        if self.turn:  # written out: what a matrix product rounds to depends on the count of rows
+        if self.turn:  # written out: the rounding of a matrix product depends on the number of rows
             terms = [np.array(row) * nodes for row in self.turn]
             moved = np.stack([sum(term[..., k] for k in range(term.shape[-1])) for term in terms], axis=-1)
         return np.asarray(moved + np.array(self.shift) if self.shift else moved)
@@ -55,9 +55,8 @@ class Motion:
     def alike(self, other: Motion, tolerance: float) -> bool:
         """Return whether two motions are equal to a relative `tolerance`.
 
-        Both motions are applied to the origin and, on each axis, to the point at the distance L from the
-        origin. The images may differ by `tolerance` times L. L is the largest component of the two shifts,
-        and at least 1 if there is a rotation.
+        The images of the origin and of the points at the distance L on the axes may differ by `tolerance`
+        times L, which is the largest component of the two shifts, and at least 1 if there is a rotation.
         """
         size = max(1e-300, *map(abs, (*self.shift, *other.shift, float(bool(self.turn or other.turn)))))
         dimension = max(2, *(len(rows) for rows in (self.shift, self.turn, other.shift, other.turn)))

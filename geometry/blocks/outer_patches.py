@@ -31,9 +31,7 @@ def listed_sides(counts: tuple[int, ...]) -> tuple[Side, ...]:
 def owners_of(
     patches: Sequence[Patch], counts: tuple[int, ...], inside: Iterable[tuple[Side, Range]], side: Side
 ) -> NDArray[np.intp]:
-    """Return, for each cell (n,) or (n, m) at a side, the index in `patches` of the patch that contains it.
-
-    If several patches contain a cell, the index is that of the last.
+    """Return, for each cell (n,) or (n, m) at a side, the index in `patches` of the last that contains it.
 
     `inside` lists the connected parts of the sides, each as its side and its index range. Cells in these
     parts get `JOINED`; other cells without a patch get `UNNAMED`.
@@ -50,16 +48,12 @@ def owners_of(
 
 
 def outer_patches(
-    patches: Sequence[Patch],
-    counts: tuple[int, ...],
-    inside: Iterable[tuple[Side, Range]],
-    block: int = 0,
+    patches: Sequence[Patch], counts: tuple[int, ...], inside: Iterable[tuple[Side, Range]], block: int = 0
 ) -> list[Patch]:
     """Return patches that cover each cell of the outer boundary of block number `block` exactly once.
 
-    Where `patches` overlap, the later patch is used. Cells without a patch get a patch that is named after
-    their side. `counts` are the numbers of nodes along each direction; `inside` lists the connected parts of
-    the sides, each as its side and its index range.
+    Where `patches` overlap, the later one counts. Cells without a patch get one named after their side.
+    `counts` are the numbers of nodes along each direction; `inside` is as in `owners_of`.
     """
     own = [patch for patch in patches if patch.block == block]
     inside = list(inside)
@@ -72,10 +66,9 @@ def outer_patches(
 
 
 def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
-    """Yield rectangles that cover all cells of a side that are not `JOINED`; each has a single owner.
+    """Yield owner and node range of rectangles that cover all cells of a side that are not `JOINED`.
 
-    The owner of a cell is its value in `owners` (n,) or (n, m), the result of `owners_of`. A rectangle is
-    yielded as its owner and the range of its nodes.
+    `owners` (n,) or (n, m) are those of the cells, from `owners_of`.
     """
     cells = owners.reshape(len(owners), -1)
     left = cells != JOINED

@@ -52,10 +52,9 @@ def may_be_wall(name: str, kind: Kind = "other") -> bool:
 class Patch:
     """Nodes ``start`` to ``stop``, both included, of one side of a block, with a name.
 
-    Nodes are counted along i on south and north, along j on west and east. On a side of a volume, which has
-    two directions, ``start`` and ``stop`` are along the first direction, and `across` has the first and the
-    last node along the second; None means all. The kind of boundary is derived from the name unless it is
-    given.
+    Nodes are counted along i on south and north, along j on west and east. On a side of a volume, they are
+    counted along its first direction, and `across` are the first and last node along the second, or None for
+    all. The default kind of boundary is derived from the name.
     """
 
     name: str

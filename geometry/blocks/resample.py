@@ -54,8 +54,8 @@ def resample_edges(
 ) -> dict[Side, Floats]:
     """Return the four `edges` of a block resampled to ni nodes along xi and nj along eta.
 
-    The south edge has `wake` cells of the wake at each of its two ends. These two parts keep equal nodes, and
-    their share of the edge's cells stays the same.
+    The south edge has `wake` cells of the wake at each of its two ends, which keep equal nodes and their
+    share of the edge's cells.
 
     Raises InputError: too few nodes for a closed edge, or for the wall between the two sides of a wake.
     """

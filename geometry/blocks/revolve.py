@@ -222,18 +222,12 @@ def _with_axis(grid: Grid, frame: AxisFrame) -> Grid:
 
 
 def bent(nodes: Sequence[Floats], turn: Revolution) -> list[Floats]:
-    """Return volumes (ni, nj, nk, 3) bent about the axis of `turn`.
-
-    z becomes the angle about the axis: the range of z over all `nodes` is mapped linearly to 0 to
-    `turn.degrees`.
+    """Return volumes (ni, nj, nk, 3) bent about the axis of `turn`: z becomes an angle, 0 to `turn.degrees`.
 
     Raises InputError: nodes on both sides of the axis.
     """
     flat = np.concatenate([each[..., :2].reshape(-1, 2) for each in nodes])
     frame = frame_of(flat, turn.axis)
-    low, high = (
-        min(float(each[..., 2].min()) for each in nodes),
-        max(float(each[..., 2].max()) for each in nodes),
-    )
-    angle = math.radians(turn.degrees) / (high - low)
+    low = min(float(each[..., 2].min()) for each in nodes)
+    angle = math.radians(turn.degrees) / (max(float(each[..., 2].max()) for each in nodes) - low)
     return [as_planar(frame.places(each[..., :2], angle * (each[..., 2] - low))) for each in nodes]

@@ -19,8 +19,7 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.kernels._native import joined_classes
 
-_PASSES = 9
-"""Number of passes: periodic sides that end on other periodic sides need one more pass each."""
+_PASSES = 9  # periodic sides that end on other periodic sides need one more pass each
 
 
 def shared_nodes(
@@ -44,9 +43,9 @@ def shared_nodes(
 def numbered(
     counts: Sequence[tuple[int, ...]], order: Literal["C", "F"] = "C"
 ) -> tuple[Indices, list[Indices]]:
-    """Return the number of each block's first node, then the total; and the node numbers of each block.
+    """Return the number of each block's first node and the total; and the node numbers of each block.
 
-    Nodes are numbered block after block, so that nodes that connections join have several numbers.
+    Nodes are numbered block after block, also nodes that connections join.
     """
     ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
     parts = zip(ends, ends[1:], counts, strict=False)

@@ -30,7 +30,7 @@ FACES: tuple[Side, ...] = tuple(PLACES)
 
 @dataclass(frozen=True, eq=False)
 class SixFaces:
-    """Nodes of the six faces of a volume, in any unit of length; they are checked on construction.
+    """Nodes of the six faces of a volume, in any unit of length.
 
     Parameters
     ----------
@@ -107,8 +107,7 @@ class SixFaces:
     def edges_along(self, axis: int) -> list[Floats]:
         """Return the four edges (n, 3) of the volume along the direction `axis`.
 
-        With respect to the other two directions they are in the order (low, low), (high, low), (low, high),
-        (high, high).
+        In the other two directions they are at (low, low), (high, low), (low, high), (high, high).
         """
         first, second = (
             [side for side in FACES if PLACES[side][0] == each] for each in range(3) if each != axis
@@ -124,8 +123,6 @@ class SixFaces:
     def resampled(self, counts: tuple[int, int, int]) -> SixFaces:
         """Return the faces with other node counts, interpolated by cubic splines in the same distribution.
 
-        The node distributions stay the same.
-
         Raises InputError: fewer than 2 nodes along a direction.
         """
         if min(counts) < 2:
@@ -138,10 +135,9 @@ class SixFaces:
         )
 
     def at(self, knots: list[Floats], places: list[Floats]) -> SixFaces:
-        """Return the faces interpolated at other parameters.
+        """Return the faces interpolated from the parameters `knots` of nodes to new parameters `places`.
 
-        `knots` are, for each direction, the parameters of the present nodes; `places` are those of the new
-        nodes. Both increase from 0 to 1. Corners are kept, and nodes of an edge stay on that edge.
+        Both are given for each direction and increase from 0 to 1. Nodes of an edge stay on that edge.
         """
         made: dict[Side, Floats] = {}
         for side in FACES:

@@ -88,10 +88,10 @@ def _vertices(patches: list[Floats]) -> Indices:
 def _arranged(
     patches: list[Floats], vertices: Indices, first: int, *, turned: bool
 ) -> tuple[dict[Side, Floats], dict[Side, int]]:
-    """Return the faces with patch `first` as the bottom, its directions being i and j, or `turned` j and i.
+    """Return the faces with patch `first` as the bottom, and the index of the patch of each face.
 
-    Also the index of the patch of each face. Raises InputError: patches that share vertices as no volume's
-    do.
+    The directions of the bottom are i and j, or `turned` j and i. Raises InputError: the shared vertices are
+    not those of a volume.
     """
     bottom = vertices[first].T if turned else vertices[first]
     lattice = np.empty((2, 2, 2), dtype=np.intp)
@@ -164,8 +164,5 @@ def _closed(faces: dict[Side, Floats], order: dict[Side, int]) -> tuple[str, ...
         if gaps[at] > widest:
             widest, where = float(gaps[at]), pair
     share_edges(faces)
-    return (
-        (Change(f"nodes of shared edges were up to {widest:.3g} apart ({where}) and are now equal"),)
-        if widest
-        else ()
-    )
+    note = Change(f"nodes of shared edges were up to {widest:.3g} apart ({where}) and are now equal")
+    return (note,) if widest else ()

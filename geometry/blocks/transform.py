@@ -11,7 +11,7 @@
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import TypeAlias
 
@@ -96,13 +96,8 @@ def _corners_in_space(grid: Grid, patch: Patch) -> _Corners:
     span = patch.range(face.shape[:-1])
     nodes = part_of(face, span)
     lines = (
-        (
-            patch.side,
-            span[axis][0],
-            np.take(nodes, k * (nodes.shape[1 - axis] - 1) // 2, axis=1 - axis),
-            False,
-        )
-        for axis in (0, 1)
+        (patch.side, first, np.take(nodes, k * (nodes.shape[across] - 1) // 2, axis=across), False)
+        for (first, _), across in zip(span, (1, 0), strict=True)
         for k in range(3)
     )
     return _corners_of(lines)
@@ -156,15 +151,11 @@ def _coarser_patches(patches: tuple[Patch, ...], k: int) -> tuple[Patch, ...]:
                 end = f"patch {patch.name!r} ends at node {node} of {patch.side}"
                 ends = f"make the grid with ends at multiples of {k} ({{wake_nodes}} for a wake)"
                 raise InputError(f"{end}, which every {k}-th leaves out", f"{ends}, or coarsen less")
-    return tuple(
-        replace(
-            patch,
-            start=patch.start // k,
-            stop=patch.stop // k,
-            across=patch.across and (patch.across[0] // k, patch.across[1] // k),
-        )
-        for patch in patches
-    )
+    coarser = []
+    for patch in patches:
+        across = patch.across and (patch.across[0] // k, patch.across[1] // k)
+        coarser.append(replace(patch, start=patch.start // k, stop=patch.stop // k, across=across))
+    return tuple(coarser)
 
 
 def normalised(grid: Grid) -> Grid:
@@ -177,7 +168,10 @@ def normalised(grid: Grid) -> Grid:
     Raises InputError: the body has no length.
     """
     if not grid.around_body:
-        return _normalised_blocks(grid)
+        low, high = grid.box
+        size = float((high - low).max())
+        blocks = [Block((block.nodes - low) / size) for block in grid.blocks]
+        return _moved(grid, blocks, lambda motion: _shifted(motion, (motion(low) - low) / size))
     body = grid.nodes[grid.wake : grid.ni - grid.wake, 0]
     trailing = body[0]
     leading = body[np.hypot(*(body - trailing).T).argmax()]
@@ -191,19 +185,17 @@ def normalised(grid: Grid) -> Grid:
     return grid.with_nodes(nodes)
 
 
-def _normalised_blocks(grid: Grid) -> Grid:
-    low, high = grid.box
-    size = float((high - low).max())
-    blocks = [Block((block.nodes - low) / size) for block in grid.blocks]
-    connections = []
-    for each in grid.connections:
-        motion = each.transform
-        if motion:  # for nodes minus `low`, divided by `size`
-            motion = replace(motion, shift=tuple(((motion(low) - low) / size).tolist()))
-        connections.append(replace(each, transform=motion))
-    # both sides of a periodic connection were moved and scaled, and now differ by rounding
-    equal = with_equal_nodes(blocks, connections)
-    return replace(grid, blocks=equal, connections=tuple(connections))
+def _moved(grid: Grid, blocks: Sequence[Block], motion_of: Callable[[Motion], Motion]) -> Grid:
+    """Return `grid` with its `blocks` moved, and `motion_of` each motion between periodic sides."""
+    connections = tuple(
+        replace(each, transform=each.transform and motion_of(each.transform)) for each in grid.connections
+    )
+    equal = with_equal_nodes(blocks, connections)  # periodic sides now differ by rounding
+    return replace(grid, blocks=equal, connections=connections)
+
+
+def _shifted(motion: Motion, shift: Floats) -> Motion:
+    return replace(motion, shift=tuple(shift.tolist()))
 
 
 def scaled(grid: Grid, factor: float) -> Grid:
@@ -215,35 +207,25 @@ def scaled(grid: Grid, factor: float) -> Grid:
         remedy = "give the new unit in old ones, e.g. 0.001 for a grid from mm to m"
         raise InputError(f"a factor of {factor:g}", remedy, parameter="scale")
     blocks = [Block(factor * block.nodes) for block in grid.blocks]
-    connections = []
-    for each in grid.connections:
-        motion = each.transform
-        if motion:
-            motion = replace(motion, shift=tuple(factor * x for x in motion.shift))
-        connections.append(replace(each, transform=motion))
+    moved = _moved(grid, blocks, lambda motion: _shifted(motion, factor * np.array(motion.shift)))
     facts = {
         name: factor * fact if name.startswith(_LENGTHS) else fact for name, fact in grid.provenance.items()
     }
     facts["scaled"] = factor * float(facts.get("scaled", 1.0))
-    equal = with_equal_nodes(blocks, connections)  # periodic sides now differ by rounding
-    return replace(grid, blocks=equal, connections=tuple(connections), provenance=facts)
+    return replace(moved, provenance=facts)
 
 
 def rotated(grid: Grid, rotation: Motion) -> Grid:
     """Return a grid of volumes rotated by `rotation`; the motions between periodic sides are rotated too."""
-    back = rotation.inverse()
+    frame = rotation.inverse()(np.concatenate([np.zeros((1, 3)), np.eye(3)]))
+
+    def rotated_motion(motion: Motion) -> Motion:
+        start, *ends = rotation(motion(frame))
+        turn = (np.array(ends) - start).T.tolist() if motion.turn else ()
+        return Motion(tuple(start.tolist()) if motion.shift else (), tuple(map(tuple, turn)))
+
     blocks = [Block(rotation(block.nodes), finite=True) for block in grid.blocks]
-    connections = []
-    for each in grid.connections:
-        motion = each.transform
-        if motion:
-            start, *ends = rotation(motion(back(np.concatenate([np.zeros((1, 3)), np.eye(3)]))))
-            turn = (np.array(ends) - start).T.tolist() if motion.turn else ()
-            shift = start.tolist() if motion.shift else ()
-            motion = Motion(tuple(shift), tuple(map(tuple, turn)))
-        connections.append(replace(each, transform=motion))
-    equal = with_equal_nodes(blocks, connections)  # periodic sides now differ by rounding
-    return replace(grid, blocks=equal, connections=tuple(connections))
+    return _moved(grid, blocks, rotated_motion)
 
 
 def turned(grid: Grid) -> Grid:
@@ -288,7 +270,7 @@ def _turned_connection(each: Connection, last: list[int]) -> Connection:
 
 
 def _turned_stretch(side: Side, span: tuple[int, int], last: int) -> tuple[Side, tuple[int, int]]:
-    """Return the new side and range of a stretch of a side once its block is `turned`; `last` as above."""
+    """Return the new side and range of a stretch of a side of a `turned` block; see `turned_patch`."""
     if side in _COUNTED_BACK:
         span = last - span[1], last - span[0]
     return _SIDES[side], span

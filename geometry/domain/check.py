@@ -22,9 +22,9 @@ _SAME = 1e-13
 def check_domain(domain: Domain) -> None:
     """Raise InputError, with the place, if the polygons of the loops do not bound a region.
 
-    The checks, in this order: points are repeated; a loop has no area; a loop crosses or touches itself or
-    another loop, or has the wrong orientation; a hole is outside the outer loop or inside another hole. A
-    loop that is a spline is checked as the polygon through its points.
+    In this order: points are repeated; a loop has no area; a loop crosses or touches itself or another loop,
+    or has the wrong orientation; a hole is outside the outer loop or inside another hole. Splines are checked
+    as polygons through their points.
     """
     check_extent(domain.extent)
     for number, loop in enumerate(domain.loops):
@@ -74,7 +74,7 @@ def _check_points(domain: Domain, number: int, loop: Loop) -> None:
 
 
 def _first_crossing(domain: Domain) -> Crossing | None:
-    """Return the first two segments that meet, numbered through all loops, each closed by its first point."""
+    """Return the first two segments that meet, numbered through all loops."""
     rings = [np.concatenate([loop.curve.points, loop.curve.points[:1]]) for loop in domain.loops]
     p, last = np.concatenate(rings), np.cumsum([len(ring) for ring in rings]) - 1
     low, top = sweep_spans(p, np.roll(p, -1, axis=0))
@@ -118,7 +118,7 @@ def _raise_crossing(domain: Domain, crossing: Crossing) -> None:
 
 
 def _check_nesting(domain: Domain) -> None:
-    """Raise InputError for a loop on the wrong side of another, by its first point; none of them meet."""
+    """Raise InputError for a loop whose first point is on the wrong side of another loop."""
     starts = np.array([loop.curve.points[0] for loop in domain.loops])
     for number, loop in enumerate(domain.loops):
         inside = contains(loop.curve.points, starts)

@@ -9,7 +9,6 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Indices, extent_of
 from meshonet.geometry.blocks.patches import may_be_wall
 from meshonet.geometry.cached import cached_property
-from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.domain.ring import ring_loop
@@ -105,7 +104,7 @@ class Domain:
     @property
     def curved_area(self) -> float:
         """Area bounded by the curves of the loops, not by the polygons through their points."""
-        return float(sum(polygon_area(_drawn(loop.curve)) for loop in self.loops))
+        return float(sum(polygon_area(loop.curve.polyline(_PARTS)) for loop in self.loops))
 
     @cached_property
     def lengths(self) -> Floats:
@@ -123,12 +122,10 @@ class Domain:
     def layered_loops(self) -> range:
         """Indices of the loops that get layers if no wall is named: the holes.
 
-        Without holes, it is the outer loop, provided that the name of one of its parts says that this part is
-        no wall.
+        Without holes, it is the outer loop if the name of one of its parts says that the part is no wall.
         """
-        channel = (
-            len(self.loops) == 1 and not self.periodic and not all(map(may_be_wall, self.loops[0].names))
-        )
+        alone = len(self.loops) == 1 and not self.periodic
+        channel = alone and not all(map(may_be_wall, self.loops[0].names))
         return range(0 if channel else 1, len(self.loops))
 
     @cached_property
@@ -146,8 +143,3 @@ def _named(polygons: Sequence[Floats], names: Sequence[str | Sequence[str]]) -> 
         ring_loop(points, hole=number > 0, names=own)
         for number, (points, own) in enumerate(zip(polygons, called, strict=True))
     )
-
-
-def _drawn(curve: Curve) -> Floats:
-    polygon = curve.straight is not None and bool(curve.straight.all())
-    return curve.points if polygon else curve.polyline(_PARTS)

@@ -13,16 +13,13 @@ from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.polygon.straights import find_kinks
 
 APART = 0.01
-"""Smallest distance of a kink from a corner or another kink, relative to the length of the loop: cells that
-are no longer than that would grow too fast beside longer ones.
-"""
+"""Smallest distance of a kink from a corner or another kink, over the length of the loop."""
 
 
 def with_kinks(domain: Domain) -> Domain:
-    """Return a domain whose polygons have corners at kinks too.
+    """Return a domain whose polygons have corners of two cells at kinks (`find_kinks`) too.
 
-    Kinks are found by `find_kinks` between each two corners; their turns are too small for corners. If a kink
-    were not a node, a cell would cut it off, by several first-cell heights where layers are thin.
+    Otherwise a cell could cut a kink off, by several first-cell heights where layers are thin.
     """
     held = 1 if domain.periodic else 0  # periodic sides are matched already
     loops = domain.loops

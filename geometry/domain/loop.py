@@ -28,9 +28,8 @@ class Loop:
 
     Parameters
     ----------
-    curve : closed curve; its `points` (n, 2) are those of the input. Arc lengths are measured from the first
-        point. The curve of a polygon is the polygon itself (``Curve(..., straight=...)``), that of an airfoil
-        is a spline between corners.
+    curve : closed curve through the `points` (n, 2) of the input; arc lengths start at the first point. The
+        curve of a polygon is the polygon itself, that of an airfoil is a spline between corners.
     corners : ascending indices of the points that are corners. A grid has a node at each.
     names : one name for the whole loop, or one for each stretch between corners.
     cells : number of cells that should meet at each corner; if empty, the numbers follow from the angles.
@@ -59,8 +58,7 @@ class Loop:
     ) -> Self:
         """Return the loop along a polygon `points` (n, 2), with the domain on its left.
 
-        `corners` are the indices of the corners; None: detected by the turning angle. `names` are as in
-        `Loop`.
+        `corners` are indices of points; None detects them by the turning angle. `names` are as in `Loop`.
         """
         curve = Curve(points, closed=True, corners=(), straight=np.ones(len(points), dtype=bool))
         if corners is None:
@@ -99,10 +97,7 @@ class Loop:
         return self.curve.at(np.mod(arc, self.length))
 
     def tangent(self, arc: Floats) -> Floats:
-        """Return unit tangents (m, 2) at arc lengths (m,).
-
-        At a corner it is the tangent of the stretch after the corner.
-        """
+        """Return unit tangents (m, 2) at arc lengths (m,); at a corner, of the stretch after it."""
         return self.curve.tangent(np.mod(arc, self.length))
 
     def name_at(self, arc: float) -> str:

@@ -11,8 +11,7 @@ from meshonet.geometry.polygon.area import contains, polygon_area
 def nested(polygons: Sequence[Floats]) -> list[tuple[int, list[int]]]:
     """Return, for each outer polygon, its index and the indices of its holes, in the order of `polygons`.
 
-    A polygon inside a hole is an outer polygon. Whether a polygon lies inside another is decided by its first
-    point.
+    A polygon inside a hole is an outer polygon. A polygon is inside another if most of three points are.
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> nested([square + 1.0, 4.0 * square, square + 2.5])

@@ -37,7 +37,7 @@ class Periodic:
 def rounded(values: Floats, domain: Domain) -> Floats:
     """Return coordinates (..., 2), rounded so that the order in which shifts are added has no effect.
 
-    If the shifts are along different axes, the order never has an effect, and nothing is rounded.
+    Nothing is rounded if the shifts are along different axes.
     """
     shifts = np.unique(np.abs([each.shift for each in domain.periodic]), axis=0)
     if (np.count_nonzero(shifts, axis=0) < 2).all():
@@ -67,12 +67,8 @@ def with_periodic_sides(domain: Domain, pairs: Sequence[tuple[str, str]]) -> Dom
     loop = _with_cells(loop, matches)
     made = replace(domain, loops=(loop, *domain.loops[1:]), periodic=(*domain.periodic, *matches))
     shifts = rounded(np.array([each.shift for each in made.periodic]), made).tolist()
-    return replace(
-        made,
-        periodic=tuple(
-            replace(each, shift=(x, y)) for each, (x, y) in zip(made.periodic, shifts, strict=True)
-        ),
-    )
+    exact = (replace(each, shift=(x, y)) for each, (x, y) in zip(made.periodic, shifts, strict=True))
+    return replace(made, periodic=tuple(exact))
 
 
 def _check_names(domain: Domain, pairs: Sequence[tuple[str, str]]) -> None:
@@ -142,10 +138,10 @@ def _stretches(loop: Loop, name: str) -> list[tuple[float, float]]:
 
 
 def _with_cells(loop: Loop, pairs: Sequence[Periodic]) -> Loop:
-    """Return the loop with as many cells at the ends of periodic sides as both ends together have room for.
+    """Return the loop with numbers of cells at the ends of periodic sides for which both together have room.
 
-    A smooth wall that a side cuts leaves 180 degrees at both ends together, for one cell each, whatever it
-    leaves at either. Raises InputError: a side that ends where the boundary does not turn.
+    A side that cuts a smooth wall has 180 degrees at both ends together, for one cell each. Raises
+    InputError: a side that ends where the boundary does not turn.
     """
     cells, arcs, length = loop.corner_cells.copy(), loop.corner_arcs, loop.length
     for each in pairs:

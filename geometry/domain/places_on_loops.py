@@ -9,10 +9,9 @@ from meshonet.geometry.domain.loop import Loop
 def place_at(loop: Loop, arc: Floats) -> Floats:
     """Return numbers (n,), called places, for the points of a `loop` at the arc lengths `arc` (n,).
 
-    The integer part of a place is the index of the corner before the point. The fractional part is the
-    distance from this corner, divided by the arc length to the next corner; it is exactly 0 at a corner. A
-    place can therefore be transferred to another loop with equally many corners. On a loop without corners a
-    place is the arc length from its first point, divided by the length of the loop.
+    The integer part of a place is the index of the corner before the point. The fractional part is the arc
+    length from this corner over that to the next corner. On a loop without corners a place is the arc length
+    over the length of the loop.
     """
     arc = np.mod(arc, loop.length)
     if not loop.corners:

@@ -14,9 +14,9 @@ SAMPLES, _WINDOW = 400, 3  # points around a loop, and those on either side over
 
 @lru_cache(maxsize=64)
 def _table(loop: Loop) -> tuple[Floats, Floats]:
-    """Return the arc lengths (n + 1,) of a loop's points and how much it has turned up to each, in degrees.
+    """Return the arc lengths (n + 1,) of a loop's points, and its turning (degrees) up to each of them.
 
-    What it turns by at a point is spread over the segments on both sides.
+    The turning at a point is spread over the segments on both sides.
     """
     at = np.abs(np.degrees(turning(loop.curve.points, closed=True)))
     at[list(loop.corners)] = 0.0
@@ -25,10 +25,7 @@ def _table(loop: Loop) -> tuple[Floats, Floats]:
 
 
 def turning_between(loop: Loop, first: Floats, last: Floats) -> Floats:
-    """Return the angles in degrees (k,) by which a loop turns, in absolute value, from `first` to `last`.
-
-    The turning at corners is not included.
-    """
+    """Return the absolute turning (k,) of a loop in degrees from `first` to `last`, without its corners."""
     arcs, turned = _table(loop)
     return _turned(loop, last, arcs, turned) - _turned(loop, first, arcs, turned)
 
@@ -39,10 +36,7 @@ def _turned(loop: Loop, arc: Floats, arcs: Floats, turned: Floats) -> Floats:
 
 
 def corners_between(loop: Loop, first: float, last: float) -> tuple[Floats, Indices]:
-    """Return the corners of a loop strictly between two arc lengths, ordered from `first` to `last`.
-
-    The result is the arc length of each corner, and the number of cells that should meet there.
-    """
+    """Return arc lengths and numbers of cells of the corners strictly between two arc lengths, in order."""
     low, high = min(first, last), max(first, last)
     rounds = np.floor(low / loop.length) + np.arange(3)
     arcs = (loop.corner_arcs + rounds[:, None] * loop.length).ravel()
@@ -66,8 +60,7 @@ def sizes_by_bend(loop: Loop, largest: float, turn: float) -> tuple[Floats, Floa
 def wall_bend(loop: Loop, arcs: Floats, window: int) -> Floats:
     """Return the absolute curvature (n,) of a loop at ascending arc lengths (n,), in radians per length.
 
-    Each value is an average over `window` of the `arcs` on both sides. The turning at corners of the loop
-    does not count; the corners must be among `arcs`.
+    It is averaged over `window` of the `arcs` on both sides, without corners, which must be among `arcs`.
     """
     along = loop.tangent(arcs)
     direction = arctan2(along[:, 1], along[:, 0])

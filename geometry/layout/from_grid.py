@@ -1,7 +1,7 @@
 """The layout of a multi-block grid: shared nodes, and the domain bounded by its outer sides.
 
-The loops of the domain are splines through the grid's own boundary nodes. They have corners where the
-boundary turns, where its name changes, and where the number of cells that meet is not two.
+The loops are splines through the boundary nodes, with corners where they turn or their name changes, and
+where other than two cells meet.
 """
 
 from dataclasses import dataclass, replace
@@ -62,7 +62,7 @@ class _Ring:
 
 
 def _boundary(grid: Grid, numbers: tuple[Indices, ...]) -> dict[int, tuple[int, str]]:
-    """Return for each boundary node its successor, with the domain on the left, and the name of that edge."""
+    """Return, for each boundary node, the next one (domain on the left) and the name of the edge between."""
     after: dict[int, tuple[int, str]] = {}
     named = {(p.name, p.block, p.side) for p in grid.patches}
     for patch in [*grid.outer_patches(), *_periodic_sides(grid)]:
@@ -136,8 +136,7 @@ def _pairs(grid: Grid, numbers: tuple[Indices, ...]) -> tuple[Floats, Indices, I
     Raises InputError: sides periodic by a rotation, or by more than one shift.
     """
     shift = np.zeros(2)
-    first: list[Indices] = []
-    second: list[Indices] = []
+    first, second = list[Indices](), list[Indices]()
     for each in grid.connections:
         if each.transform is None:
             continue
@@ -171,7 +170,7 @@ def _period(
 
 
 def _stretch(ring: _Ring, loop: Loop, nodes: Indices) -> tuple[float, float]:
-    """Return the arc lengths at which a run of `nodes` along the loop begins and ends."""
+    """Return the arc lengths at which a run of `nodes` along the loop begins and ends; InputError: no run."""
     among = np.isin(ring.nodes, nodes)
     begins = np.flatnonzero(among & ~np.roll(among, 1))
     ends = np.flatnonzero(among & ~np.roll(among, -1))

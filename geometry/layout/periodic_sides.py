@@ -13,16 +13,11 @@ from meshonet.geometry.domain.periodic import Periodic, rounded
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 
 Sides = tuple[Periodic, Indices, Indices]
-"""A pair of periodic parts of the boundary, and the nodes of each part, corners included, in the order of the
-first.
-"""
+"""Two periodic sides, and the nodes of each with its corners, in the order of the first."""
 
 
 def sides_of(mesh: QuadMesh) -> list[Sides]:
-    """Return, for each periodic pair of sides, the nodes along both sides.
-
-    The two sides have equally many nodes only if their numbers of cells were matched before.
-    """
+    """Return, for each periodic pair of sides, the nodes along both sides, which may differ in number."""
     after = following(mesh)
     return [
         (each, _chain(mesh, after, each.first), _chain(mesh, after, each.second)[::-1])
@@ -53,14 +48,11 @@ def with_tied_sides(mesh: QuadMesh) -> QuadMesh:
 
 
 def matched_nodes(mesh: QuadMesh) -> Floats:
-    """Return the nodes (n, 2), with the second side of each pair bitwise equal to the shifted first side.
-
-    A corner that belongs to two pairs satisfies both.
-    """
+    """Return the nodes (n, 2), with the second side of each pair bitwise equal to the shifted first side."""
     nodes, sides = mesh.nodes.copy(), sides_of(mesh)
     for _, first, _ in sides:
         nodes[first] = rounded(nodes[first], mesh.domain)
-    for _ in range(2 * len(sides)):  # a corner may follow one that follows another
+    for _ in range(2 * len(sides)):  # a corner may belong to two pairs
         for each, first, second in sides:
             nodes[second] = nodes[first] + np.array(each.shift)
     return nodes

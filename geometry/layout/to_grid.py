@@ -1,7 +1,6 @@
 """From a fine layout, whose blocks share nodes, to a grid, whose blocks are connected.
 
-Shared edges become connections with bitwise equal nodes, periodic pairs of edges connections with a motion,
-and the other edges become patches with the names of the domain's loops.
+Shared edges become connections, periodic pairs of edges connections with a motion, other edges patches.
 """
 
 from collections.abc import Collection

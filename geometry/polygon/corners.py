@@ -10,9 +10,7 @@ from meshonet.geometry.elementary import arctan2
 KINK = np.radians(8.0)
 """Radians: a larger turn is a corner if both neighbouring points turn by less than a fifth of it."""
 SHARP = np.radians(40.0)
-"""Radians: a larger turn is a corner if both neighbouring points turn by less than half of it, or if points
-are few.
-"""
+"""Radians: a larger turn is a corner if both neighbouring turns are less than half of it or points few."""
 ALWAYS = np.radians(75.0)
 """Radians: a larger turn is always a corner."""
 HAIRPIN = np.radians(100.0)
@@ -93,7 +91,7 @@ def _oblique_bases(points: Floats, angle: Floats) -> Bools:
     """Return for each point (n,) of a closed polygon whether it is one of the two ends of an oblique base.
 
     One end turns by more than `HAIRPIN`, the next by more than `KINK`, both five times as much as the points
-    beyond them. So may points next to a round end, but there the thickness grows ever more slowly behind it.
+    beyond them, and the body widens at an even rate behind them, unlike behind a round end.
     """
     ahead, before, after = rolled(angle, -1), rolled(angle, 1), rolled(angle, -2)
     pair = (np.maximum(angle, ahead) > HAIRPIN) & (np.minimum(angle, ahead) > KINK)
@@ -104,9 +102,9 @@ def _oblique_bases(points: Floats, angle: Floats) -> Bools:
 
 
 def _widens_on(points: Floats, k: int) -> bool:
-    """Return whether a body widens behind points k and k + 1 as fast as before up to the next two points.
+    """Return whether a body widens at an even rate behind its points k and k + 1, not like behind a nose.
 
-    Widths are measured across the direction to the third two; behind a nose they grow like its square root.
+    Widths are measured across the direction from these two points to the second pair after them.
     """
     n = len(points)
     if n < 7:
@@ -123,9 +121,9 @@ def _widens_on(points: Floats, k: int) -> bool:
 def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:
     """Return the exponent p with which a body becomes thicker away from its point k.
 
-    At a small distance d from point k of the polygon `points` (n, 2), the thickness is proportional to d to
-    the power p: p is about 1/2 behind a round end, 1 behind a wedge, and more behind a cusp. It is computed
-    from the two points on each side of point k. It is infinite if an open polygon has too few points there.
+    At a small distance d from point k of the polygon `points` (n, 2), the thickness is proportional to d^p: p
+    is about 1/2 behind a round end, 1 behind a wedge, and more behind a cusp. It follows from the two points
+    on each side of point k, and is infinite if there are none.
     """
     n = len(points)
     if n < 5 or (not closed and not 2 <= k < n - 2):

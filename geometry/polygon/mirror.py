@@ -26,11 +26,10 @@ def farthest(wall: Complexes) -> tuple[int, int]:
 def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
     """Return a sign that tells a body from its mirror image, and the axis of the mirror.
 
-    The body is given by two curves, `wall` (n,) and `far` (n,). The sign is 1 or -1, and has the opposite
-    value for the mirror images of both curves; it is 0 if both are symmetric. In a mirror image the order of
-    nodes is reversed: its node i is the image of node n - i. The axis runs from the first node of `wall` to
-    the middle of the nodes farthest from it. The sign is decided by the node that is farthest from the mirror
-    image of its partner. This node is on `wall`, or on `far` if `wall` is symmetric.
+    The body is given by two curves, `wall` (n,) and `far` (n,). The sign, 1 or -1, is opposite for the mirror
+    images of both curves, in reversed order; it is 0 if both are symmetric. The axis runs from the first node
+    of `wall` to the middle of the nodes farthest from it. The node farthest from the mirror image of its
+    partner decides, on `wall` or, if that is symmetric, on `far`.
     """
     a, b = farthest(wall)
     along = 0.5 * (wall[a] + wall[b]) - wall[0]

@@ -15,9 +15,7 @@ from meshonet.kernels._native import crossing_segments
 
 _BUDGET = 50_000_000  # comparisons, a quarter of a second, before an index tree replaces the sweep
 _SWEEP = np.array([0.846, 0.533])
-"""Direction along which segments are sorted. It is oblique: along a coordinate axis, all segments of a
-straight side normal to this axis would overlap.
-"""
+"""Direction along which segments are sorted; oblique, since straight sides normal to it would overlap."""
 _ROUNDING = 1e-15  # relative, of products with it
 _CHUNK = 256  # segments queried at a time, so that the crossings of a tangle do not fill the memory
 
@@ -59,8 +57,7 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
     """Return up to `limit` crossings or contacts of non-adjacent segments of a polygon (n, 2).
 
     A segment that runs back along its neighbour is also reported. A closed polygon does not repeat its first
-    point. Segments are sorted along a direction, and only those that overlap along it are compared: about n
-    comparisons for a body. A polygon with too many overlaps is searched with a spatial index tree (shapely).
+    point. Only segments that overlap along a direction are compared; if these are too many, shapely searches.
     """
     p = np.ascontiguousarray(points, dtype=np.float64)
     end = np.roll(p, -1, axis=0) if closed else p[1:]
@@ -78,9 +75,7 @@ def sweep_spans(p: Floats, end: Floats) -> tuple[Floats, Floats]:
     """
     along, along_end = product(p[: len(end)], _SWEEP), product(end, _SWEEP)
     low, top = np.minimum(along, along_end), np.maximum(along, along_end)
-    top += _ROUNDING * max(
-        np.abs(along).max(initial=0.0), np.abs(along_end).max(initial=0.0)
-    )  # of the products
+    top += _ROUNDING * max(np.abs(along).max(initial=0.0), np.abs(along_end).max(initial=0.0))
     return low, top
 
 

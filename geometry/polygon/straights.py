@@ -21,9 +21,8 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
     """Return the ascending indices of kinks of an open polygon `points` (n, 2); corners may be among them.
 
     A turn of more than 2 degrees is a kink if it is 20 times as large as both neighbouring turns. In a
-    polygon of at most `few` points, all turns of more than 2 degrees are kinks if somewhere the polygon turns
-    one way and, at the next point, back, by at least half of its largest turn: a smooth curve through these
-    points would be a wave.
+    polygon of at most `few` points, all such turns are kinks if two successive turns in opposite directions
+    are at least half of the largest: a smooth curve would be a wave.
     """
     turn = turning(points)
     size = np.abs(turn)
@@ -38,11 +37,9 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
 def straight_intervals(points: Floats, corners: Indices) -> Bools:
     """Return the mask (n,) of the intervals of a closed polygon `points` (n, 2) that are straight lines.
 
-    Such lines are between rounded corners. An interval is straight under two conditions. First, it is at
-    least `LONG` times as long as one of its neighbours; a neighbour beyond one of the `corners` (indices of
-    points) is ignored. Second, at both ends the polygon turns by at most `EXPLAINED` times the angle between
-    a tangent and a chord of the circle through the next three points. At the ends of a long chord of a curve
-    it turns more.
+    An interval is straight if it is at least `LONG` times as long as a neighbour that is not beyond one of
+    the `corners` (indices of points), and if the polygon turns at both ends by at most `EXPLAINED` times the
+    angle between tangent and chord of the circle through the next three points.
     """
     turn, joined = turning(points, closed=True), np.ones(len(points), dtype=bool)
     turn[corners], joined[corners] = 0.0, False

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 
@@ -36,8 +34,7 @@ ACROSS = 12.0
 COARSEST = 20.0
 """Largest factor by which cells along the blade may become longer."""
 MORE = 10.0
-"""Largest ratio of the number of cells to the requested number, if a long inlet or outlet needs more cells.
-"""
+"""Largest ratio of the number of cells to the requested number, for a long inlet or outlet."""
 SHORTEST = 0.08
 """Smallest distance in pitches from the blade with its layers to inlet or outlet."""
 
@@ -53,14 +50,12 @@ class Cascade:
     inlet, outlet : lengths of the passage upstream and downstream of the blade, in axial chords.
     settings : layers at the blade; the default is a few rows of equal cells.
     name : name of the blade.
-    near : distances upstream and downstream of the blade, in pitches, at which straight rows of cells begin,
-        if the inlet and the outlet are farther away than that.
+    near : distances upstream and downstream of the blade, in pitches, beyond which grid lines are straight.
     centre : point inside the blade from which axial distances are measured; the default is the point farthest
         from its surface.
     marched : the layers around the blade, if they are already known.
-    share : fraction of the thickness that layers would have otherwise.
-    factors : (n,) factors by which the first-cell height is multiplied at the points of the blade; the
-        default is 1.
+    share : factor on the thickness of layers.
+    factors : (n,) factors on the first-cell height at the points of the blade; the default is 1.
     """
 
     blade: Loop
@@ -115,7 +110,7 @@ class Cascade:
         beside = [_moved(self.blade, each) for each in shift]
         farthest = max(float(np.abs(loop.curve.points).max()) for loop in (self.blade, *beside))
         try:
-            check_domain(Domain((_around(math.frexp(farthest)[1]), self.blade, *beside)))
+            check_domain(Domain((far_loop(np.zeros(2), 4.0 * farthest), self.blade, *beside)))
         except InputError as error:
             problem = f"blades {abs(self.left):g} apart touch or cross"
             raise InputError(problem, "use a larger pitch", parameter="pitch") from error
@@ -130,7 +125,7 @@ class Cascade:
 
     @property
     def kept(self) -> float:
-        """Part of `thickness` that layers have at the most: they are made thinner until no cell is folded."""
+        """Largest fraction of `thickness` that layers have after they are thinned until no cell is folded."""
         return min(float(self.ring.thickness.max()) / self.thickness, 1.0)
 
     @cached_property
@@ -148,10 +143,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Measures whose steps along the front (the outer edge of the layers) should be even.
-
-        The key is the index of the loop; the dict is empty if growth has no limit.
-        """
+        """Measures whose steps along the front should be even, by loop; empty if growth has no limit."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:
@@ -162,17 +154,14 @@ class Cascade:
 
     @cached_property
     def reach(self) -> tuple[float, float]:
-        """Requested lengths from the front (the outer edge of the layers) to inlet and outlet.
-
-        The lengths may be too short for the blocks; `ends` checks this.
-        """
+        """Requested lengths from the front (the outer edge of the layers) to inlet and outlet, unchecked."""
         axial, around = self._axial(self.blade), self._axial(self.ring.front)
         before = self.inlet * self.chord - float(axial.min() - around.min())
         return before, self.outlet * self.chord - float(around.max() - axial.max())
 
     @cached_property
     def ends(self) -> tuple[float, float]:
-        """Lengths from the front to inlet and outlet."""
+        """Lengths from the front to inlet and outlet. Raises InputError: too short for the blocks."""
         chord, (before, behind) = self.chord, self.reach
         for length, name, chords in ((before, "inlet", self.inlet), (behind, "outlet", self.outlet)):
             least = SHORTEST * abs(self.left)
@@ -220,12 +209,6 @@ class Cascade:
 def scaled(metric: SizeMetric, scale: float) -> SizeMetric:
     """Return the `metric` with target lengths along the blade multiplied by `scale`."""
     return replace(metric, along=scale * metric.along, largest=metric.largest * scale**0.5)
-
-
-@lru_cache(maxsize=8)
-def _around(exponent: int) -> Loop:
-    """Return a circle around all points with coordinates of at most 2 to the power `exponent`."""
-    return far_loop(np.zeros(2), math.ldexp(2.0, exponent))
 
 
 def _moved(blade: Loop, shift: Floats) -> Loop:

@@ -60,9 +60,8 @@ class Passage:
     ) -> Passage:  # fmt: skip
         """Return the passage around a closed front.
 
-        Blocks end at the distances `near` from the front, in pitches; or at the distances `inlet` and
-        `outlet`, in the unit of the front, where these are smaller. The default of `centre` is a point far
-        from the front.
+        Blocks end at the distances `near` from the front, in pitches, or `inlet` and `outlet` if smaller. The
+        default of `centre` is the point farthest from the front.
         """
         points = front.curve.points
         centre = inner_point(points) if centre is None else centre
@@ -95,10 +94,7 @@ class Passage:
         return centre + np.array(axial)[:, None] * self.axis + np.array(along)[:, None] * self.pitch
 
     def zeta(self, points: Floats) -> Complexes:
-        """Return the complex coordinate ζ (n,) of points (n, 2).
-
-        In ζ the pitch is iπ, and the axial direction is real.
-        """
+        """Return the complex coordinate ζ (n,) of points (n, 2): the pitch is iπ, the axis real."""
         return np.asarray(times(1j * np.pi, (complex_of(points) - self.centre)) / self.period)
 
     def of_zeta(self, zeta: Complexes) -> Floats:
@@ -106,12 +102,11 @@ class Passage:
         return pairs_of(self.centre + times(zeta, self.period) / (1j * np.pi))
 
     def domain(self, inlet: float, outlet: float) -> Domain:
-        """Return the domain of the blocks: a loop around all blocks, and three holes: front, inlet, outlet.
+        """Return the domain of the blocks: loops along the front, inlet and outlet, and a loop around all.
 
-        The holes inlet and outlet are rectangles upstream and downstream of the passage. The first side of
-        the upstream rectangle is the inlet: it starts at `inlet` and goes against the pitch. The first side
-        of the downstream rectangle is the outlet: it goes along the pitch and ends at `outlet`. `inlet` and
-        `outlet` are distances from the centre in the direction of the pitch, in pitches.
+        The inlet is the first side of a rectangle upstream of the passage; it runs against the pitch and
+        starts at `inlet`. The outlet is the first side of a rectangle downstream; it runs along the pitch and
+        ends at `outlet`. Both are distances from the centre along the pitch, in pitches.
         """
         pitch = abs(self.period)
         x, far = (self.inlet, self.outlet), (self.inlet - pitch, self.outlet + pitch)
@@ -148,7 +143,7 @@ def inner_point(polygon: Floats) -> complex:
 
 
 def _crossings(polygon: Floats, x: float) -> Floats:
-    """Return the ordinates, ascending, at which a closed polygon crosses the line of an abscissa."""
+    """Return the ascending y at which a closed polygon crosses the vertical line at `x`."""
     a, b = polygon, np.roll(polygon, -1, axis=0)
     across = (a[:, 0] > x) != (b[:, 0] > x)
     a, b = a[across], b[across]
@@ -158,7 +153,7 @@ def _crossings(polygon: Floats, x: float) -> Floats:
 def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
     """Return the layout of the passage with `rows` attached; its domain has periodic sides and the `wall`.
 
-    `cut` (k,) are the nodes on the lower side of the cut of the layout, ordered from inlet to outlet.
+    `cut` (k,) are the nodes on the lower side of the cut, from inlet to outlet.
     """
     mesh = layout.mesh
     count = len(mesh.nodes)

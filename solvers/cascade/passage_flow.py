@@ -38,14 +38,10 @@ _LEAST = 1e-9  # of the slit: by how much the potential rises from point to poin
 class PassageFlow:
     """Potential flow past a cascade: it maps a blade to a slit, and the slit to the edges of a strip.
 
-    ζ is the position in the plane, scaled so that the pitch is iπ. G is the complex potential; in the plane
-    of G the blade is a slit from -h to h. σ is the coordinate in the strip.
-
     Parameters
     ----------
     half : h, half the length of the slit.
-    around : (n,) increasing angles ν of points on the blade; G of such a point is h cos ν. In long channels,
-        points at equal steps are added.
+    around : (n,) increasing angles ν of points on the blade, at which G is h cos ν.
     strip : (n,) positions σ of the points, infinite at the ends of the slit.
     away : (n,) ζ - G at the points.
     """
@@ -92,11 +88,10 @@ class PassageFlow:
         return float(before.real), float(behind.real)
 
     def inside(self, places: Complexes) -> Complexes:
-        """Return ζ - G at points σ (m,); the function is computed from its values on the blade.
+        """Return ζ - G at points σ (m,), by Cauchy's integral of its values on the blade.
 
-        Cauchy's integral is evaluated by the trapezoidal rule in the variable tanh σ/2, whose values fill a
-        disc. The result is divided by the same integral of the constant function 1 (Helsing, Ojala, J.
-        Comput. Phys. 227 (2008) 2899-2921).
+        The integral is a trapezoidal sum in the variable tanh σ/2, whose values fill a disc, divided by that
+        of the function 1 (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
         """
         finite = np.isfinite(self.strip)
         strip, away = self.strip[finite], self.away[finite]

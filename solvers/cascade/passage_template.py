@@ -87,10 +87,7 @@ def _tie(places: Places, potential: Complexes) -> None:
 
 
 def _pieces(flow: PassageFlow, passage: Passage) -> tuple[list[Complexes], list[Floats]]:
-    """Return the twelve blocks in the plane G, and the angles (n,) that `_ring` returns.
-
-    The blocks of the ring come last. Blocks above the cut are placed below the blade, a period further down.
-    """
+    """Return the twelve blocks in the plane G, those of the ring last, and the angles (n,) of `_ring`."""
     x = flow.half + AHEAD
     to_axis = np.pi / abs(passage.period)
     before = max(flow.far[0] - to_axis * passage.inlet, x + AHEAD)
@@ -110,10 +107,9 @@ def _pieces(flow: PassageFlow, passage: Passage) -> tuple[list[Complexes], list[
 
 
 def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], list[Floats]]:
-    """Return the four blocks of the ring, i clockwise around the blade, j away from it.
+    """Return the four blocks of the ring, i clockwise, j away from the blade, and angles ν (n,) at j = 0.
 
-    Their first nodes are not on the blade yet; the second result has their angles (n,) instead. Lines leave
-    the slit along hyperbolae, G = h cosh(μ + iν).
+    Lines leave the slit along hyperbolae, G = h cosh(μ + iν).
     """
     along, up = np.linspace(-x, x, cells + 1), np.linspace(-ASIDE, ASIDE, CELLS + 1)
     blocks, angles = [], []
@@ -127,7 +123,7 @@ def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], lis
 
 
 def _joined_pieces(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
-    """Return the positions of nodes, and blocks of their numbers; nodes that coincide are one."""
+    """Return the distinct positions of nodes, and the blocks as indices of these."""
     places = np.concatenate([piece.ravel() for piece in pieces])
     inner = np.zeros(len(places), dtype=bool)
     ends = np.cumsum([0, *(piece.size for piece in pieces)])
@@ -143,7 +139,7 @@ def _joined_pieces(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, .
 
 
 def _put_at_corners(layout: Layout, front: Loop) -> None:
-    """Move the nearest node to each corner of the blade or of its layers, in place; no node is used twice."""
+    """Move the nearest free node to each corner of the front, in place."""
     places = layout.mesh.places
     free = places.loop == BLADE
     for arc, cells in zip(front.corner_arcs, front.corner_cells, strict=True):
