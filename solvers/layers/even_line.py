@@ -1,12 +1,9 @@
 """Moves nodes along a curve so that the ratio of neighbouring steps is limited, in several measures.
 
-A measure increases along the curve, for example its arc length, or that of a wall below it. Let t be the
-positions of the nodes and ρ the logarithms of the ratios of neighbouring steps of each measure. The nodes
-minimise::
+A measure increases along the curve, such as its arc length. Let ρ be the logarithms of the ratios of
+neighbouring steps of each measure. The positions t of the nodes, initially t0 with the steps s, minimise::
 
     E = the term of `growth_limit` in ρ + σ Σ (t - t0)² / s² + Σ (links)²
-
-t0 are the initial positions, s the steps there.
 """
 
 from __future__ import annotations
@@ -45,9 +42,9 @@ FRONTS = 0.2
 """μ along fronts: fewer nodes move, so that angles beside them are better."""
 MARGIN = 0.006
 """Margin by which ratios, in logarithms, should be below the limit."""
-STEPS = 24  # of Gauss-Newton at the most; the weight reaches its largest value in 15
+STEPS = 24  # largest number of Gauss-Newton steps; the weight reaches its largest value in 15
 MOST, RELAXED, TRIES = 6.0, 1.5, 6
-"""Steps by which places may move, and by what limits that take more are multiplied, so often."""
+"""Largest displacement of a place in steps; factor on the limit if it is exceeded; number of tries."""
 
 FINER = 8
 """Number of points per column at which measures are tabulated."""
@@ -117,12 +114,11 @@ def evened_places(
     places: Floats, fixed: Bools, measures: Measures, limit: float, closed: bool,
     links: PlaceLinks = NO_LINKS, most: float = MOST, change: float = CHANGE,
 ) -> Floats:  # fmt: skip
-    """Return `places` (n,), ascending, moved until neighbouring steps differ by a limited ratio.
+    """Return ascending `places` (n,), moved until neighbouring steps differ by a limited ratio.
 
-    Places in the mask `fixed` (n,) do not change. `limit` is the logarithm of the largest ratio; if it cannot
-    be satisfied, it is exceeded as little as possible. On a closed curve the last step leads to the first
-    place. Where places would move by more than `most` steps, the limit is relaxed. `change` is the weight μ
-    of `GrowthLimit`.
+    Places in the mask `fixed` (n,) do not change. `limit` is the logarithm of the largest ratio; it is
+    relaxed if places would move by more than `most` steps, and exceeded as little as possible. On a closed
+    curve the last step leads to the first place. `change` is the weight μ of `GrowthLimit`.
     """
     line = _Line.of(places, fixed, measures, closed, links, change)
     new = places
@@ -153,9 +149,8 @@ def evened_loops(
 ) -> Layout:
     """Return the layout with nodes moved along some loops; displacements decrease in the adjacent blocks.
 
-    `measures` has the loops by index. Neighbouring steps of the measures of a loop then differ by a ratio of
-    at most exp(`limit`); corners are fixed. `most` is that of `evened_places`. If cells would fold, the given
-    layout is returned.
+    `measures` are those of each loop, by index. Corners are fixed; `limit` and `most` are as in
+    `evened_places`. If cells would fold, the given layout is returned.
     """
     mesh = layout.mesh
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()

@@ -6,7 +6,7 @@ term is::
     w Σ max(0, |ρ| - L)² + μ Σ (ρ - ρ0)²
 
 The weight w increases from step to step. In Gauss-Newton steps, ratios slightly below the limit are treated
-as if they exceeded it: this bounds the function from above and prevents oscillations.
+as if they exceeded it, which prevents oscillations.
 """
 
 from __future__ import annotations
@@ -27,20 +27,17 @@ CHANGE = 1.0
 NEARLY = 0.05
 """Difference from the limit, in logarithms, within which ratios are treated as if they exceeded it."""
 LINEAR = 0.1
-"""Excess beyond which the penalty is linear, so that a ratio that cannot be reduced does not distort all
-cells.
-"""
-HALVINGS = 10  # of a step that raises the value; it is then left out
+"""Excess beyond which the penalty is linear: a ratio that cannot be reduced must not distort all cells."""
+HALVINGS = 10  # largest number for a step that raises the value
 
 Numbers = TypeVar("Numbers", Floats, Complexes)
 
 
 @dataclass(frozen=True, eq=False)
 class GrowthLimit:
-    """The penalty term w Σ max(0, |ρ| - L)² + μ Σ (ρ - ρ0)² for the growth of cells.
+    """The penalty term w Σ max(0, |ρ| - L)² + μ Σ (ρ - ρ0)² for logarithms ρ (..., k) of growth ratios.
 
-    ρ (..., k) are logarithms of ratios of neighbouring cells. `limit` is L, a number or an array that
-    broadcasts with ρ; `wanted` (..., k) is ρ0; `change` is μ. The weight w is given to each method.
+    `limit` is L, which broadcasts with ρ; `wanted` (..., k) is ρ0; `change` is μ.
     """
 
     limit: float | Floats
@@ -49,10 +46,7 @@ class GrowthLimit:
 
     @classmethod
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> GrowthLimit:
-        """Return the term for the initial logarithms `growth` (..., k) of the ratios.
-
-        The value ρ0 is `growth`, clipped to the limit.
-        """
+        """Return the term for initial ρ `growth` (..., k), whose ρ0 is clipped to the limit."""
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:
@@ -71,10 +65,9 @@ class GrowthLimit:
 
 
 def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part: Indices) -> Numbers:
-    """Return a step (m,), each part of which is shortened until the value that depends on it decreases.
+    """Return a step (m,), each part of which is halved until the value that depends on it decreases, or 0.
 
-    A part that would have to be shortened too much becomes 0. `values` returns all values (p,); `part` (m,)
-    has, for each unknown, the index of the value that depends on it.
+    `values` returns all values (p,); `part` (m,) is the index of the value that depends on each unknown.
     """
     start = values(at)
     share = np.ones(len(start))

@@ -18,10 +18,10 @@ def layer_arcs(
 ) -> Floats:  # fmt: skip
     """Return distances (k, cells + 1) from 0 to `length` (k,) of cells that start at the wall.
 
-    The first `constant` cells have the height `first`, a number or (k,). The logarithms of the other heights
-    are a quadratic function of the index. The last height is about `last` (k,), or, where `last` is infinite,
-    that with a constant ratio. Heights never decrease. Their ratio is at most `growth`; but the logarithm of
-    the ratio may always exceed that of the constant ratio by `steeper`.
+    The first `constant` cells have the height `first`, a number or (k,). The logarithms of the other heights,
+    which never decrease, are a quadratic function of the index; the last height is about `last` (k,). If
+    `last` is infinite, the ratio is constant. Ratios are at most `growth`, or in logarithms the constant
+    ratio times 1 + `steeper`, whichever is larger.
     """
     rows = cells - constant + 1  # the last constant cell and those that grow
     first = np.broadcast_to(np.asarray(first, dtype=np.float64), length.shape)

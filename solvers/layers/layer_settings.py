@@ -21,9 +21,7 @@ JOIN = 1.1
 NOMINAL, STEEPEST = 0.9, 0.97
 """Mean and largest growth of layers as fractions of the limit, in logarithms: later steps use the rest."""
 ELSEWHERE, MOST_GROWTH = 1.21, 1.25
-"""Largest growth of cells along walls as a multiple of the limit, in logarithms, and the ratio that is always
-allowed there.
-"""
+"""Largest growth along walls over the limit, in logarithms; the ratio that is always allowed there."""
 SPREAD = 0.65
 """Largest growth of edge lengths per distance, divided by the growth from one cell to the next."""
 
@@ -56,9 +54,7 @@ class LayerSettings:
         return cls(first, math.exp(NOMINAL * math.log(limit)), limit=limit, **others)
 
     def at(self, names: Collection[str]) -> LayerSettings:
-        """Return the settings for a wall whose stretches have the given `names`.
-
-        Layers of a wall go on along stretches whose names have no height.
+        """Return the settings for a wall whose stretches have the given `names`, some with heights.
 
         Raises InputError: stretches of the wall have different heights.
         """
@@ -77,10 +73,7 @@ class LayerSettings:
 
     @property
     def steepest(self) -> float:
-        """Logarithm of the largest ratio of neighbouring cells along lines that leave walls.
-
-        This is the limit of the final grid.
-        """
+        """Logarithm of the largest ratio of neighbouring cells along lines that leave walls."""
         return math.log(self.limit) if self.limit else self.elsewhere
 
     @property

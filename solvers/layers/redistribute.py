@@ -105,7 +105,7 @@ def _within_growth(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple
 def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights, more: int) -> tuple[Floats, float]:
     """Return nodes with layers at south and north, and the largest ratio of neighbouring cells.
 
-    If the number of rows is free, it is the smallest possible one plus `more`.
+    A free number of rows is the smallest possible one plus `more`.
     """
     ni, nj = nodes.shape[:2]
     longest = float(np.hypot(*np.diff(nodes, axis=1).T).sum(axis=0).max())
@@ -222,9 +222,5 @@ def worst_first_cell(solution: Solution) -> float:
 
 
 def first_cell_error(nodes: Floats, side: str, height: float) -> float:
-    """Return the largest relative error of the first-cell heights at one side of a block.
-
-    `nodes` has the shape (ni, nj, 2); `side` is the name of the side; `height` is the prescribed height, in
-    the unit of the nodes.
-    """
+    """Return the largest relative error of first-cell heights at a side of nodes (ni, nj, 2)."""
     return float(np.abs(first_heights(lines_from_side(nodes, side)) / height - 1.0).max())

@@ -40,10 +40,9 @@ ROOM = 0.4  # relative change of a step between wall nodes, at the most, in a ro
 def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
     """Return the quad `boundary` with nodes moved on south and north, and the controls for the solver.
 
-    The grid lines of an elliptic grid inside the new boundary leave both walls at right angles, with two
-    exceptions: next to west and east, if these are not normal to the walls, and at kinks of the walls, which
-    remain nodes. The controls are a function φ(ξ) that preserves the uneven spacing common to both walls;
-    they are None for even spacing.
+    The grid lines of an elliptic grid inside the new boundary leave both walls at right angles, except next
+    to oblique west and east sides and at kinks of the walls. The controls are a function φ(ξ) that preserves
+    the uneven spacing common to both walls; they are None for even spacing.
 
     Raises InputError: a topology other than ``quad``.
     """
