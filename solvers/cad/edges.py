@@ -9,6 +9,7 @@ from meshonet.geometry.cad.model import CadEdge, CadFace, CadModel, Curve, EdgeU
 from meshonet.geometry.elementary import product, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import angle_between
+from meshonet.geometry.spacing.gradual_sizes import limited_sizes
 
 TURN_DEG = 12.0
 """Largest angle by which a curve turns along a cell, with spacing by curvature."""
@@ -119,8 +120,8 @@ def _law(curve: Curve, size: float, ends: Floats, spacing: str) -> EdgeLaw:
         raise InputError(problem, "use curvature, uniform or cosine", parameter="spacing")
     wanted = np.maximum(np.minimum(_by_turning(points, arcs), size), _FINEST * size)
     wanted[[0, -1]] = np.minimum(wanted[[0, -1]], ends)
-    graded = (wanted[None] + _GRADE * np.abs(arcs[:, None] - arcs[None])).min(axis=1)
-    pieces = steps * 0.5 * (1.0 / graded[1:] + 1.0 / graded[:-1])
+    sizes = limited_sizes(wanted, arcs, _GRADE)
+    pieces = steps * 0.5 * (1.0 / sizes[1:] + 1.0 / sizes[:-1])
     return EdgeLaw(part, np.append(0.0, np.cumsum(pieces)))
 
 

@@ -1,8 +1,6 @@
 """Moves nodes along the lines that leave walls until neighbouring cells differ by at most a given ratio.
 
-Even if the distances of fronts grow by a constant ratio, cells along lines do not: where lines diverge, for
-example behind a sharp edge, some cells grow faster. Each line keeps its curve, its length and its first
-cells.
+Each line keeps its curve, its length and its first cells.
 """
 
 import math
@@ -12,16 +10,14 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.quality.growth import ratios
+from meshonet.geometry.spacing.gradual_sizes import limited_sizes
 
 PASSES = 8
 """Largest number of passes; chords of a bent line differ from its arcs, less so in each pass."""
 SPARE = 1.08
-"""Smallest ratio of the length that the cells can reach to the length of the line.
-
-With a smaller ratio one line would be changed everywhere and its neighbour not at all.
-"""
+"""Smallest ratio of the length that the cells can reach to the length of the line."""
 LEFT = 1e-6
-"""Margin below the growth limit, as a fraction of growth - 1, so that rounded files respect it too."""
+"""Margin below the growth limit, as a fraction of growth - 1, so that rounded files satisfy it too."""
 HALVINGS = 60  # of the interval of a line's factor
 _MOST = math.log(100.0)  # of the factor on the last cell of a line
 
@@ -55,8 +51,7 @@ def _limited(steps: Floats, rate: float, constant: int, last: int) -> Floats | N
     """Return arc lengths (m, n-1) of inner nodes on lines of `steps` (m, n), limited to the growth `rate`.
 
     The new steps are the largest ones below exp(c k/n) times the old steps, where k counts from the first
-    free cell and the constant c keeps the length of the line. The result is None if growth by `rate`
-    everywhere does not suffice.
+    free cell and the constant c keeps the length of the line. None if growth by `rate` does not suffice.
     """
     count = steps.shape[1]
     k = np.arange(count, dtype=np.float64)
@@ -65,20 +60,13 @@ def _limited(steps: Floats, rate: float, constant: int, last: int) -> Floats | N
         weight = np.minimum(weight, np.maximum(count - last - k, 0.0) / count)
     plain, length = log(steps), steps.sum(axis=1)
     low, high = np.full(len(steps), -_MOST), np.full(len(steps), _MOST)
-    if (_capped(plain + _MOST * weight, k, rate).sum(axis=1) < SPARE * length).any():
+    if (exp(limited_sizes(plain + _MOST * weight, k, rate)).sum(axis=1) < SPARE * length).any():
         return None
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        short = _capped(plain + middle[:, None] * weight, k, rate).sum(axis=1) < length
+        short = exp(limited_sizes(plain + middle[:, None] * weight, k, rate)).sum(axis=1) < length
         low, high = np.where(short, middle, low), np.where(short, high, middle)
-    sizes = _capped(plain + high[:, None] * weight, k, rate)
+    sizes = exp(limited_sizes(plain + high[:, None] * weight, k, rate))
     arcs = np.cumsum(sizes, axis=1)
     arcs *= np.where(np.abs(arcs[:, -1:] / length[:, None] - 1.0) < 1e-9, 1.0, length[:, None] / arcs[:, -1:])
     return np.asarray(arcs[:, :-1])
-
-
-def _capped(wanted: Floats, k: Floats, rate: float) -> Floats:
-    """Return exp of the largest values below `wanted` (m, n) whose neighbours differ by at most `rate`."""
-    ahead = np.minimum.accumulate(wanted - rate * k, axis=1) + rate * k
-    back = np.minimum.accumulate((ahead + rate * k)[:, ::-1], axis=1)[:, ::-1] - rate * k
-    return np.asarray(exp(back))

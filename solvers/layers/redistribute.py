@@ -19,6 +19,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.resample import patches_in_place
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.curves.sampled_lines import sampled
 from meshonet.geometry.curves.wall_line import wall_line
 from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import InputError
@@ -41,7 +42,7 @@ FADE_NODES = 12.0  # nodes over which the last correction of a first cell fades 
 EXACT = 1e-10  # relative error of a first cell that is left
 SLIGHT = 1e-3  # relative error up to which the first node alone is moved
 MORE_ROWS = 40  # that growth may need along bent lines, beyond those that it needs along straight ones
-PASSES = 100  # alternating corrections of first cells off edges that meet, at the most
+PASSES = 100  # largest number of alternating corrections of first cells off edges that meet
 
 
 def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution:
@@ -103,10 +104,7 @@ def _within_growth(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple
 
 
 def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights, more: int) -> tuple[Floats, float]:
-    """Return nodes with layers at south and north, and the largest ratio of neighbouring cells.
-
-    A free number of rows is the smallest possible one plus `more`.
-    """
+    """Return nodes with layers at south and north, of free rows `more` than needed; the largest ratio."""
     ni, nj = nodes.shape[:2]
     longest = float(np.hypot(*np.diff(nodes, axis=1).T).sum(axis=0).max())
     count = nj
@@ -148,7 +146,7 @@ def _check_ratio(
 
 
 def _along_xi(nodes: Floats, boundary: Boundary, heights: Heights) -> Floats:
-    """Return nodes with layers at west and east; every row is moved by the same kind of map of its index."""
+    """Return nodes with layers at west and east, by maps of the index along xi that vary linearly with j."""
     ni, nj = nodes.shape[:2]
     out = nodes.copy(order="K")
     index = np.arange(float(ni))
@@ -162,27 +160,11 @@ def _along_xi(nodes: Floats, boundary: Boundary, heights: Heights) -> Floats:
         maps.append(monotone_cubic(curve.knots, index, arcs))
         out[:, j] = curve.at(arcs)
         out[0, j], out[-1, j] = edge[0], edge[-1]
-    t = np.linspace(0.0, 1.0, nj)[1:-1]
-    at = (1 - t) * maps[0][1:-1, None] + t * maps[1][1:-1, None]
-    out[1:-1, 1:-1] = _between_rows(nodes[:, 1:-1], at)
+    t = np.linspace(0.0, 1.0, nj)[1:-1, None]
+    at = (1 - t) * maps[0] + t * maps[1]
+    rows = sampled(nodes[:, 1:-1].swapaxes(0, 1), np.broadcast_to(index, at.shape), at)
+    out[1:-1, 1:-1] = rows[:, 1:-1].swapaxes(0, 1)
     return out
-
-
-def _between_rows(nodes: Floats, at: Floats) -> Floats:
-    """Return points (m, n, 2) of nodes (ni, n, 2) at fractional values `at` (m, n) of the first index.
-
-    Interpolation is by cubic pieces with the slopes of parabolas through three nodes.
-    """
-    slope = np.empty_like(nodes)
-    slope[1:-1] = (nodes[2:] - nodes[:-2]) / 2
-    slope[0] = 2 * (nodes[1] - nodes[0]) - slope[1]
-    slope[-1] = 2 * (nodes[-1] - nodes[-2]) - slope[-2]
-    k = np.clip(at.astype(np.intp), 0, len(nodes) - 2)
-    q = (at - k)[..., None]
-    column = np.arange(nodes.shape[1])[None, :]
-    start, stop = nodes[k, column], nodes[k + 1, column]
-    bend = q * (1 - q) * ((1 - q) * slope[k, column] - q * slope[k + 1, column])
-    return np.asarray(start + q * q * (3 - 2 * q) * (stop - start) + bend)
 
 
 def _make_exact(nodes: Floats, periodic: bool, heights: Heights) -> None:

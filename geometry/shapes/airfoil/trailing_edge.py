@@ -17,7 +17,8 @@ from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.elementary import arctan2, power, product
 from meshonet.geometry.polygon.corners import find_corners
 from meshonet.geometry.shapes.airfoil.clean import CleanSection
-from meshonet.geometry.spacing.size_field import GROWTH, limited_size
+from meshonet.geometry.spacing.gradual_sizes import limited_sizes
+from meshonet.geometry.spacing.size_field import GROWTH
 
 if TYPE_CHECKING:
     from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -79,7 +80,7 @@ def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
     around = total[2 * reach :] - total[: -2 * reach]  # two cells on each side of every point
     turn = (around[1:] + around[:-1]) / (4 * reach)
     weight = 1.0 + _TURN * turn * (2.0 * n / np.pi)
-    size = limited_size(s[1:], (1.0 + _TURN) * end / cells / weight, GROWTH)
+    size = limited_sizes((1.0 + _TURN) * end / cells / weight, s[1:], GROWTH)
     count = np.concatenate([[0.0], np.cumsum(end / n / size)])
     halves = count[n] - count[n::-1], count[n:] - count[n]
     more = min(max(cells / float(min(halves[0][-1], halves[1][-1])), 1.0), _MORE)
