@@ -21,17 +21,14 @@ if TYPE_CHECKING:
 class Cycle:
     """State of the finest grid after a cycle."""
 
-    method: str  # that iterates
+    method: str  # name of the method
     ni: int  # nodes of the grid
     nj: int
-    number: int  # of the cycle, 0 for the start; it begins anew with every attempt
-    # relative to that of the transfinite interpolation; of a minimisation the norm of the gradient, relative
-    # to that of its start on this grid
-    residual: float
-    # root mean square of what the cycle's coarse levels moved the nodes by, in units of length
-    change: float | None
-    folded: int  # cells
-    functional: float | None = None  # value of what is minimised
+    number: int  # index of the cycle in this attempt, 0 for the start
+    residual: float  # relative to transfinite interpolation; of minimisations, gradient relative to the start
+    change: float | None  # root mean square displacement of nodes by coarse levels, in units of length
+    folded: int  # number of folded cells
+    functional: float | None = None  # value of the minimised functional
 
 
 Listener = Callable[[Cycle], None]
@@ -65,14 +62,14 @@ def cycle_ended(
 class HistoryRow:
     """A cycle of a history."""
 
-    method: str  # that iterated
+    method: str  # name of the method
     ni: int  # nodes of the grid
     nj: int
-    attempt: int  # counted from 1; the next one begins where the one before diverged
-    cycle: int | None  # its number, None for the result of a method without cycles
-    residual: float | None  # as of `Cycle`; None where a method has none
+    attempt: int  # from 1; a new one begins after divergence
+    cycle: int | None  # index of the cycle; None for a method without cycles
+    residual: float | None  # as in `Cycle`; None if the method has none
     change: float | None
-    seconds: float  # since the solve began
+    seconds: float  # since the start of the solver
     folded: int | None
     functional: float | None = None
 

@@ -30,10 +30,10 @@ def added(
 class Stage:
     """A stage that has started or advanced by a step."""
 
-    name: str  # as in the seconds by stage of results
-    unit: str = ""  # what its steps are, such as level
-    count: int = 0  # steps in all, 0 where nobody knows
-    done: Callable[[], int] = lambda: 0  # steps so far; another thread may call it
+    name: str  # as in `Timings`
+    unit: str = ""  # name of a step, such as level
+    count: int = 0  # number of steps, 0 if unknown
+    done: Callable[[], int] = lambda: 0  # number of steps so far; another thread may call it
 
 
 Timings = dict[str, float]

@@ -33,17 +33,11 @@ _SAME = 1e-9
 def copied(grid: Grid, copies: int | Sequence[int]) -> Grid:
     """Return copies of a periodic grid, each joined to the next; all have patches of the same names.
 
-    Parameters
-    ----------
-    grid : Grid
-        A grid with one period, a rotation or a translation, or with several translations.
-    copies : int or sequence of int
-        Number of copies along each period; at most as many as fill a whole turn.
+    `grid` has one period, a rotation or a translation, or several translations. `copies` are the numbers of
+    copies along each period, at most a whole turn.
 
-    Raises
-    ------
-    InputError
-        The grid is not periodic; there are more or fewer numbers than periods; a number is out of its range.
+    Raises InputError: the grid is not periodic; there are more or fewer numbers than periods; a number is out
+    of its range.
     """
     counts = (copies,) if isinstance(copies, int) else tuple(copies)
     if counts == (1,):
@@ -131,10 +125,7 @@ def _unlike(periods: Sequence[Sequence[Connection]], numbers: int) -> InputError
 
 
 def _period(motion: Motion) -> tuple[Screw, float]:
-    """Return a motion as a screw, and the number of its repetitions in a whole turn, 0 for a translation.
-
-    If this number is whole, up to rounding, the angle is made exact.
-    """
+    """Return a motion as a screw, and the number of such motions, rounded, in a turn; 0 for a translation."""
     screw = screw_of(motion)
     if not screw.angle:
         return screw, 0.0

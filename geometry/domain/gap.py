@@ -10,28 +10,21 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.kernels._native import nearest_ahead
 
 IN_FRONT = 0.6
-"""A wall point is in front if its direction deviates from the normal by at most 53 degrees; the cosine of
-this angle.
-"""
+"""Cosine of the largest angle, 53 degrees, between the normal and the direction of a wall point in front."""
 _BEYOND = 1.0 + 1e-9
 """Factor on a limit, so that a value that equals the limit except for rounding does not exceed it."""
 _SAME = 1e-9
 """Wall points nearer than this fraction of the extent of the walls are the point itself."""
 _AROUND_CORNER = 1.1
-"""Largest ratio of the arc length along a loop with corners to the distance from a wall point that counts as
-a neighbour, not as a wall in front.
-
-Around a corner of 135 degrees the ratio is 1.08.
-"""
+"""Ratio of arc length to distance up to which a point is around a corner; at 135 degrees it is 1.08."""
 _SAMPLES = 2000  # points on all walls together
 
 
 def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
-    """Return the distances (n,) from points of a loop to the nearest wall in front of them, else infinity.
+    """Return the distances (n,) from points of a loop at `arcs` (n,) to the nearest wall in front of them.
 
-    The points are at arc lengths `arcs` (n,). A wall, which may be part of the same loop, is in front if its
-    direction deviates from the inward normal by at most 53 degrees. Near a corner at which two cells meet,
-    the other wall of the corner does not count, because layers turn there.
+    A wall of any loop is in front if its direction deviates from the inward normal by at most 53 degrees.
+    Near a corner of two cells, the other wall of the corner does not count. Infinity stands for no wall.
     """
     walls, points, along = wall_points(domain.loops), loop.at(arcs), loop.tangent(arcs)
     gaps = gaps_in_front(walls, points, along)
@@ -60,11 +53,10 @@ def _sample_counts(loops: Sequence[Loop]) -> list[int]:
 
 
 def gaps_in_front(walls: Floats, points: Floats, along: Floats) -> Floats:
-    """Return the distance (n,) from `points` (n, 2) to the nearest of the wall points (m, 2) in front.
+    """Return the distance (n,) from `points` (n, 2) to the nearest of the points `walls` (m, 2) in front.
 
-    `walls` are points of all walls. `along` (n, 2) are unit vectors along the wall at `points`; the normal
-    points to their left. A wall point is in front if its direction deviates from the normal by at most 53
-    degrees.
+    `along` (n, 2) are unit vectors along the wall at `points`; the normal is to their left. A wall point is
+    in front if its direction deviates from the normal by at most 53 degrees.
     """
     gaps, same = np.empty(len(points)), _SAME * extent_of(walls)
     walls, points, along = (np.ascontiguousarray(each) for each in (walls, points, along))

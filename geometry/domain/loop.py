@@ -75,6 +75,12 @@ class Loop:
         """Arc lengths (c,) at the corners."""
         return self.curve.knots[list(self.corners)]
 
+    @property
+    def pieces(self) -> tuple[Floats, Floats]:
+        """Arc lengths (p,) at which the pieces between corners start, and lengths (p,) of the pieces."""
+        starts = self.corner_arcs if self.corners else np.zeros(1)
+        return starts, np.diff(starts, append=starts[0] + self.length)
+
     @cached_property
     def corner_angles(self) -> Floats:
         """Angles (c,) of the domain at the corners in degrees, 0 to 360; above 180 at re-entrant corners."""

@@ -16,7 +16,7 @@ def place_at(loop: Loop, arc: Floats) -> Floats:
     arc = np.mod(arc, loop.length)
     if not loop.corners:
         return np.asarray(arc / loop.length)
-    begins, lengths = _stretches(loop)
+    begins, lengths = loop.pieces
     number = (np.searchsorted(begins, arc, side="right") - 1) % len(begins)
     part = np.mod(arc - begins[number], loop.length) / lengths[number]
     return np.asarray(number + np.minimum(part, np.nextafter(1.0, 0.0)))
@@ -26,7 +26,7 @@ def arc_at(loop: Loop, place: Floats) -> Floats:
     """Return the arc lengths (n,), in [0, length), of places (n,)."""
     if not loop.corners:
         return np.asarray(np.mod(place, 1.0) * loop.length)
-    begins, lengths = _stretches(loop)
+    begins, lengths = loop.pieces
     number = np.floor(place).astype(np.intp)
     arc = begins[number % len(begins)] + (place - number) * lengths[number % len(begins)]
     return np.asarray(np.where(arc >= loop.length, arc - loop.length, arc))
@@ -38,9 +38,3 @@ def cells_at(loop: Loop, place: Floats) -> Indices:
     if not loop.corners:
         return np.zeros(len(place), dtype=np.intp)
     return np.where(place == number, loop.corner_cells[number % len(loop.corners)], 0)
-
-
-def _stretches(loop: Loop) -> tuple[Floats, Floats]:
-    """Return the arc lengths at which the stretches between corners begin, and their lengths."""
-    begins = loop.corner_arcs
-    return begins, np.diff(begins, append=begins[0] + loop.length)

@@ -14,10 +14,7 @@ SAMPLES, _WINDOW = 400, 3  # points around a loop, and those on either side over
 
 @lru_cache(maxsize=64)
 def _table(loop: Loop) -> tuple[Floats, Floats]:
-    """Return the arc lengths (n + 1,) of a loop's points, and its turning (degrees) up to each of them.
-
-    The turning at a point is spread over the segments on both sides.
-    """
+    """Return the arc lengths (n + 1,) of a loop's points, and its absolute turning (degrees) up to each."""
     at = np.abs(np.degrees(turning(loop.curve.points, closed=True)))
     at[list(loop.corners)] = 0.0
     along = 0.5 * (at + np.roll(at, -1))

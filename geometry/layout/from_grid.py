@@ -40,10 +40,14 @@ def layout_of(grid: Grid) -> Layout:
     valence = np.bincount(quads.ravel(), minlength=len(nodes))
     rings = _rings(_boundary(grid, numbers), nodes)
     loops = tuple(_loop(ring, nodes, valence) for ring in rings)
-    domain = Domain(loops, grid.name, periodic=_period(grid, numbers, rings, loops))
     places = _places(rings, loops, valence, len(nodes))
-    _, first, second = _pairs(grid, numbers)
+    shift, first, second = _pairs(grid, numbers)
     places.partner[second] = first
+    periodic: tuple[Periodic, ...] = ()
+    if len(first):
+        sides = [_stretch(rings[0], loops[0], side) for side in (first, second)]
+        periodic = (Periodic(sides[0], sides[1], (float(shift[0]), float(shift[1]))),)
+    domain = Domain(loops, grid.name, periodic=periodic)
     return Layout(QuadMesh(domain, nodes, quads, places), numbers)
 
 
@@ -157,16 +161,6 @@ def _pairs(grid: Grid, numbers: tuple[Indices, ...]) -> tuple[Floats, Indices, I
         second.append(donor.ravel())
     none = [np.empty(0, dtype=np.intp)]
     return shift, np.concatenate(first or none), np.concatenate(second or none)
-
-
-def _period(
-    grid: Grid, numbers: tuple[Indices, ...], rings: list[_Ring], loops: tuple[Loop, ...]
-) -> tuple[Periodic, ...]:
-    shift, first, second = _pairs(grid, numbers)
-    if not len(first):
-        return ()
-    stretches = [_stretch(rings[0], loops[0], nodes) for nodes in (first, second)]
-    return (Periodic(stretches[0], stretches[1], (float(shift[0]), float(shift[1]))),)
 
 
 def _stretch(ring: _Ring, loop: Loop, nodes: Indices) -> tuple[float, float]:

@@ -152,10 +152,9 @@ def _optimum(mesh: QuadMesh, turning: float) -> QuadOptimum:
 
 
 def _more_along_walls(fine: Chords, finer: float, times: int) -> Indices:
-    """Return counts (chords,), larger along walls if more than `CUT_OFF` of the area is cut off.
+    """Return counts (chords,), `times` coarser, and larger along walls if more than `CUT_OFF` is cut off.
 
-    The area that a chord cuts off is proportional to 1 / count². Counts are those of a layout with `times`
-    fewer cells in each direction; refinement later divides the area that is cut off by `finer`.
+    The area that a chord cuts off is proportional to 1 / count²; refinement later divides it by `finer`.
     """
     lost = np.bincount(fine.chord, fine.cut_off(), fine.count) / finer
     if lost.sum() <= CUT_OFF * fine.layout.mesh.domain.area:

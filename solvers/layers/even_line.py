@@ -158,7 +158,7 @@ def evened_loops(
         order = mesh.places.along(number)
         fixed = mesh.places.cells[order] > 0
         if not fixed.any():
-            fixed[0] = True  # else all may go round
+            fixed[0] = True  # otherwise all nodes could rotate around the loop
         new = evened_places(arcs[order], fixed, measure, limit, closed=True, most=most, change=FRONTS)
         arcs[order] = new = new % measure.arcs[-1]
         shift = np.zeros_like(nodes)

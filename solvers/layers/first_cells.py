@@ -24,10 +24,9 @@ class Heights:
     north: float = 0.0
     west: float = 0.0
     east: float = 0.0
-    constant: int = 1  # so many first cells have that height; those beyond grow by one ratio
-    growth: float | None = None  # largest ratio of neighbouring cells allowed, None for any up to 10
-    # take as many rows off south and north as `growth` needs, instead of those of the boundary
-    free_rows: bool = False
+    constant: int = 1  # number of first cells with that height; those beyond grow by one ratio
+    growth: float | None = None  # largest allowed ratio of neighbouring cells; None: 10
+    free_rows: bool = False  # whether the number of rows off south and north follows from `growth`
 
     def __post_init__(self) -> None:
         for side in SIDES:

@@ -72,7 +72,7 @@ def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part
     start = values(at)
     share = np.ones(len(start))
     for _ in range(HALVINGS):
-        higher = ~(values(at + share[part] * step) < start)  # nor what is no number
+        higher = ~(values(at + share[part] * step) < start)  # also NaN
         if not higher.any():
             return np.asarray(share[part] * step)
         share[higher] *= 0.5

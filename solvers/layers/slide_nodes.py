@@ -26,15 +26,15 @@ from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid
 from meshonet.solvers.elliptic.wall_control import leaning, lines_from_side
 
-COUNTS = 129, 49  # nodes along and between the walls, at the most, on which places are sought
-ROUNDS = 60  # rounds at the most
+COUNTS = 129, 49  # largest numbers of nodes along and between the walls in the iteration
+ROUNDS = 60  # largest number of iterations
 
 UPRIGHT = math.sin(math.radians(0.05))
 """Sine of the largest remaining angle between a grid line and the wall normal."""
 
 RELAXATION = 0.7  # part of the linearised displacement that a round moves by
-RAMP = 0.03  # part of a wall, next to its ends and kinks, over which sliding sets in
-ROOM = 0.4  # relative change of a step between wall nodes, at the most, in a round
+RAMP = 0.03  # distance from ends and kinks, over the length of the wall, within which nodes slide less
+ROOM = 0.4  # largest relative change of a step between wall nodes in an iteration
 
 
 def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
@@ -104,7 +104,7 @@ def _slid(
     for _ in range(ROUNDS):
         leans = _leans(nodes, curves, arcs)
         lean = float(np.sqrt(np.mean(np.square(leans))))
-        if not lean < 4.0 * least:  # not a number, or going astray
+        if not lean < 4.0 * least:  # NaN, or divergence
             break
         if lean < least:
             best, least = (arcs[0].copy(), arcs[1].copy()), lean

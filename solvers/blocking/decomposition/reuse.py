@@ -12,6 +12,7 @@ import numpy as np
 from meshonet.geometry.arrays import Bools, Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.places_on_loops import arc_at, place_at
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
@@ -71,22 +72,8 @@ def _by_name(holes: tuple[Loop, ...]) -> dict[tuple[str, ...], int]:
 
 def _carried(old: Loop, new: Loop, arc: Floats) -> Floats:
     """Return the arc lengths (n,) on the new loop that correspond to `arc` (n,) on the old one."""
-    if old.corners:
-        begins = old.corner_arcs, _around(new.corner_arcs, _corner_shift(old, new), new.length)
-    else:
-        begins = np.zeros(1), np.array([_begin(old, new)])
-    ours, theirs = (
-        np.append(arcs, arcs[0] + loop.length) for arcs, loop in zip(begins, (old, new), strict=True)
-    )
-    ahead = ours[0] + np.mod(arc - ours[0], old.length)
-    places = np.mod(np.interp(ahead, ours, theirs), new.length)
-    return np.where(places >= new.length, 0.0, places)
-
-
-def _around(arcs: Floats, shift: int, length: float) -> Floats:
-    """Return arc lengths around a loop in ascending order, starting at index `shift`."""
-    turned = np.roll(arcs, -shift)
-    return turned + np.where(turned < turned[0], length, 0.0)
+    shift = _corner_shift(old, new) if old.corners else _begin(old, new)
+    return arc_at(new, place_at(old, arc) + shift)
 
 
 def _corner_shift(old: Loop, new: Loop) -> int:
@@ -107,11 +94,11 @@ def _corner_shift(old: Loop, new: Loop) -> int:
 
 
 def _begin(old: Loop, new: Loop) -> float:
-    """Return the arc length on the new loop that corresponds to the first point of the old loop, by boxes."""
+    """Return the fraction of the new loop's length at which a point corresponds to the old loop's first."""
     steps = np.linspace(0.0, 1.0, OFFSETS, endpoint=False)
     ours, theirs = (_in_box(loop.at(steps * loop.length), loop) for loop in (old, new))
     costs = [float(((np.roll(theirs, -k, axis=0) - ours) ** 2).sum()) for k in range(OFFSETS)]
-    return float(steps[int(np.argmin(costs))] * new.length)
+    return float(steps[int(np.argmin(costs))])
 
 
 def _in_box(points: Floats, loop: Loop) -> Floats:

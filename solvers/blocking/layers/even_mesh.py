@@ -72,10 +72,7 @@ def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines, following: Indi
 
 
 def _followed(before: QuadMesh, after: QuadMesh, tangents: Complexes, pairs: Indices) -> QuadMesh:
-    """Return the mesh `after` a step with second nodes of pairs (k, 2) moved like the first ones.
-
-    `tangents` (n,) are those of the loops before the step.
-    """
+    """Return the mesh `after` a step with second nodes of pairs (k, 2) moved and rotated like the first."""
     if len(pairs) == 0:
         return after
     first, second = pairs.T

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, distinct, shortest_ways, turned_left
+from meshonet.geometry.arrays import Floats, distinct, norms, shortest_ways, turned_left
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import gaps_in_front, wall_points
 from meshonet.geometry.domain.loop import Loop
@@ -22,7 +22,7 @@ from meshonet.solvers.refinement.size_metric import SizeMetric
 
 TURN = np.radians(3.5)
 """Largest angle by which a wall turns along one cell, for the default number of cells."""
-CELLS_IN_GAP = 15.0  # cells along a wall are so many times shorter than the gap in front
+CELLS_IN_GAP = 15.0  # smallest ratio of the gap in front of a wall to the length of cells along the wall
 ALONG = 0.2
 """Growth of sizes along walls per length."""
 UNEVEN = 2.0
@@ -130,12 +130,10 @@ def _gaps(domain: Domain, number: int, arcs: Floats) -> Floats:
     points, along = loop.at(arcs), loop.tangent(arcs)
     others = [each for k, each in enumerate(domain.loops) if k != number]
     gap = gaps_in_front(wall_points(others), points, along) if others else np.full(len(arcs), np.inf)
-    own = np.linspace(0.0, loop.length, 2 * SAMPLES, endpoint=False)
-    walls = loop.at(own)
+    own, walls = np.linspace(0.0, loop.length, 2 * SAMPLES, endpoint=False), loop.sample(2 * SAMPLES)
     for k, arc in enumerate(arcs.tolist()):
         way = np.abs(shortest_ways(own - arc, loop.length))
-        away = np.hypot(*(walls - points[k]).T)
-        there = walls[way > AROUND_CORNER * away]
+        there = walls[way > AROUND_CORNER * norms(walls - points[k])]
         if len(there):
             gap[k] = min(gap[k], float(gaps_in_front(there, points[k : k + 1], along[k : k + 1])[0]))
     return gap

@@ -20,14 +20,11 @@ class Stretch:
     ----------
     loop : index of the loop.
     first, last : indices of the corners among those of the loop; equal if it is the whole loop.
-    joined : for each end, whether the wall beyond the corner has layers too; both layers then share a block
-        at the corner. Otherwise the layers end at that wall.
     """
 
     loop: int
     first: int
     last: int
-    joined: tuple[bool, bool]
 
     def span(self, loop: Loop) -> tuple[float, float]:
         """Return the arc lengths of its start and end; the end is larger, if need be by the loop's length."""
@@ -88,10 +85,7 @@ def _with_layers(domain: Domain, number: int, names: Collection[str]) -> list[bo
 
 
 def _onward(loop: Loop, walls: Sequence[bool]) -> dict[int, tuple[int, int]]:
-    """Return the axes and symmetry lines along which layers of `walls` continue.
-
-    The dict maps them to the part that they continue, and to the corner between both.
-    """
+    """Return the axes and symmetry lines that continue layers of `walls`: the part before, and the corner."""
     count, onward = len(loop.corners), dict[int, tuple[int, int]]()
     lines = [k for k, name in enumerate(loop.names) if not may_be_wall(name) and kind_of(name) in _LINES]
     for _ in lines:  # a line may continue another one
@@ -116,7 +110,7 @@ def _stretches(loop: Loop, number: int, on: list[bool]) -> list[Stretch]:
         end = (begin + 1) % count
         while on[end] and not convex[end]:
             end = (end + 1) % count
-        stretches.append(Stretch(number, begin, end, (on[begin - 1], on[end])))
+        stretches.append(Stretch(number, begin, end))
     return stretches
 
 

@@ -81,8 +81,8 @@ def _at_corners(loop: Loop, largest: float) -> list[tuple[float, float]]:
     corners = loop.corner_arcs
     if len(corners) == 0:
         return []
-    pieces = np.diff(corners, append=corners[0] + loop.length)
-    shortest = np.minimum(pieces, np.roll(pieces, 1))
+    _, lengths = loop.pieces
+    shortest = np.minimum(lengths, np.roll(lengths, 1))
     sizes = np.minimum(_CORNER_PART * largest, _PIECE_PART * shortest)
     every = zip(corners.tolist(), sizes.tolist(), loop.corner_cells, strict=True)
     return [(arc, size) for arc, size, cells in every if cells > 1]

@@ -133,10 +133,7 @@ class WallLayers:
         return [ring_metric(ring, self.of_ring(k)) for k, ring in self.rings.items()]
 
     def _at_rings(self, scale: float) -> list[SizeMetric]:
-        """Return the sizes of cells beyond rings, with lengths along the rings multiplied by `scale`.
-
-        If `scale` exceeds 1, differences of neighbouring cells grow too; they are limited.
-        """
+        """Return the sizes of cells beyond rings, with gradual lengths along them multiplied by `scale`."""
         parts = []
         for ring, each in zip(self.rings.values(), self._ring_metrics, strict=True):
             along = scale * each.along

@@ -68,10 +68,7 @@ def simplify(mesh: QuadMesh, *, price: float, sizes: SizeMetric | None) -> BaseC
 
 
 def _without(current: BaseComplex, kept: Collection[int], count: int) -> tuple[BaseComplex | None, int, int]:
-    """Return the blocks without up to `count` chords, or None; the first of these; how many were tried.
-
-    The narrowest chords are removed, except those in `kept`.
-    """
+    """Return the blocks without the narrowest chords not in `kept`, or None; the first chord; all tries."""
     trial, first, tried = None, -1, 0
     for _ in range(count):
         for chord in ascending(widths(trial or current)).tolist():

@@ -12,7 +12,7 @@ from meshonet.solvers.sparse import SparsePattern
 _SOFT = 1e-8
 """Small value instead of zero in the matrix of the constraints, which permits redundant ones."""
 _EXACT = 1e-14  # residual over the solution at which refinement ends: round-off
-_REFINEMENTS = 6  # at the most, which remove what `_SOFT` changes
+_REFINEMENTS = 6  # largest number of refinement steps, which remove the effect of `_SOFT`
 _REAL = np.array([1.0, 0.0, -1.0, 0.0])  # real parts of the powers of i
 _IMAGINARY = np.array([0.0, 1.0, 0.0, -1.0])  # imaginary parts of them
 

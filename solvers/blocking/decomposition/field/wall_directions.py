@@ -60,10 +60,7 @@ def wall_directions(surface: Triangulation) -> WallDirections:
 
 
 def _corner_offsets(surface: Triangulation, inside: Floats) -> tuple[Indices, Floats, Floats, Bools]:
-    """Return cells (b,) at wall vertices, offsets (b,) of the walls after and before, and an acute mask (b,).
-
-    The mask is true where the nearest corner has less than 90 degrees and one cell.
-    """
+    """Return cells (b,), offsets (b,) of the walls after and before, and whether (b,) the corner is acute."""
     count = len(surface.arc)
     cells = np.zeros(count, dtype=np.intp)
     after, before, acute = np.zeros(count), np.zeros(count), np.zeros(count, dtype=bool)
@@ -86,8 +83,8 @@ def _corner_offsets(surface: Triangulation, inside: Floats) -> tuple[Indices, Fl
 
 
 def _reaches(loop: Loop) -> Floats:
-    steps = np.diff(loop.corner_arcs, append=loop.corner_arcs[0] + loop.length)
-    return np.minimum(0.5 * np.minimum(steps, np.roll(steps, 1)), _REACH * loop.length)
+    _, lengths = loop.pieces
+    return np.minimum(0.5 * np.minimum(lengths, np.roll(lengths, 1)), _REACH * loop.length)
 
 
 def _nearest(arcs: Floats, places: Floats, length: float) -> Indices:

@@ -88,10 +88,7 @@ def _towards(mesh: QuadMesh, node: int, beside: int) -> tuple[Floats, int, float
 def _left_of(
     mesh: QuadMesh, half: HalfEdges, node: int, ahead: int | None, behind: int | None
 ) -> list[tuple[int, int]]:
-    """Return the quads to the left of a path at a node, and the index (0 to 3) of the node in each.
-
-    They are in order from the edge ahead to the edge behind; where the path ends, from the edge behind.
-    """
+    """Return the quads to the left of a path at a node, and the index (0 to 3) of the node in each."""
     corners = []
     if ahead is not None:
         while (node, ahead) in half:

@@ -69,12 +69,6 @@ def usual_size(area: float, count: int) -> float:
     return float(np.sqrt(2.0 / np.sqrt(3.0) * area / count))
 
 
-def pieces(loop: Loop) -> tuple[Floats, Floats]:
-    """Return the arc lengths (p,) at which the pieces of a loop from corner to corner start and end."""
-    start = loop.corner_arcs if len(loop.corners) else np.zeros(1)
-    return start, np.append(start[1:], start[0] + loop.length)
-
-
 def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None = None) -> WallSizes:
     """Return sizes along the walls for about `count` nodes, in the domain's unit.
 
@@ -114,8 +108,7 @@ def _affordable(length: Floats, size: Floats, most: float) -> float:
 
 
 def _sample(loop: Loop, largest: float) -> _Samples:
-    start, stop = pieces(loop)
-    long = stop - start
+    start, long = loop.pieces
     usual = min(largest, OF_LOOP * loop.length)
     least = np.where(long < 4.0 * FLOOR * usual, 4.0, 12.0)
     n = np.clip(5.0 * long / usual + 1e-9, least, 2000.0).astype(np.intp)
@@ -154,7 +147,7 @@ def place_nodes(domain: Domain, sizes: WallSizes) -> tuple[Indices, Floats]:
     loops, arcs = [], []
     for number, loop in enumerate(domain.loops):
         mine = sizes.loop == number
-        start = pieces(loop)[0]
+        start, _ = loop.pieces
         piece = sizes.piece[mine] - sizes.piece[mine][0]
         steps = sizes.length[mine] / sizes.size[mine]
         many = np.bincount(piece, steps)

@@ -82,10 +82,7 @@ def _mean(mesh: QuadMesh, images: Images) -> QuadMesh:
 
 
 def _image(mesh: QuadMesh, mirror: Mirror) -> Indices | None:
-    """Return the image (n,) of each node; None unless quads, walls and corners have images.
-
-    It follows from one quad and its image: the pair, of some quads, with the smallest relative distance.
-    """
+    """Return the image (n,) of each node, from that of one quad; None unless quads and walls have images."""
     x, y = (mesh.nodes[mesh.quads, axis].mean(axis=1) for axis in (0, 1))
     middles, some = np.stack([x, y], axis=1), slice(None, None, 1 + len(mesh.quads) // SOME)
     near, squares = nearest_points(mirror.images(middles[some]), middles)
@@ -106,10 +103,7 @@ def _image(mesh: QuadMesh, mirror: Mirror) -> Indices | None:
 
 
 def _continued(mesh: QuadMesh, quad: int, image: int, corner: int) -> Indices | None:
-    """Return the image (n,) of each node if the image of a quad's first corner is `corner` of quad `image`.
-
-    None if the quads beside them do not correspond.
-    """
+    """Return the image (n,) of each node if the first corner of a quad has the image `corner`, else None."""
     images_and_corners = quad_images(mesh.twin, quad, image, corner)
     if images_and_corners is None:
         return None

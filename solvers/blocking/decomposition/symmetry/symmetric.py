@@ -162,10 +162,7 @@ def cut_on_mirrors(mesh: QuadMesh, images: Images, more: Bools | None = None) ->
 
 
 def _recounted(blocks: BaseComplex, mirrors: Sequence[Mirror], optimised: Optimised, alike: bool) -> QuadMesh:
-    """Return the mesh of the same blocks with equal counts of cells for mirror images.
-
-    Counts give equal edges if `alike`, else they are near those of the blocks.
-    """
+    """Return the mesh of the same blocks with equal counts for images: those of equal edges if `alike`."""
     before = Chords.of(blocks.layout)
     even = refine(blocks.layout, np.full(before.count, max(EVEN, int(before.least.max()))), before)
     mesh, images = _symmetric(optimised(even.mesh), mirrors)
