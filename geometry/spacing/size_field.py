@@ -9,6 +9,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.elementary import arctan2, exp, expm1, geomspace, log, product
+from meshonet.geometry.spacing.gradual_sizes import limited_sizes
 
 GROWTH = math.log(1.10)
 """Largest growth of cells along the wall: 10 % from one cell to the next."""
@@ -97,7 +98,7 @@ def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -
     """
     s = np.linspace(0.0, abs(way), 2 * _SAMPLES + 1)
     bend = _bend(curve, begin + np.sign(way) * s, curve.length)
-    known = _quartic(limited_size(s, TURN / bend, GROWTH))
+    known = _quartic(limited_sizes(TURN / bend, s, GROWTH))
     return _placed(s, _density(s, known, np.ones_like(s), cells), cells)
 
 
@@ -180,7 +181,7 @@ def _known(
     near = away < _EDGE * (upper - lower)
     size[near] = np.maximum(size[near], steps[0])
     size[[0, -1]] = size[[0, -1]].min()  # the two surfaces meet here
-    size = limited_size(s, size, growth)
+    size = limited_sizes(size, s, growth)
     reach = _RAMP * steps[0]
     late = reach * -expm1(-away / reach) if ramp else 0.0
     trailing = steps[0] + max(growth, at_edge) * (away - late)
@@ -192,12 +193,6 @@ def _quartic(h: Floats) -> Floats:
     """Return 1/h⁴."""
     square = h * h
     return np.asarray(1.0 / (square * square))
-
-
-def limited_size(s: Floats, size: Floats, growth: float) -> Floats:
-    """Return h(s) = min over s' of size(s') + growth |s - s'|."""
-    size = np.minimum.accumulate(size - growth * s) + growth * s
-    return np.asarray(np.minimum.accumulate((size + growth * s)[::-1])[::-1] - growth * s)
 
 
 def _density(s: Floats, known: Floats, relief: Floats, cells: int) -> Floats:
