@@ -316,6 +316,9 @@ def surface_march(
 def respace_lines(
     marched: Floats, steps: Floats, fade: Floats, order: Indices, sweeps: int, lines: Floats, threads: int
 ) -> None: ...
+def limit_line_growth(
+    lines: Floats, most: float, used: float, longest: float, first: float, threads: int
+) -> None: ...
 
 # solids
 def solids_folded(nodes: Floats, test: int, threads: int, counts: Whole) -> None: ...

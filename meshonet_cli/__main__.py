@@ -4,9 +4,12 @@ import gc
 import sys
 from typing import NoReturn
 
+_NEW = 100_000  # objects, twice those of modules, after which cycles are searched: a tenth of short runs
+
 
 def main() -> NoReturn:
     """Run the command line; an interrupt during loading ends it as silently as a later one."""
+    gc.set_threshold(_NEW)
     try:
         from meshonet_cli.app import main as run
 

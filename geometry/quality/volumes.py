@@ -94,6 +94,17 @@ def measure_volumes(grid: Grid, *, percentiles: bool = False) -> Quality:
     return Quality(cells, folded, metrics, doubtful)
 
 
+def least_jacobian(blocks: Sequence[Block]) -> float:
+    """Return the least scaled Jacobian of the cells of volumes."""
+    where = SOLID_NAMES.index("scaled_jacobian")
+
+    def least(block: Block) -> float:
+        no_volumes = np.ones([count + 1 for count in block.counts])
+        return float(_run_over(block, no_volumes, NONE).low[where])
+
+    return min(over_blocks(least, blocks, [block.nodes[..., 0].size for block in blocks]))
+
+
 def _folded_of(grid: Grid, test: int) -> int:
     return sum(
         over_blocks(lambda block: count_folded_solids(block.nodes, test), grid.blocks, _nodes_of(grid))

@@ -42,6 +42,13 @@ cdef extern from "surfaces/lines.h":
         double *lines
     int c_respace_lines "respace_lines"(const Lines *lines, int threads) nogil
 
+cdef extern from "surfaces/growth.h":
+    ctypedef struct Growth:
+        ptrdiff_t nodes, levels
+        double most, used, longest, first
+        double *lines
+    int c_limit_line_growth "limit_line_growth"(const Growth *growth, int threads) nogil
+
 
 def surface_march(levels, heights, graph, settings, int threads):
     """Fill `levels` (count + 1, 3, n) from level 0; return how many were made, the steps and the iterations.
@@ -82,5 +89,16 @@ def respace_lines(marched, steps, fade, order, ptrdiff_t sweeps, lines, int thre
     cdef int failed
     with nogil:
         failed = c_respace_lines(&l, threads)
+    if failed:
+        raise MemoryError
+
+
+def limit_line_growth(lines, double most, double used, double longest, double first, int threads):
+    """Move nodes of `lines` (3, n, levels) so that neighbouring cells differ less; see ``growth.h``."""
+    cdef ptrdiff_t n = lines.shape[1], levels = lines.shape[2]
+    cdef Growth g = Growth(n, levels, most, used, longest, first, fills(lines, (3, n, levels)))
+    cdef int failed
+    with nogil:
+        failed = c_limit_line_growth(&g, threads)
     if failed:
         raise MemoryError

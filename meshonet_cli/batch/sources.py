@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,12 @@ if TYPE_CHECKING:
     from meshonet.geometry.shapes.shape import Shape
     from meshonet.geometry.spacing.sampling import Sampling
     from meshonet_cli.batch.drawn import DrawnInputs
+
+_OFTEN = (
+    700,
+    10,
+    10,
+)  # new objects after which cycles, which may hold grids and figures, are searched among many members
 
 
 def members_of(
@@ -59,6 +66,8 @@ def records(
         last: Any = next(entries)
         following = next(entries, None)
         only = following is None
+        if not (alone and only):
+            gc.set_threshold(*_OFTEN)
         while last:
             what, seconds = last
             name = str(getattr(what, "name", ""))

@@ -1,7 +1,9 @@
 """Task of `plot`."""
 
+import sys
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 from meshonet.formats.figure.picture import Picture
 from meshonet.formats.registry import picture_format, read_grids
@@ -17,6 +19,7 @@ def plot_grids(batch: Batch, picture: Picture) -> int:
     Raises InputError: an output that is not a picture; one picture for several grids.
     """
     kind = picture_format(batch.files.output, batch.files.to_format).name
+    leave_out_docstrings()
     read = partial(read_grids, fmt=batch.files.from_format)
     files = replace(batch.files, to_format=kind)
     return replace(batch, files=files).run(
@@ -27,3 +30,14 @@ def plot_grids(batch: Batch, picture: Picture) -> int:
 def _drawn(item: Item[Grid], metric: str | None) -> tuple[Grid, Delivered]:
     colours = f"coloured by {metric}" if metric else "lines"
     return item.what, delivered(item, item.what, {"metric": metric}, colours)
+
+
+def leave_out_docstrings() -> None:
+    """Have Matplotlib's classes compose no docstrings when they are loaded: a fifth of a picture's time."""
+    if "matplotlib.figure" in sys.modules:
+        return
+    from matplotlib import artist
+
+    own: Any = artist
+    own.Artist._update_set_signature_and_docstring = classmethod(lambda _: None)
+    own.kwdoc = lambda _: ""

@@ -1,5 +1,6 @@
 """`meshonet plot`."""
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,7 @@ from command_line import Meshonet, Process
 from meshonet.formats.figure.picture import DRAWN
 from meshonet.formats.registry import picture_format
 from meshonet.geometry.quality.profiles import PROFILES
+from meshonet_cli.tasks.pictures import leave_out_docstrings
 
 
 @pytest.fixture
@@ -89,3 +91,25 @@ def test_each_figure_that_a_profile_judges_is_drawn_or_says_what_to_draw(
             assert figure in DRAWN
         else:
             assert f"{figure} is one figure of the whole grid; draw " in done.err
+
+
+def test_matplotlib_composes_no_docstrings(monkeypatch: pytest.MonkeyPatch) -> None:
+    from matplotlib import artist
+
+    for owner, name in ((artist, "kwdoc"), (artist.Artist, "_update_set_signature_and_docstring")):
+        monkeypatch.setattr(owner, name, getattr(owner, name))
+    monkeypatch.delitem(sys.modules, "matplotlib.figure", raising=False)
+    leave_out_docstrings()
+    made = type("Made", (artist.Artist,), {})
+    assert made.set.__doc__ is None
+    assert artist.kwdoc(made) == ""
+    assert made().set(zorder=3) == [None]
+
+
+def test_what_has_loaded_matplotlib_keeps_its_docstrings() -> None:
+    import matplotlib.figure  # noqa: F401
+    from matplotlib import artist
+
+    before = artist.kwdoc
+    leave_out_docstrings()
+    assert artist.kwdoc is before

@@ -1,5 +1,6 @@
 """`meshonet tfi`, and through it what every command that makes grids has in common."""
 
+import gc
 import json
 from pathlib import Path
 
@@ -310,3 +311,18 @@ def test_walls_of_channels_and_bodies_have_layers(
         np.testing.assert_allclose(steps[:, 0], steps[0, 0], rtol=1e-8)
         assert steps[:, 1:].max() / steps[:, 0].max() > 1
         assert (steps[:, 1:] / steps[:, :-1]).max() < 1.3001
+
+
+def test_cycles_are_searched_more_often_among_several_members(
+    meshonet: Meshonet, duct_h5: Path, three_h5: Path
+) -> None:
+    """A single grid is done before cycles fill the memory, many grids and figures in cycles are not."""
+    usual = gc.get_threshold()
+    try:
+        gc.set_threshold(100_000)
+        meshonet("tfi", duct_h5, "-o", "grid.vts")
+        assert gc.get_threshold()[0] == 100_000
+        meshonet("tfi", three_h5, "-o", "grids.h5")
+        assert gc.get_threshold()[0] < 1000
+    finally:
+        gc.set_threshold(*usual)

@@ -4,16 +4,17 @@ import math
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, norms
-from meshonet.geometry.elementary import exp, log
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.elementary import log
+from meshonet.geometry.threads import MANY_VISITS, threads_for
+from meshonet.kernels._native import limit_line_growth
 
 _MARGIN = 1e-3  # fraction of the logarithm of the limit that is used: chords are shorter than the lines
-_HALVINGS = 40  # of the range that the tilt of a line lies in
+_HALVINGS = 40  # of the range that the growth of steps lies in
 _LEAST = 0.2  # of the growth, in logarithms: what that of steps is taken for where it is less
 _MOST = 0.5  # part by which growth is cut down at the most: what is beyond it is at few lines
 _NEAR = 2  # levels to each side of one whose growth is taken along
 _TOGETHER = 1 << 11  # lines at a time: little memory beside their own
-_PASSES = 12  # chords change a little when nodes move
 
 
 def growth_of_levels(lines: Floats) -> Floats:
@@ -65,41 +66,6 @@ def limit_growth(lines: Floats, growth: float) -> None:
     if math.isinf(growth):
         return
     most = math.log(growth)
-    for k in range(0, lines.shape[1], _TOGETHER):
-        part = lines[:, k : k + _TOGETHER]
-        for _ in range(_PASSES):
-            steps = norms(np.moveaxis(np.diff(part, axis=2), 0, -1))
-            change = np.diff(log(steps), axis=1)
-            uneven = np.flatnonzero(np.abs(change).max(axis=1) > most)
-            if not len(uneven):
-                break
-            limited = _limited(steps[uneven], change[uneven], (1.0 - _MARGIN) * most)
-            _move(part, uneven, steps[uneven], limited)
-
-
-def _limited(steps: Floats, change: Floats, most: float) -> Floats:
-    """Return steps (k, m) with the same firsts and sums whose logarithms change by at most `most`."""
-    length = steps.sum(axis=1)
-    longest = steps[:, 0] * math.expm1(most * steps.shape[1]) / math.expm1(most)
-    bound = np.where(longest < length, math.inf, most)[:, None]  # too long: all changes are the tilt
-    change = np.where(longest < length, 0.0, 1.0)[:, None] * change
-
-    def made(tilt: Floats) -> Floats:
-        log_ratio = np.cumsum(np.clip(change + tilt[:, None], -bound, bound), axis=1)
-        return np.concatenate([steps[:, :1], steps[:, :1] * exp(log_ratio)], axis=1)
-
-    low, high = np.full(len(steps), -2.0 * most), np.full(len(steps), 2.0 * most)
-    for _ in range(_HALVINGS):
-        tilt = 0.5 * (low + high)
-        short = made(tilt).sum(axis=1) < length
-        low, high = np.where(short, tilt, low), np.where(short, high, tilt)
-    return made(0.5 * (low + high))
-
-
-def _move(lines: Floats, which: Indices, old: Floats, new: Floats) -> None:
-    """Move inner nodes of some lines (3, n, levels), in place, from `old` to `new` steps (k, m)."""
-    before, after = (np.cumsum(steps, axis=1) for steps in (old, new))
-    for row, n in enumerate(which):
-        for axis in range(3):
-            line = lines[axis, n]
-            line[2:-1] = np.interp(after[row, 1:-1], before[row], line[1:])
+    used = (1.0 - _MARGIN) * most
+    longest, first = (math.expm1(used * cells) for cells in (lines.shape[2] - 1, 1))
+    limit_line_growth(lines, most, used, longest, first, threads_for(lines[0].size, MANY_VISITS))

@@ -13,11 +13,10 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.quality.bad_cell import BadCell
-from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, measure_volumes, worst_solids
+from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, least_jacobian, worst_solids
 from meshonet.geometry.surface.hollows import Hollows, hollows_of
 from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
@@ -118,8 +117,9 @@ def _best(
         lines = marched(steps)
         volume, worth = _volume(surface, lines), 0.0
         if volume.made == len(steps) and not volume.folded:
-            volume = _with_growth(surface, lines, marched, steps, growth) or volume
-            worth = _least_jacobian(volume.blocks) if wing else _POOR
+            grown = _with_growth(surface, lines, marched, steps, growth)
+            volume, worth = grown or (volume, least_jacobian(volume.blocks))
+            worth = worth if wing else _POOR
         score = min(volume.made, len(steps)), -volume.folded, worth
         if best is None or score > most:
             best, most = volume, score
@@ -136,10 +136,10 @@ def _volume(surface: Surface, lines: Floats) -> _Volume:
 
 def _with_growth(
     surface: Surface, lines: Floats, marched: Callable[[Floats], Floats], steps: Floats, growth: float
-) -> _Volume | None:
-    """Return the best valid volume whose cells grow by at most `growth` along lines, or None.
+) -> tuple[_Volume, float] | None:
+    """Return the best valid volume whose cells grow by at most `growth` along lines, and its least Jacobian.
 
-    Several marches with decreasing steps are made, with nodes moved along the lines.
+    None if there is none. Several marches with decreasing steps are made, with nodes moved along the lines.
     """
     tried = [(lines, steps)]
     for _ in range(_SLOWER):
@@ -156,14 +156,10 @@ def _with_growth(
             limit_growth(made, growth)
             volume = _volume(surface, made)
             even = bool(growth_of_levels(made).max() <= growth)
-            score = even, 0.0 if volume.folded else _least_jacobian(volume.blocks)
+            score = even, 0.0 if volume.folded else least_jacobian(volume.blocks)
             if score[1] > 0.0 and score > most:
-                best, most = volume, score
+                best, most = (volume, score[1]), score
     return best
-
-
-def _least_jacobian(blocks: tuple[Block, ...]) -> float:
-    return measure_volumes(Grid(blocks, ()))["scaled_jacobian"].min
 
 
 def march_levels(
