@@ -9,7 +9,7 @@ from itertools import groupby
 
 import numpy as np
 
-from meshonet.geometry.arrays import Indices, Side, shortest_ways
+from meshonet.geometry.arrays import Side, shortest_ways
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
@@ -64,7 +64,9 @@ def _across(layout: Layout, lines: list[Line]) -> tuple[list[Connection], list[P
     """Return the connections and patches of periodic sides, part by part, and the lines of other sides."""
     connections, patches, rest = [], [], lines
     for each, first, second in sides_of(layout.mesh):
-        own, opposite = (_along(rest, chain) for chain in (first, second))
+        own, opposite = (
+            [line for line in rest if np.isin(line[2], chain).all()] for chain in (first, second)
+        )
         of = np.full(len(layout.mesh.nodes), -1, dtype=np.intp)
         of[second] = first
         moved = [(block, side, of[nodes]) for block, side, nodes in opposite]
@@ -78,11 +80,6 @@ def _across(layout: Layout, lines: list[Line]) -> tuple[list[Connection], list[P
         taken = {id(line) for line in (*own, *opposite)}
         rest = [line for line in rest if id(line) not in taken]
     return connections, patches, rest
-
-
-def _along(lines: list[Line], chain: Indices) -> list[Line]:
-    """Return the lines of which all nodes are in a chain of them."""
-    return [line for line in lines if np.isin(line[2], chain).all()]
 
 
 def _periodic(layout: Layout, lines: list[Line]) -> tuple[list[tuple[Line, Line]], list[Line]]:

@@ -4,8 +4,7 @@ import numpy as np
 from known_meshes import annulus, corner, disc, lattice_in_a_circle, rectangle
 
 from meshonet.solvers.blocking.decomposition.collapse.base_complex import base_complex
-from meshonet.solvers.blocking.decomposition.collapse.collapse import widths
-from meshonet.solvers.blocking.decomposition.collapse.contract import contract, is_conforming
+from meshonet.solvers.blocking.decomposition.collapse.collapse import contract, is_conforming, widths
 from meshonet.solvers.blocking.decomposition.quads.padding import loops_to_pad, pad, wrong_count
 
 

@@ -4,10 +4,7 @@ import numpy as np
 import pytest
 from planar_domains import SHAPES, domain
 
-from meshonet.solvers.blocking.decomposition.surface.split_edges import (
-    join_triangles,
-    split_edges_between_walls,
-)
+from meshonet.solvers.blocking.decomposition.surface.surface import join_triangles, split_edges_between_walls
 from meshonet.solvers.blocking.decomposition.surface.triangulation import triangulate
 
 NEXT = np.array([1, 2, 0])

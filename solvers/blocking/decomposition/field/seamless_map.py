@@ -9,8 +9,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.solvers.blocking.decomposition.field.cross_field import cross_field
 from meshonet.solvers.blocking.decomposition.field.frames import cut_frames, frame_sizes
 from meshonet.solvers.blocking.decomposition.field.parametrisation import Parametrisation
-from meshonet.solvers.blocking.decomposition.surface.split_edges import split_edges_between_walls
-from meshonet.solvers.blocking.decomposition.surface.surface import Triangulation
+from meshonet.solvers.blocking.decomposition.surface.surface import Triangulation, split_edges_between_walls
 from meshonet.solvers.blocking.decomposition.surface.triangulation import triangulate
 
 _FINER = 0.35

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Complexes, Floats, Indices
-from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import angle as angle_of
 from meshonet.geometry.elementary import exp, tan, times
 from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, Triangulation
@@ -74,17 +73,14 @@ def _corner_offsets(surface: Triangulation, inside: Floats) -> tuple[Indices, Fl
         cells[at] = wanted
         half = 0.5 * (wanted * QUARTER - inside[at])
         nearest = _nearest(arcs, loop.corner_arcs, loop.length)
-        reach, distance = _reaches(loop)[nearest], _around(arcs - loop.corner_arcs[nearest], loop.length)
+        _, lengths = loop.pieces
+        reaches = np.minimum(0.5 * np.minimum(lengths, np.roll(lengths, 1)), _REACH * loop.length)
+        reach, distance = reaches[nearest], _around(arcs - loop.corner_arcs[nearest], loop.length)
         acute[mine] = ((wanted == 1) & (half > 0))[nearest]
         offset = half[nearest] * np.maximum(0.0, 1.0 - np.abs(distance) / reach) ** 2
         after[mine] = before[mine] = np.where(distance > 0, -offset, offset)
         after[at], before[at] = -half, half
     return cells, after, before, acute
-
-
-def _reaches(loop: Loop) -> Floats:
-    _, lengths = loop.pieces
-    return np.minimum(0.5 * np.minimum(lengths, np.roll(lengths, 1)), _REACH * loop.length)
 
 
 def _nearest(arcs: Floats, places: Floats, length: float) -> Indices:

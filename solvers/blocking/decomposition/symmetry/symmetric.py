@@ -17,7 +17,7 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.ties import less
 from meshonet.kernels._native import joined_classes
 from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseComplex, base_complex
-from meshonet.solvers.blocking.decomposition.collapse.contract import is_conforming
+from meshonet.solvers.blocking.decomposition.collapse.collapse import is_conforming
 from meshonet.solvers.blocking.decomposition.quads.padding import wrong_count
 from meshonet.solvers.blocking.decomposition.symmetry.images import Images, agree, images_of, made_symmetric
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
