@@ -9,8 +9,8 @@ typedef struct {
     const double *weights;
 } Places;
 
-/* Grids (m, n) and (ni, nj), and places of the second in the first. No second derivatives up to `near` coarse cells
-   from a corner, all from `far` on. What is missed of an edge is felt along `reach` of its steps. */
+/* Grids (m, n) and (ni, nj), and places of the second in the first. Shares of second derivatives are taken out up to
+   `near` coarse cells from a corner, none from `far` on. What is missed of an edge is felt along `reach` of its steps. */
 typedef struct {
     ptrdiff_t m, n, ni, nj;
     Places fine[2];

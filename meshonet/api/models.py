@@ -5,20 +5,13 @@ from typing import Any
 from meshonet.solvers.neural.registry import described, shipped
 
 _USES = {
-    "airfoil-o": "O grids around airfoils, conformal",
-    "hole-o": "O grids around bodies with corners, variational",
-    "hole-winslow": "Winslow's O grids around bodies with corners",
-    "quad-general": "four-sided domains, variational",
-    "quad-winslow": "Winslow's grids of four-sided domains",
+    "airfoil-o": ("O grids around airfoils, conformal", "10 ms at 800 x 800"),
+    "hole-o": ("O grids around bodies with corners, variational", "3 ms at 129 x 65"),
+    "hole-winslow": ("Winslow's O grids around bodies with corners", "3 ms at 129 x 65"),
+    "quad-general": ("four-sided domains, variational", "2 ms at 65 x 65"),
+    "quad-winslow": ("Winslow's grids of four-sided domains", "2 ms at 65 x 65"),
 }
-_SPEEDS = {
-    "airfoil-o": "10 ms at 800 x 800",
-    "hole-o": "3 ms at 129 x 65",
-    "hole-winslow": "3 ms at 129 x 65",
-    "quad-general": "2 ms at 65 x 65",
-    "quad-winslow": "2 ms at 65 x 65",
-}
-"""Approximate times per grid on one core, without reading and writing (docs/benchmarks)."""
+"""Uses, and approximate times per grid on one core, without reading and writing (docs/benchmarks)."""
 _HEADS = {"variational": "relative L2 from variational grids", "winslow": "relative L2 from Winslow's grids"}
 _FIRST_HEAD = ("hole-o", "quad-general")
 
@@ -53,14 +46,9 @@ def models(name: str | None = None) -> list[dict[str, Any]]:
 
 
 def _facts(name: str) -> dict[str, Any]:
-    facts = dict(described(name))
-    return {
-        "name": facts.pop("name"),
-        "use": _USES.get(name, ""),
-        "speed": _SPEEDS.get(name, ""),
-        "error": _error(name, facts),
-        **facts,
-    }
+    facts, (use, speed) = dict(described(name)), _USES.get(name, ("", ""))
+    own = {"name": facts.pop("name"), "use": use, "speed": speed, "error": _error(name, facts)}
+    return own | facts
 
 
 def _error(name: str, facts: dict[str, Any]) -> str:
