@@ -51,7 +51,10 @@ def solve(
     check_settings(boundary, tol, max_cycles, initial)
     notes: tuple[str, ...] = ()
     outcome = Outcome.DONE
-    for k, (settings, steps) in enumerate(_attempts(controls)):
+    attempts: list[tuple[Settings, tuple[float, ...]]] = [(settings, (1.0,)) for settings in ATTEMPTS]
+    if controls is not None:
+        attempts.append((ATTEMPTS[-1], CONTINUATION))
+    for k, (settings, steps) in enumerate(attempts):
         start = initial if k == 0 else None
         try:
             for part in steps:
@@ -80,12 +83,6 @@ def solve_thomas_middlecoff(
         boundary, tol=tol, max_cycles=max_cycles, initial=initial, controls=thomas_middlecoff(boundary),
         method="thomas-middlecoff",
     )  # fmt: skip
-
-
-def _attempts(controls: Controls | None) -> list[tuple[Settings, tuple[float, ...]]]:
-    """Return the settings to try in turn, each with its sequence of factors of the controls."""
-    whole: list[tuple[Settings, tuple[float, ...]]] = [(settings, (1.0,)) for settings in ATTEMPTS]
-    return whole if controls is None else [*whole, (ATTEMPTS[-1], CONTINUATION)]
 
 
 def _attempt(

@@ -12,8 +12,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.notes import UNJUDGED
 from meshonet.geometry.ties import first_least
 from meshonet.solvers.energy.quads import FREE, optimise
-from meshonet.solvers.smoothing.hold_back import held_back
-from meshonet.solvers.smoothing.judge import PlaneMeasures, measures
+from meshonet.solvers.smoothing.hold_back import PlaneMeasures, held_back, measures
 from meshonet.solvers.smoothing.layers import with_layers
 from meshonet.solvers.smoothing.wanted_lengths import wanted_lengths
 from meshonet.solvers.solution import Outcome, Solution, timed

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Self
 
 import numpy as np
 
@@ -26,10 +25,6 @@ class VolumeLayers:
     lines: Indices  # (m, n) node indices; the first node is on the side
     rows: Indices  # (m,) number of thin cells of each line
     heights: Floats  # (m, n - 1) target lengths of the edges
-
-    def only_first(self) -> Self:
-        """Return layers with one row."""
-        return replace(self, rows=np.minimum(self.rows, 1))
 
 
 def layers_of(mesh: HexMesh, moves: Bools, targets: Targets) -> list[VolumeLayers]:

@@ -1,6 +1,7 @@
 """Smooths multi-block volume grids: the joint optimum of all nodes, with the spacing of the given grid."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -186,7 +187,8 @@ def _optima(
         optimum = towards(start, moves)
     if not optimum.valid:
         return
-    for some in (layers, [each.only_first() for each in layers]) if layers else ():
+    first = [replace(each, rows=np.minimum(each.rows, 1)) for each in layers]
+    for some in (layers, first) if layers else ():
         nodes, held = with_layers(optimum.nodes, some)
         rest = towards(start.with_nodes(nodes), moves & ~held, rounds=_FEW_ROUNDS)
         if rest.valid:

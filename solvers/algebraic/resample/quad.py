@@ -6,7 +6,7 @@ from the edge, share = max(0, 1 - d / r), r = max(d_1, min(`REACH` h, length of 
 the edge on both sides of the line, d_1 the line's first cell.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,7 +40,7 @@ def refine_quad(coarse: Floats, sides: Sides) -> Floats:
     return nodes
 
 
-def mended(coarse: Floats, sides: tuple[Floats, ...], nodes: Floats) -> Straight | None:
+def mended(coarse: Floats, sides: Sequence[Floats], nodes: Floats) -> Straight | None:
     """Interpolate `coarse` (2, m, n) to `nodes` (2, ni, nj) again in place, linearly around folded cells.
 
     Return an array (m, n) that is 1 at the coarse nodes with linear interpolation. Return None, and leave

@@ -10,8 +10,7 @@ from meshonet.solvers.neural.differentiable.arguments import batched, check_corn
 from meshonet.solvers.neural.differentiable.implicit import Converged, Equations
 from meshonet.solvers.neural.differentiable.members import Failed, check_failed
 from meshonet.solvers.neural.differentiable.recorded import recorded
-from meshonet.solvers.neural.differentiable.resample import between, refined
-from meshonet.solvers.neural.differentiable.transfinite import Sides, arc_lengths, interpolated
+from meshonet.solvers.neural.differentiable.resample import Sides, arc_lengths, between, interpolated, refined
 from meshonet.solvers.neural.differentiable.variational import Optimum
 from meshonet.solvers.neural.differentiable.winslow import Winslow
 

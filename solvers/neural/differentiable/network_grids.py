@@ -22,8 +22,13 @@ from meshonet.solvers.neural.differentiable.arguments import (
     check_sides,
 )
 from meshonet.solvers.neural.differentiable.recorded import recorded
-from meshonet.solvers.neural.differentiable.resample import between, folded, refined
-from meshonet.solvers.neural.differentiable.transfinite import arc_lengths, interpolated
+from meshonet.solvers.neural.differentiable.resample import (
+    arc_lengths,
+    between,
+    folded,
+    interpolated,
+    refined,
+)
 from meshonet.solvers.neural.fit.networks import QuadUNet
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.quad.coarse_grids import answered, in_frame, nearer, share

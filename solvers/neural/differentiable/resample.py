@@ -1,6 +1,4 @@
-"""Interpolation with gradients: `algebraic.resample.quad` in torch."""
-
-from typing import Any
+"""Interpolation with gradients: transfinite, and `algebraic.resample.quad` in torch."""
 
 import numpy as np
 import torch
@@ -10,7 +8,47 @@ from meshonet.geometry.arrays import Floats, array_like
 from meshonet.solvers.algebraic.resample import corner_damping as acute
 from meshonet.solvers.algebraic.resample.quad import REACH, mended
 from meshonet.solvers.algebraic.resample.spline import bending
-from meshonet.solvers.neural.differentiable.transfinite import with_rim
+from meshonet.solvers.neural.differentiable.arguments import as_numpy
+
+Sides = tuple[Tensor, ...]  # south, north (batch, 2, ni), west and east (batch, 2, nj)
+
+
+def interpolated(sides: Sides, laws: tuple[Tensor, ...]) -> Tensor:
+    """Return nodes (batch, 2, ni, nj) by transfinite interpolation between `sides`.
+
+    `laws`: parameters of the nodes on the four sides, 0 to 1, (batch, n) each.
+    """
+    south, north, west, east = sides
+    s, n = (law[:, 1:-1, None] for law in laws[:2])
+    w, e = (law[:, None, 1:-1] for law in laws[2:])
+    u = (s + (n - s) * w) / (1.0 - (n - s) * (e - w))
+    v = (w + (e - w) * u)[:, None]
+    u = u[:, None]
+    a, b, c, d = (side[:, :, k, None, None] for side, k in ((south, 0), (south, -1), (north, -1), (north, 0)))
+    left = west[:, :, None, 1:-1] - a - v * (d - a)
+    right = east[:, :, None, 1:-1] - b - v * (c - b)
+    low, high = south[:, :, 1:-1, None], north[:, :, 1:-1, None]
+    inner = low + v * (high - low) + left + u * (right - left)
+    return with_rim(sides, inner)
+
+
+def with_rim(sides: Sides, inner: Tensor) -> Tensor:
+    """Return nodes (batch, 2, ni, nj): the nodes `inner` (batch, 2, ni-2, nj-2) with `sides` around them."""
+    south, north, west, east = sides
+    rows = torch.cat([south[:, :, 1:-1, None], inner, north[:, :, 1:-1, None]], 3)
+    return torch.cat([west[:, :, None], rows, east[:, :, None]], 2)
+
+
+def arc_lengths(sides: Sides) -> tuple[Tensor, ...]:
+    """Return the arc length (batch, n) of the nodes along each side, from 0 to 1."""
+    fractions = []
+    for side in sides:
+        steps = side[..., 1:] - side[..., :-1]
+        still = (steps == 0).all(1)  # between equal nodes, where a length has no gradient
+        moved = torch.where(still[:, None], torch.ones_like(steps), steps)
+        along = torch.cumsum(torch.hypot(moved[:, 0], moved[:, 1]).masked_fill(still, 0.0), -1)
+        fractions.append(torch.cat([torch.zeros_like(along[:, :1]), along / along[:, -1:]], -1))
+    return tuple(fractions)
 
 
 def refined(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
@@ -23,10 +61,8 @@ def refined(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
     if len(where) == 0:
         return nodes
     few, some = coarse[where], tuple(side[where] for side in sides)
-    straight = [
-        mended(planes[0], planes[1:-1], planes[-1])
-        for planes in zip(*(arrays(planes) for planes in (few, *some, nodes[where])), strict=True)
-    ]
+    members = (as_numpy(part.double().contiguous()) for part in (few, *some, nodes[where]))
+    straight = [mended(planes, edges, grid) for planes, *edges, grid in zip(*members, strict=True)]
     curved = np.stack([np.ones(few.shape[2:]) if lines is None else 1.0 - lines for lines in straight])
     kept = array_like(curved, coarse, torch)
     return nodes.index_copy(0, where, _evaluated(few, some, kept[:, None]))
@@ -93,11 +129,6 @@ def folded(nodes: Tensor) -> Tensor:
         for v in (across[:, :, :-1], across[:, :, 1:]):
             valid &= (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] > 0).flatten(1).all(1)
     return ~valid
-
-
-def arrays(planes: Tensor) -> Any:
-    """Return `planes` as a NumPy array in float64."""
-    return planes.detach().cpu().double().contiguous().numpy()
 
 
 def between(values: Tensor, n: int) -> Tensor:

@@ -7,9 +7,8 @@ from meshonet.solvers.elliptic.winslow import left_side
 from meshonet.solvers.neural.differentiable.gmres import gmres
 from meshonet.solvers.neural.differentiable.implicit import bordered, inner
 from meshonet.solvers.neural.differentiable.members import MemberError, check_finite
-from meshonet.solvers.neural.differentiable.resample import between
+from meshonet.solvers.neural.differentiable.resample import arc_lengths, between, interpolated
 from meshonet.solvers.neural.differentiable.separable import Separable
-from meshonet.solvers.neural.differentiable.transfinite import arc_lengths, interpolated
 
 TOL = 1e-12  # preconditioned residual at which a grid is converged, relative to its extent
 ROUGH = 1e-3  # the same on coarse copies

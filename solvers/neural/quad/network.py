@@ -163,7 +163,9 @@ class Network:
         try:
             program = idle.pop()
         except IndexError:
-            program = self._recorded(np.empty((CHUNK, m, n, FEATURES), self.dtype))
+            work = _ProgramRecorder(self._layers, self.around)
+            work.through(np.empty((CHUNK, m, n, FEATURES), self.dtype), self.blocks)
+            program = work.program
         for k in range(0, batch, CHUNK):
             program.run(seen[k : k + CHUNK], answer[k : k + CHUNK])
         idle.append(program)
@@ -179,12 +181,6 @@ class Network:
         seen = np.empty((*near.shape, FEATURES), self.dtype)
         grid_features(planes_of(near), planes_of(step), seen)
         return self(seen, head)
-
-    def _recorded(self, h: Reals) -> LayerProgram:
-        """Return a program of the layers for at most as many domains as `h` has, with arrays of its own."""
-        work = _ProgramRecorder(self._layers, self.around)
-        work.through(h, self.blocks)
-        return work.program
 
 
 class _ProgramRecorder(UNet[Reals]):
