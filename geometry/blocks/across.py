@@ -20,8 +20,8 @@ def across(grid: Grid, connection: Connection, depth: int) -> tuple[Floats, Floa
     """Return the rows of nodes next to a connection: those in the block of the side, those in the donor.
 
     Both arrays are (depth, n, d), in volumes (depth, n, m, 3), with fewer rows if the block has fewer. The
-    shared row comes first; nodes have the order of the side. Rows of the side are moved by the periodic
-    motion, if there is one.
+    row on the connection comes first. Nodes in both arrays are in the order of the side. Rows of the side are
+    moved by the periodic motion, if there is one.
     """
     own, donor = (rows_beside(grid, *end, depth) for end in connection.ends)
     if connection.transform:
@@ -47,7 +47,7 @@ def rows_at(grid: Grid, patch: Patch, depth: int) -> Floats:
 
 
 def rows_beside(grid: Grid, block: int, side: Side, span: Range, depth: int) -> Floats:
-    """Return rows of nodes, (depth, n, d) or (depth, n, m, 3): `span` of a side and the next ones inwards."""
+    """Return `depth` rows of nodes, (depth, n, d) or (depth, n, m, 3), from `span` of a side inwards."""
     axis, end = PLACES[side]
     nodes = np.moveaxis(grid.blocks[block].nodes, axis, 0)
     return (nodes[::-1] if end else nodes)[(slice(depth), *(slice(first, last + 1) for first, last in span))]

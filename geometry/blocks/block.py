@@ -41,8 +41,8 @@ class Block:
     """The nodes of one block.
 
     `nodes` are (ni, nj, 2), (ni, nj, nk, 3), or (ni, nj, 3) on a surface, in any unit of length; they are
-    kept as float64 in planar layout (see `meshonet.geometry.arrays`). With `finite`, no check is made that
-    they are finite, which would take a tenth of the run time of some methods.
+    kept as float64 in planar layout (see `meshonet.geometry.arrays`). If `finite`, the check for infinities
+    and NaN is skipped.
 
     Raises InputError: nodes of another shape, fewer than 2 along a direction, or not finite.
     """

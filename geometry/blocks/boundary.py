@@ -59,8 +59,8 @@ class Boundary(Connected):
     wall : Curve, optional
         The curve on which the nodes of `south` lie. Neural operators use it to know the shape between nodes.
     chord : float, optional
-        Unit of spacings: the chord of an airfoil, or the largest extent of another body. 0: the distance from
-        the first node of the body to the node farthest from it.
+        Unit of spacings: the chord of an airfoil, or the largest extent of another body. If 0, it is the
+        distance from the first node of the body to the farthest other node.
     sensors : array, optional
         Nodes (m, 2) that are the input of the branch networks of an operator (see `with_sensors`).
     notes : tuple of str, optional
@@ -125,7 +125,7 @@ class Boundary(Connected):
 
     @cached_property
     def corners(self) -> Mapping[str, Indices]:
-        """By side, the indices of the corners of an edge without its two ends (see `polygon.corners`)."""
+        """For each side, the indices of its corners other than its two ends (see `polygon.corners`)."""
         return {side: read_only(find_corners(getattr(self, side))) for side in SIDES}
 
     def grid(
@@ -143,7 +143,7 @@ class Boundary(Connected):
         return np.concatenate([self.south[:-1], self.east[:-1], self.north[:0:-1], self.west[:0:-1]])
 
     def with_sensors(self, count: int) -> Self:
-        """Return the boundary with `count` sensors: nodes at equal steps of their index.
+        """Return the boundary with `count` sensors, which are nodes with equally spaced indices.
 
         In a quad boundary the sensors start at the south-west corner and follow the boundary
         counter-clockwise. In an O grid, half of them (rounded up) are on the body and the others on the far

@@ -51,7 +51,7 @@ class Connection:
         return (self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range)
 
     def pairs(self, values: Sequence[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return views of the `values` at the nodes: of the side, and of the donor, (n, 1) or (n, m, 1) each.
+        """Return views, (n, 1) or (n, m, 1), of the `values` at nodes of the side and at nodes of the donor.
 
         `values` has one array per block. Both views have the order of the side.
         """
@@ -102,14 +102,14 @@ class Connection:
         return f"the connection of {own} of block {self.block} to {donor} of block {self.donor}"
 
     def stretches(self, block: int) -> list[tuple[Side, int, int]]:
-        """Return the connected parts of a planar block's boundary: side, first and last node of each part."""
+        """Return the parts of a planar block's sides that are connected: side, first node and last node."""
         return [(side, *nodes[0]) for number, side, nodes in self.ends if number == block]
 
 
 def cells_at(connection: Connection, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return views (n, d) or (n, m, d) of the values of the cells next to the side and next to the donor.
 
-    Both have the order of the side. `face` returns the values of the cells at a side of a block.
+    Both views have the order of the side. `face` returns the values of the cells at a side of a block.
     """
     spans = [tuple((a, b - 1) for a, b in span) for span in (connection.range, connection.donor_range)]
     return replace(connection, range=spans[0], donor_range=spans[1], transform=None).nodes(face)

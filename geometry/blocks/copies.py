@@ -34,7 +34,7 @@ def copied(grid: Grid, copies: int | Sequence[int]) -> Grid:
     """Return copies of a periodic grid, each joined to the next; all have patches of the same names.
 
     `grid` has one period, a rotation or a translation, or several translations. `copies` are the numbers of
-    copies along each period, at most a whole turn.
+    copies along each period; rotated copies fill at most a whole turn.
 
     Raises InputError: the grid is not periodic; there are more or fewer numbers than periods; a number is out
     of its range.

@@ -60,8 +60,8 @@ def thickened(
     """Return volumes with the patches and connections of a planar grid.
 
     `nodes` are the finite nodes (ni, nj, nk, 3) of each block; patches and connections extend over all planes
-    of nodes. `ends` are names and kinds of the patches at the first and at the last plane. If it is None,
-    both are connected by the periodic `motion`, or coincide if that is None too.
+    of nodes. `ends` are names and kinds of the patches at the first and at the last plane. If `ends` is None,
+    the two planes are connected by the periodic `motion`; if `motion` is None too, the planes coincide.
 
     Raises InputError: blocks that are not planar; nodes that differ where blocks are connected.
     """

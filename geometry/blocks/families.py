@@ -18,9 +18,9 @@ from meshonet.geometry.blocks.grid import Grid
 class Member:
     """The grid lines of a block along the direction `axis` (0 is xi, 1 is eta), as a part of a family.
 
-    A family contains all grid lines that continue each other from block to block. If `aligned`, each line has
-    the same index in the other direction as its continuation in the family's first block, counted from the
-    other end if also `flipped`. If not `aligned`, only some lines continue into the first block.
+    A family contains all grid lines that continue each other from block to block. If `aligned`, line k
+    continues line k of the family's first block; if also `flipped`, it continues the k-th line from the end.
+    If not `aligned`, only some lines continue into the first block.
     """
 
     block: int

@@ -122,8 +122,8 @@ class Grid(Connected):
     ) -> Grid:
         """Return the grid of a single block (see `Block`); its connections are found from its nodes.
 
-        In the topology ``c``, the wake consists of those nodes at the start of the south side that its end
-        repeats in reverse order. Without `patches`, the grid gets those of `default_patches`.
+        In the topology ``c``, the wake is the start of the south side that is repeated in reverse at its end.
+        Without `patches`, the grid gets those of `default_patches`.
 
         Returns
         -------

@@ -91,7 +91,7 @@ class _SideCells:
 
     @property
     def flat(self) -> Floats:
-        """(n, 2 or 4, 2 or 3) corners of the sides: 2 of lines and 4 of faces, in the plane or in space."""
+        """Corners of the sides: (n, 2, 2) for lines in the plane, (n, 2, 3) in space, (n, 4, 3) for faces."""
         return self.corners.reshape(len(self.block), -1, self.corners.shape[-1])
 
     def reach(self, tolerance: float) -> Floats:

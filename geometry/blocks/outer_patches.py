@@ -31,7 +31,7 @@ def listed_sides(counts: tuple[int, ...]) -> tuple[Side, ...]:
 def owners_of(
     patches: Sequence[Patch], counts: tuple[int, ...], inside: Iterable[tuple[Side, Range]], side: Side
 ) -> NDArray[np.intp]:
-    """Return, for each cell (n,) or (n, m) at a side, the index in `patches` of the last that contains it.
+    """Return, for each cell (n,) or (n, m) at a side, the index of the last of `patches` that contains it.
 
     `inside` lists the connected parts of the sides, each as its side and its index range. Cells in these
     parts get `JOINED`; other cells without a patch get `UNNAMED`.
@@ -66,7 +66,7 @@ def outer_patches(
 
 
 def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
-    """Yield owner and node range of rectangles that cover all cells of a side that are not `JOINED`.
+    """Yield owner and node range of rectangles; together, they cover the cells that are not `JOINED`.
 
     `owners` (n,) or (n, m) are those of the cells, from `owners_of`.
     """

@@ -54,8 +54,8 @@ def resample_edges(
 ) -> dict[Side, Floats]:
     """Return the four `edges` of a block resampled to ni nodes along xi and nj along eta.
 
-    The south edge has `wake` cells of the wake at each of its two ends, which keep equal nodes and their
-    share of the edge's cells.
+    The first and the last `wake` cells of the south edge are the wake. The nodes of these two parts stay
+    equal, and their fraction of the edge's cells stays the same.
 
     Raises InputError: too few nodes for a closed edge, or for the wall between the two sides of a wake.
     """
@@ -106,7 +106,7 @@ def resample_patches(
 def patches_in_place(had: Boundary, has: Boundary) -> tuple[Patch, ...]:
     """Return the patches of `had`, transferred to `has`, a boundary with the same edges but other nodes.
 
-    Each end of a patch becomes the node that is nearest in terms of the fraction of the side's length.
+    Each end of a patch moves to the node with the nearest fraction of the side's length.
     """
 
     def moved(patch: Patch) -> Patch:

@@ -43,9 +43,9 @@ def shared_nodes(
 def numbered(
     counts: Sequence[tuple[int, ...]], order: Literal["C", "F"] = "C"
 ) -> tuple[Indices, list[Indices]]:
-    """Return the number of each block's first node and the total; and the node numbers of each block.
+    """Return the number of each block's first node, then the total; also each block's node numbers.
 
-    Nodes are numbered block after block, also nodes that connections join.
+    Nodes are numbered block after block; joined nodes have separate numbers.
     """
     ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
     parts = zip(ends, ends[1:], counts, strict=False)
@@ -68,7 +68,7 @@ def node_table(
 def places_among(
     pairs: Sequence[tuple[Indices, Indices]],
 ) -> tuple[Indices, list[tuple[Indices, Indices]]]:
-    """Return the distinct numbers in `pairs`, ascending, and `pairs` with numbers replaced by indices."""
+    """Return the distinct numbers in `pairs`, ascending, and `pairs` as indices of these numbers."""
     flat = [nodes.ravel() for pair in pairs for nodes in pair]
     used, where = np.unique(np.concatenate(flat), return_inverse=True)
     parts = np.split(where.ravel(), np.cumsum([len(nodes) for nodes in flat])[:-1])

@@ -107,7 +107,7 @@ class SixFaces:
     def edges_along(self, axis: int) -> list[Floats]:
         """Return the four edges (n, 3) of the volume along the direction `axis`.
 
-        In the other two directions they are at (low, low), (high, low), (low, high), (high, high).
+        The edges are at the (low, low), (high, low), (low, high), (high, high) ends of the other directions.
         """
         first, second = (
             [side for side in FACES if PLACES[side][0] == each] for each in range(3) if each != axis
@@ -121,7 +121,7 @@ class SixFaces:
         return Grid((block,), patches, (), self.name, provenance or {})
 
     def resampled(self, counts: tuple[int, int, int]) -> SixFaces:
-        """Return the faces with other node counts, interpolated by cubic splines in the same distribution.
+        """Return the faces with other node counts but equal distribution, interpolated by cubic splines.
 
         Raises InputError: fewer than 2 nodes along a direction.
         """

@@ -33,8 +33,8 @@ class Domain:
     periodic : tuple of Periodic, optional
         Pairs of periodic parts of the outer loop.
     heights, counts : mapping, optional
-        Prescribed first-cell heights and numbers of cells, by the name of a part of a loop. A mirror of the
-        domain is used only if the image of each part has the same prescribed values.
+        Prescribed first-cell heights and numbers of cells, by the name of a part of a loop. A mirror symmetry
+        is used only if parts that are mirror images have equal prescribed values.
 
     Raises
     ------
@@ -122,7 +122,8 @@ class Domain:
     def layered_loops(self) -> range:
         """Indices of the loops that get layers if no wall is named: the holes.
 
-        Without holes, it is the outer loop if the name of one of its parts says that the part is no wall.
+        Without holes, the outer loop gets layers if the name of one of its parts, such as inlet, means no
+        wall.
         """
         alone = len(self.loops) == 1 and not self.periodic
         channel = alone and not all(map(may_be_wall, self.loops[0].names))

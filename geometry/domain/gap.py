@@ -24,7 +24,7 @@ def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
     """Return the distances (n,) from points of a loop at `arcs` (n,) to the nearest wall in front of them.
 
     A wall of any loop is in front if its direction deviates from the inward normal by at most 53 degrees.
-    Near a corner of two cells, the other wall of the corner does not count. Infinity stands for no wall.
+    Gaps between the two walls at a corner where two cells meet do not count. No wall in front: infinity.
     """
     walls, points, along = wall_points(domain.loops), loop.at(arcs), loop.tangent(arcs)
     gaps = gaps_in_front(walls, points, along)
@@ -55,8 +55,8 @@ def _sample_counts(loops: Sequence[Loop]) -> list[int]:
 def gaps_in_front(walls: Floats, points: Floats, along: Floats) -> Floats:
     """Return the distance (n,) from `points` (n, 2) to the nearest of the points `walls` (m, 2) in front.
 
-    `along` (n, 2) are unit vectors along the wall at `points`; the normal is to their left. A wall point is
-    in front if its direction deviates from the normal by at most 53 degrees.
+    `along` (n, 2) are unit tangents of the wall at `points`; the normal points to the left of the tangent. A
+    wall point is in front if its direction deviates from the normal by at most 53 degrees.
     """
     gaps, same = np.empty(len(points)), _SAME * extent_of(walls)
     walls, points, along = (np.ascontiguousarray(each) for each in (walls, points, along))

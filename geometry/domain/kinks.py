@@ -17,9 +17,9 @@ APART = 0.01
 
 
 def with_kinks(domain: Domain) -> Domain:
-    """Return a domain whose polygons have corners of two cells at kinks (`find_kinks`) too.
+    """Return the domain with corners of two cells also at kinks (`find_kinks`) of its polygons.
 
-    Otherwise a cell could cut a kink off, by several first-cell heights where layers are thin.
+    Each kink then has a node, and no cell edge cuts it off.
     """
     held = 1 if domain.periodic else 0  # periodic sides are matched already
     loops = domain.loops

@@ -18,7 +18,7 @@ CORNER_DEG = 30.0
 
 
 def turns_sharply(turn: Floats) -> Bools:
-    """Return whether turns (n,) in radians, of either sign, exceed `CORNER_DEG` by more than rounding."""
+    """Return whether |`turn`| (n,), in radians, exceeds `CORNER_DEG` by more than rounding errors."""
     return np.asarray(np.abs(turn) > np.radians(CORNER_DEG) * (1.0 + EQUAL))
 
 
@@ -103,7 +103,7 @@ class Loop:
         return self.curve.at(np.mod(arc, self.length))
 
     def tangent(self, arc: Floats) -> Floats:
-        """Return unit tangents (m, 2) at arc lengths (m,); at a corner, of the stretch after it."""
+        """Return unit tangents (m, 2) at arc lengths (m,); at a corner, the tangent just after it."""
         return self.curve.tangent(np.mod(arc, self.length))
 
     def name_at(self, arc: float) -> str:

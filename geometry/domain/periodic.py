@@ -25,7 +25,7 @@ _BITS = 50  # of coordinates that are kept where sums of them have to be exact
 
 @dataclass(frozen=True)
 class Periodic:
-    """Two parts of the outer loop (ranges of arc length); the second is the first moved by `shift`."""
+    """Two parts of the outer loop (ranges of arc length); `shift` moves the first onto the second."""
 
     first: tuple[float, float]
     """Arc lengths where the first stretch starts and ends, in the direction of the loop."""

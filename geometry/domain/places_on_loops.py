@@ -9,9 +9,8 @@ from meshonet.geometry.domain.loop import Loop
 def place_at(loop: Loop, arc: Floats) -> Floats:
     """Return numbers (n,), called places, for the points of a `loop` at the arc lengths `arc` (n,).
 
-    The integer part of a place is the index of the corner before the point. The fractional part is the arc
-    length from this corner over that to the next corner. On a loop without corners a place is the arc length
-    over the length of the loop.
+    The integer part is the index of the last corner before the point. The fractional part is the fraction of
+    the arc length from this corner to the next. On a loop without corners, it is that of the whole loop.
     """
     arc = np.mod(arc, loop.length)
     if not loop.corners:

@@ -28,7 +28,7 @@ def ring_loop(
     hole : whether the domain is outside the polygon.
     corners : indices of the points that are corners; None detects them by their turning angles.
     names : one name, or one for each stretch between corners, in the order of `corners`.
-    places : position of each point in its source, for messages.
+    places : position of each point in the input, for messages.
 
     Raises InputError: there are fewer than three points or no area; the polygon crosses or touches itself; a
     corner index is out of range; the number of names is wrong.

@@ -22,7 +22,7 @@ def _table(loop: Loop) -> tuple[Floats, Floats]:
 
 
 def turning_between(loop: Loop, first: Floats, last: Floats) -> Floats:
-    """Return the absolute turning (k,) of a loop in degrees from `first` to `last`, without its corners."""
+    """Return integrals (k,) of a loop's |curvature|, in degrees, from `first` to `last`, without corners."""
     arcs, turned = _table(loop)
     return _turned(loop, last, arcs, turned) - _turned(loop, first, arcs, turned)
 
@@ -57,7 +57,8 @@ def sizes_by_bend(loop: Loop, largest: float, turn: float) -> tuple[Floats, Floa
 def wall_bend(loop: Loop, arcs: Floats, window: int) -> Floats:
     """Return the absolute curvature (n,) of a loop at ascending arc lengths (n,), in radians per length.
 
-    It is averaged over `window` of the `arcs` on both sides, without corners, which must be among `arcs`.
+    The curvature is averaged over `window` of the `arcs` on both sides; turning at corners does not count.
+    All corners must be among `arcs`.
     """
     along = loop.tangent(arcs)
     direction = arctan2(along[:, 1], along[:, 0])

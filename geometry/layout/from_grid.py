@@ -29,7 +29,7 @@ from meshonet.geometry.polygon.corners import find_corners
 
 
 def layout_of(grid: Grid) -> Layout:
-    """Return the layout with the blocks of a planar grid, its nodes and patches.
+    """Return the layout with the blocks, nodes and patches of a planar grid.
 
     Raises InputError: a block that is not planar or is left-handed; outer sides that do not form closed
     loops; overlapping blocks; sides that are periodic by a rotation.

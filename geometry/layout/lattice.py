@@ -31,7 +31,7 @@ def lattice_quads(blocks: Sequence[Indices]) -> Indices:
 
 
 def around_body(layout: Layout) -> Layout:
-    """Return the layout of one ring-shaped block with i around the hole and j away from it.
+    """Return a layout of one ring-shaped block, with i running around the hole and j away from the hole.
 
     The block stays right-handed, so i runs clockwise. Other layouts are returned unchanged.
     """

@@ -31,10 +31,10 @@ class Layout:
     blocks : tuple of array
         Right-handed arrays (ni, nj) of node indices; each quad of the mesh is in exactly one block.
     layers : dict, optional
-        By index of a block, the number of its rows from the south side that are layers at a wall. No
-        optimisation moves them.
+        Number of rows of cells, counted from the south side, that are layers at a wall; the key is the index
+        of the block. Optimisations do not move these rows.
     fronts : tuple of int, optional
-        Indices of the loops that are outer sides of layers; the cells of these layers are added later.
+        Indices of the loops that are outer edges of layers whose cells are added later.
     """
 
     mesh: QuadMesh
@@ -49,7 +49,7 @@ class Layout:
         return np.asarray(distinct(np.concatenate(corners)))
 
     def beside(self, on: Bools) -> list[Indices]:
-        """Return the node tables (k, m) of blocks from each side in the mask `on` (n,) of nodes inwards."""
+        """Return node tables (k, m) of blocks; column 0 is a side with all nodes in the mask `on` (n,)."""
         tables = [t for block in self.blocks for t in (block, block[:, ::-1], block.T, block.T[:, ::-1])]
         return [table for table in tables if on[table[:, 0]].all()]
 

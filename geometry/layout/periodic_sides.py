@@ -17,7 +17,7 @@ Sides = tuple[Periodic, Indices, Indices]
 
 
 def sides_of(mesh: QuadMesh) -> list[Sides]:
-    """Return, for each periodic pair of sides, the nodes along both sides, which may differ in number."""
+    """Return each periodic pair, with the nodes along its first side and along its second side."""
     after = following(mesh)
     return [
         (each, _chain(mesh, after, each.first), _chain(mesh, after, each.second)[::-1])
@@ -26,7 +26,7 @@ def sides_of(mesh: QuadMesh) -> list[Sides]:
 
 
 def following(mesh: QuadMesh) -> Indices:
-    """Return, for each node (n,), the next along the boundary (domain on the left); -1 for inner nodes."""
+    """Return the next node (n,) of each node along the boundary (domain on the left); -1 for inner nodes."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     after = np.full(len(mesh.nodes), -1, dtype=np.intp)
     after[mesh.quads[cell, side]] = mesh.quads[cell, (side + 1) % 4]

@@ -120,18 +120,18 @@ class QuadMesh:
 
     @cached_property
     def irregular(self) -> Bools:
-        """(n,) whether the number of quads at a node is not regular: four inside, two on the boundary."""
+        """(n,) whether a node is irregular: inside without four quads, or on the boundary without two."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
 
     @cached_property
     def of_quads(self) -> dict[object, object]:
-        """Cache of results that depend on the quads only; meshes with the same quads share it."""
+        """Cache of results that depend only on the quads, shared by all meshes of these quads."""
         return {}
 
     def aspects(self, lengths: Floats) -> Floats:
         """Return the aspect ratios (m,) of the quads, for edges of `lengths` (e,).
 
-        It is the geometric mean length of the sides 1-2 and 3-0, divided by that of the sides 0-1 and 2-3.
+        The aspect ratio is sqrt(l12 l30 / (l01 l23)), where lab is the length of the side from corner a to b.
         """
         sides = lengths[self.edge_of]
         return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))
@@ -144,7 +144,7 @@ class QuadMesh:
         return tied
 
     def shifts(self, images: Indices) -> Floats:
-        """Return, for each of the nodes `images` (k,), the period (k, 2) from its partner to the node."""
+        """Return the periods (k, 2): vectors from the partners of the nodes `images` (k,) to these nodes."""
         known = np.array([each.shift for each in self.domain.periodic] or [(0.0, 0.0)])
         way = self.nodes[images] - self.nodes[self.places.partner[images]]
         off = np.hypot(*(way[:, None] - known).transpose(2, 0, 1))

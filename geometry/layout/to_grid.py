@@ -25,7 +25,7 @@ _SIDES: tuple[Side, ...] = ("south", "north", "west", "east")
 def to_grid(layout: Layout, name: str = "", walls: Collection[str] = ()) -> Grid:
     """Return the grid of a layout's blocks.
 
-    Holes, and the sides named in `walls`, are of the kind "wall" unless their names suggest another one.
+    Holes, and the sides named in `walls`, are of the kind "wall" unless their names suggest another kind.
     Raises InputError (from `Grid`): a layout whose neighbouring blocks do not share nodes.
     """
     domain = layout.mesh.domain
