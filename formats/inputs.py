@@ -16,8 +16,7 @@ from meshonet.geometry.errors import InputError
 if TYPE_CHECKING:
     from meshonet.formats.hdf5.read import DatasetSamples
 
-_BEGINNING = 10_001
-"""Number of inputs at which counting before the work ends."""
+_BEGINNING = 10_001  # number of inputs at which counting before the work ends
 _IS_DATASET = re.compile(r"\.(?:h5|hdf5)(?:#[a-z0-9,:]+)?$", re.IGNORECASE)
 
 

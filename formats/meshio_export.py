@@ -12,8 +12,7 @@ from meshonet.formats.format import Options, only_one
 from meshonet.formats.mesh.unstructured import CELLS, Indices, Unstructured, unstructured, with_z
 from meshonet.geometry.blocks.grid import Grid
 
-_TRIANGLES = {"stl", "off"}
-"""Formats without quadrilaterals."""
+_TRIANGLES = {"stl", "off"}  # formats without quadrilaterals
 _SETTINGS: dict[str, dict[str, object]] = {
     "stl": {"binary": True}, "ply": {"binary": True}, "abaqus": {"float_fmt": ".16e"},
     "medit": {"float_fmt": ".16e"},

@@ -21,8 +21,7 @@ _PART = re.compile(
 )
 """Name of an unfinished file: the name of the finished file, the machine, and the process that writes it."""
 _swept: set[Path] = set()
-_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
-"""Errors of a disk that is full or read-only."""
+_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}  # errors of a disk that is full or read-only
 
 
 @contextlib.contextmanager

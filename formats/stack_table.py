@@ -10,8 +10,7 @@ from meshonet.geometry.sections.section import MOST_CANT, MOST_NODES, QUARTER, C
 from meshonet.geometry.sections.stack import BETWEEN, KINDS, TIPS, Stack
 
 _SPACINGS = "tip_spacing", "le_spacing", "te_spacing"
-_STEEPEST = 85.0
-"""Largest sweep and dihedral in degrees; at 90 the next section would be infinitely far away."""
+_STEEPEST = 85.0  # largest sweep and dihedral in degrees; at 90 the next section would be infinitely far away
 
 
 def stack_table(data: Table, folder: Path, name: str, more: tuple[str, ...] = ()) -> Stack:

@@ -13,8 +13,7 @@ from typing import Any
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.errors import InputError
 
-_SHOWN = 40
-"""Number of characters of a value that an error message shows."""
+_SHOWN = 40  # number of characters of a value that an error message shows
 
 
 @dataclass(frozen=True)

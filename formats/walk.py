@@ -21,8 +21,7 @@ MOST_NESTED = 8
 """Largest depth of lists that name lists."""
 LONGEST_LINE = 8192
 """Largest length of a line of a list, in bytes; a path has at most 4096."""
-_WITH_FOLDER = (".h5", ".hdf5", ".vtm")
-"""Extensions of files to which a folder of the same name belongs."""
+_WITH_FOLDER = (".h5", ".hdf5", ".vtm")  # extensions of files to which a folder of the same name belongs
 
 
 def _readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:

@@ -12,8 +12,7 @@ from meshonet.formats.source import Source
 from meshonet.geometry.cad.model import CadModel
 from meshonet.geometry.errors import InputError
 
-_MOST_BYTES = 1 << 28
-"""Largest CAD file in bytes; reading takes some 10 times as much memory."""
+_MOST_BYTES = 1 << 28  # largest CAD file in bytes; reading takes some 10 times as much memory
 _MILLIMETRES = {
     "millimetre": 1.0, "centimetre": 10.0, "metre": 1000.0, "inch": 25.4, "foot": 304.8, "micrometre": 1e-3,
 }  # fmt: skip

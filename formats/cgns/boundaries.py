@@ -24,8 +24,7 @@ _KINDS: tuple[tuple[str, Kind], ...] = (
     ("BCAxisymmetricWedge", "wedge"),
 )  # fmt: skip
 """Kinds of boundary by the start of CGNS's name of the condition (SIDS, BCType_t)."""
-_NOTHING = ("Null", "BCTypeNull")
-"""Conditions without meaning, which are ignored."""
+_NOTHING = ("Null", "BCTypeNull")  # conditions without meaning, which are ignored
 _FACES = ("FaceCenter", "IFaceCenter", "JFaceCenter", "KFaceCenter", "EdgeCenter", "CellCenter")
 """Locations at which a range counts faces, not nodes (SIDS, GridLocation_t)."""
 

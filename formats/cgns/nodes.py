@@ -25,8 +25,7 @@ VERSIONS = "earliest", "v108"
 
 _TYPES = {"int8": "C1", "int32": "I4", "int64": "I8", "float32": "R4", "float64": "R8"}
 """CGNS's names of number types by those of NumPy."""
-_DATA = " data"
-"""Name of the dataset of a node's data, with the leading blank that the standard requires."""
+_DATA = " data"  # name of the dataset of a node's data, with the leading blank that the standard requires
 
 
 def root(file: h5py.File) -> Node:

@@ -24,8 +24,7 @@ from meshonet.geometry.errors import InputError, in_place
 
 _FACTS = ("topology", "name", "parts", "kinds", "provenance", "block", "connections", "across", "coordinates")
 """Descriptors of a zone that this package writes (`meshonet.formats.mesh.metadata.facts_of`)."""
-_MOST_NODES = 1 << 40
-"""Largest plausible number of nodes of a zone; their coordinates would take 24 TB."""
+_MOST_NODES = 1 << 40  # largest plausible number of nodes of a zone; their coordinates would take 24 TB
 
 
 @dataclass(frozen=True)

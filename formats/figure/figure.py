@@ -39,8 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
-_NAME = 48
-"""Number of letters of a grid's name that fit above a view."""
+_NAME = 48  # number of letters of a grid's name that fit above a view
 
 
 def draw(

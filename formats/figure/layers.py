@@ -25,10 +25,8 @@ INK = "#1b2733"
 _BODY = "#e8eaed"
 _LINE_GAP = 6.0
 """Smallest distance in pixels between drawn grid lines, in the middle of the cells that fill the picture."""
-_BLOCK = 1.0
-"""Smallest size in pixels of a coloured group of cells."""
-_SAMPLE = 200_000
-"""Number of cells that are examined to select the step between drawn lines."""
+_BLOCK = 1.0  # smallest size in pixels of a coloured group of cells
+_SAMPLE = 200_000  # number of cells that are examined to select the step between drawn lines
 
 
 @dataclass(frozen=True)
@@ -64,8 +62,7 @@ class Colouring:
         return np.minimum if self.worst_is_low else np.maximum
 
 
-_EVEN = 5e-3
-"""Smallest half width of the colour scale relative to its middle, so that labels differ."""
+_EVEN = 5e-3  # smallest half width of the colour scale relative to its middle, so that labels differ
 
 
 def limits_of(colouring: Colouring | None, shown: Sequence[NDArray[Any]]) -> tuple[float, float]:

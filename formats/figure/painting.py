@@ -16,12 +16,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-_GAP = 5.0
-"""Approximate distance between drawn lines in pixels."""
+_GAP = 5.0  # approximate distance between drawn lines in pixels
 _LIGHT = np.array([-0.36, 0.48, 0.8])
 """Direction towards the light in the axes of the picture: right, up, towards the viewer."""
-_FORWARD = 0.004
-"""Shift of outlines towards the viewer, relative to the size of the picture."""
+_FORWARD = 0.004  # shift of outlines towards the viewer, relative to the size of the picture
 
 
 def steps_of(sheet: CellSheet, axes: Floats, pixels: float, every: int | None) -> tuple[int, int]:

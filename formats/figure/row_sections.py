@@ -17,17 +17,14 @@ from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.linear import symmetric_eigen
 
-_POINTS = 200
-"""Number of points of the curves of hub and shroud."""
-_STEP = 8
-"""Number of points of a curve between two of its first, coarse points."""
+_POINTS = 200  # number of points of the curves of hub and shroud
+_STEP = 8  # number of points of a curve between two of its first, coarse points
 _NEWTON = 8
 _BALANCED = 1e-6
 """Largest relative difference of the moments of inertia about the two axes across a full ring."""
 _ALONG = 1.0 - 1e-9
 """Smallest component, along a coordinate axis, of the direction of an axis that counts as parallel to it."""
-_AT_ONCE = 1 << 13
-"""Number of nodes that are looked up together."""
+_AT_ONCE = 1 << 13  # number of nodes that are looked up together
 
 
 @dataclass(frozen=True, eq=False)

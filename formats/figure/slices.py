@@ -15,8 +15,7 @@ from meshonet.geometry.errors import InputError
 
 _SPEC = re.compile(r"\s*([ijkxyz])\s*=\s*([-+.\w]+)\s*", re.ASCII)
 """A slice as text: a direction and a number."""
-_MOST = 12
-"""Number of edges of a cell, the largest number of corners of a polygon."""
+_MOST = 12  # number of edges of a cell, the largest number of corners of a polygon
 
 
 @dataclass(frozen=True)
@@ -130,8 +129,7 @@ def cut_where(distances: Sequence[Floats], flat: Sequence[Floats], values: list[
     return Cut(np.concatenate(polygons), np.concatenate(shown) if values else None)
 
 
-_CORNERS = np.array(list(product((0, 1), repeat=3)))
-"""Corners of a cell as offsets along i, j and k."""
+_CORNERS = np.array(list(product((0, 1), repeat=3)))  # corners of a cell as offsets along i, j and k
 _EDGES = np.array([(a, b) for a in range(8) for b in range(a) if bin(a ^ b).count("1") == 1])
 """Pairs of corners that are joined by an edge."""
 

@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_FLAT = 1e-9
-"""Largest extent of a plane grid surface along its normal, relative to its size."""
+_FLAT = 1e-9  # largest extent of a plane grid surface along its normal, relative to its size
 
 
 def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure:

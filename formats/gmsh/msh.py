@@ -21,8 +21,7 @@ from meshonet.geometry.blocks.motion import Motion
 
 INTERIOR = "fluid"
 """Name of the group of all cells."""
-_KINDS = {2: 1, 4: 3, 8: 5}
-"""Gmsh's numbers of lines, quads and hexahedra by their nodes."""
+_KINDS = {2: 1, 4: 3, 8: 5}  # Gmsh's numbers of lines, quads and hexahedra by their nodes
 
 
 class Link(NamedTuple):

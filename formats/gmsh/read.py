@@ -15,16 +15,12 @@ from meshonet.formats.source import Source, printable
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 
-_VERSIONS = ("2.2", "4.1")
-"""Versions of the format that are read."""
-_NAME = re.compile(rb'\s*(\d+)\s+(\d+)\s+"([^"\n]*)"')
-"""A line of ``$PhysicalNames``: dimension, tag, name."""
-_LINES = {1: 2, 8: 3}
-"""Nodes of Gmsh's kinds of lines, of first and second order."""
+_VERSIONS = ("2.2", "4.1")  # versions of the format that are read
+_NAME = re.compile(rb'\s*(\d+)\s+(\d+)\s+"([^"\n]*)"')  # a line of ``$PhysicalNames``: dimension, tag, name
+_LINES = {1: 2, 8: 3}  # nodes of Gmsh's kinds of lines, of first and second order
 _CELLS = {2: 3, 3: 4, 9: 3, 10: 4, 16: 4}
 """Corners of Gmsh's kinds of lines and plane cells; those of second order have more nodes."""
-_AGAIN = "write the file again"
-"""Remedy for a damaged file."""
+_AGAIN = "write the file again"  # remedy for a damaged file
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:

@@ -13,8 +13,7 @@ from meshonet.geometry.errors import InputError
 
 SIZES = {1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 8: 3, 9: 6, 10: 9, 11: 10, 12: 27, 15: 1, 16: 8, 17: 20}
 """Nodes of each kind of element."""
-_CUT = "the file is cut short: write it again"
-"""Remedy for a file that ends too soon."""
+_CUT = "the file is cut short: write it again"  # remedy for a file that ends too soon
 
 Elements: TypeAlias = "list[tuple[int, int, Indices]]"
 """Kind, physical group (0: none) and node tags (n, nodes) of blocks of elements."""

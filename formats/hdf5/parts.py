@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.blocks.boundary import Boundary
     from meshonet.geometry.blocks.grid import Grid
 
-_NAME = re.compile(r"part-(\d{5,12})\.h5")
-"""Name of a part's file."""
+_NAME = re.compile(r"part-(\d{5,12})\.h5")  # name of a part's file
 State = Literal["missing", "complete", "extended"]
 
 

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 
-_ROWS = 16
-"""Number of rows copied at a time, so that source and destination stay in the cache."""
+_ROWS = 16  # number of rows copied at a time, so that source and destination stay in the cache
 
 
 def first_fastest(values: NDArray[Any], dtype: str | np.dtype[Any]) -> NDArray[Any]:

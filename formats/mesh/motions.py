@@ -17,8 +17,7 @@ from meshonet.geometry.linear import nearest_rotation
 
 LOOSE = 1e-3
 """Largest distance of connected nodes, relative to the shortest edge along their side."""
-_DIGITS = range(1, 18)
-"""Possible numbers of significant digits of a translation in a file."""
+_DIGITS = range(1, 18)  # possible numbers of significant digits of a translation in a file
 
 
 def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:

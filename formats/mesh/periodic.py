@@ -17,8 +17,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.outer_patches import owners_of
 
-_SAME = 1e-9
-"""Largest difference of motions that count as equal; for translations relative to their length."""
+_SAME = 1e-9  # largest difference of motions that count as equal; for translations relative to their length
 _OPPOSITE = {2: [1, 0], 4: [0, 3, 2, 1]}
 """Order of the nodes in the partner's row, by the number of nodes per row."""
 

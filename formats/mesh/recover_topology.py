@@ -11,8 +11,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.shapes.shape import Shape, SpatialShape
 
-_SEAM = 1e-6
-"""Largest distance between joined sides, relative to their first edge."""
+_SEAM = 1e-6  # largest distance between joined sides, relative to their first edge
 
 
 def boundary_of(grid: Grid) -> Shape:

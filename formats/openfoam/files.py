@@ -16,8 +16,7 @@ from meshonet.formats.openfoam.faces import Faces
 from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
 
-_ARCH = '    arch        "LSB;label=32;scalar=64";\n'
-"""Header entry with the number formats of a binary file."""
+_ARCH = '    arch        "LSB;label=32;scalar=64";\n'  # header entry with the number formats of a binary file
 
 
 def head(

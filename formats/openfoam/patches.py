@@ -24,8 +24,7 @@ EMPTY = "frontAndBack"
 _TYPES: dict[Kind, str] = {"wall": "wall", "symmetry": "symmetry", "wedge": "wedge"}
 """OpenFOAM's types of patches; other kinds are ``patch``."""
 
-_FLAT = 1e-15
-"""Largest squared difference of unit normals in a symmetry plane (symmetryPlanePolyPatch.C)."""
+_FLAT = 1e-15  # largest squared difference of unit normals in a symmetry plane (symmetryPlanePolyPatch.C)
 
 
 class CasePatch(NamedTuple):

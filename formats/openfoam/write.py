@@ -31,8 +31,7 @@ _DICTIONARIES = {
 """Minimal entries of the dictionaries without which OpenFOAM's tools do not start."""
 _SMALL = 1 << 16
 """Largest number of cells for which a mesh is written as readable text, unless options say otherwise."""
-_ZONE = "passage"
-"""Name of the zone of a grid without one."""
+_ZONE = "passage"  # name of the zone of a grid without one
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:

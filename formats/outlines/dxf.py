@@ -17,8 +17,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 
-_KINDS = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"}
-"""Entities that are curves."""
+_KINDS = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"}  # entities that are curves
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:

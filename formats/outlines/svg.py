@@ -31,12 +31,9 @@ Affine: TypeAlias = tuple[Floats, Floats]
 
 _STEP = re.compile(r"\s*,?\s*(matrix|translate|scale|rotate|skewX|skewY)\s*\(([^()]*)\)\s*")
 """One of the transformations in an attribute ``transform``."""
-_GROUPS = ("svg", "g", "a", "switch")
-"""Elements whose children are drawn in place."""
-_NO_CURVES = ("foreignObject", "image", "text", "use")
-"""Elements that are drawn and have no path."""
-_MOST_NESTED = 100
-"""Largest depth of nested groups."""
+_GROUPS = ("svg", "g", "a", "switch")  # elements whose children are drawn in place
+_NO_CURVES = ("foreignObject", "image", "text", "use")  # elements that are drawn and have no path
+_MOST_NESTED = 100  # largest depth of nested groups
 
 
 @dataclass(frozen=True)

@@ -25,8 +25,7 @@ from meshonet.geometry.shapes.shape import Shape
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
-_ASK = "give a POLYGON or a closed LINESTRING"
-"""Remedy for a geometry that is not an outline."""
+_ASK = "give a POLYGON or a closed LINESTRING"  # remedy for a geometry that is not an outline
 
 
 @dataclass(frozen=True)

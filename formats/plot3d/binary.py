@@ -12,10 +12,8 @@ from meshonet.formats.plot3d.layouts import MOST_INTEGERS, Candidate, FileLayout
 from meshonet.formats.plot3d.stream import Stream, broken_record, unframed
 from meshonet.geometry.errors import InputError
 
-_LONGEST = 100_000
-"""Largest node count along an index that is named in an error message as a possible header."""
-_ORDERS = {"<": "little", ">": "big"}
-"""Names of byte orders."""
+_LONGEST = 100_000  # largest node count along an index that is named in an error message as a possible header
+_ORDERS = {"<": "little", ">": "big"}  # names of byte orders
 
 
 def candidates(data: memoryview, wanted: Options = frozenset()) -> list[Candidate]:

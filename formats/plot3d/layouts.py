@@ -22,12 +22,9 @@ from meshonet.geometry.errors import InputError
 Dims = tuple[int, ...]
 Header = Callable[[int], "int | None"]
 """Function that returns header integer k; None beyond the end, or for a number that is not an integer."""
-_MOST_BLOCKS = 100_000
-"""Largest plausible number of blocks."""
-_MOST_FLAGS = 1000
-"""Largest plausible number of different iblank values."""
-_JUDGED = 100
-"""Number of nodes along each index that are used to compare layouts."""
+_MOST_BLOCKS = 100_000  # largest plausible number of blocks
+_MOST_FLAGS = 1000  # largest plausible number of different iblank values
+_JUDGED = 100  # number of nodes along each index that are used to compare layouts
 _LESS_LIKELY = 0.1
 """Amount by which the regularity of a surface is reduced in the comparison with a planar grid."""
 MOST_INTEGERS = 1 + 3 * _MOST_BLOCKS

@@ -107,10 +107,8 @@ _KINDS: tuple[tuple[str, Kind], ...] = (
 """Kinds of boundary by the first letters of the map's types."""
 _NOTHING = ("unprocessed", "collapsed", "pole", "patched", "overset")
 """Row types without information about a face that is used here."""
-_MOST_BYTES = 1 << 26
-"""Largest file that is read; a larger one would have a million rows."""
-_REMEDY = "write the map again, or take it away"
-"""Remedy for a map that does not match its grid."""
+_MOST_BYTES = 1 << 26  # largest file that is read; a larger one would have a million rows
+_REMEDY = "write the map again, or take it away"  # remedy for a map that does not match its grid
 
 
 class Map(NamedTuple):

@@ -11,8 +11,7 @@ from meshonet.formats.source import Source
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, in_place
 
-_WRITTEN_ONLY = {"span-i", "span-j", "span-k"}
-"""Options that only apply to writing."""
+_WRITTEN_ONLY = {"span-i", "span-j", "span-k"}  # options that only apply to writing
 
 
 def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Grid]:

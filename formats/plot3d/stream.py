@@ -5,10 +5,8 @@ from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from itertools import accumulate
 
-_MOST_RECORDS = 400_000
-"""Largest plausible number of records, several per block."""
-_LONGEST_HEADER = 1 << 21
-"""Largest first record in bytes, which has the node counts."""
+_MOST_RECORDS = 400_000  # largest plausible number of records, several per block
+_LONGEST_HEADER = 1 << 21  # largest first record in bytes, which has the node counts
 
 
 class Stream:

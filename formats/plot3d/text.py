@@ -15,8 +15,7 @@ _FREE_FORMAT = bytes.maketrans(b",;dDqQ\x1a\v\f", b"  eeee   ")
 """Conversion of Fortran's separators and exponent letters to those of C."""
 _NUMBER = re.compile(rb"([+-]?(?:\d+\.?\d*|\.\d+))(?:e?([+-]\d{1,4})|e(\d{1,4}))?", re.IGNORECASE)
 """A number whose exponent may lack its letter."""
-_MOST_NODES = 1e12
-"""Largest plausible node count."""
+_MOST_NODES = 1e12  # largest plausible node count
 _MOST_REPEATED = 4
 """Largest plausible number of values per byte of the file, after repeat counts are expanded."""
 

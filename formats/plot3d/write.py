@@ -21,8 +21,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
-_LINE = 4
-"""Number of values per line of text."""
+_LINE = 4  # number of values per line of text
 
 
 class StoredBlock:

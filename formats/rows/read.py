@@ -26,8 +26,7 @@ KEYS = (
     "kind", "name", "blades", "profiles", "sections", "hub", "shroud", "tip_gap", "hub_gap", "inlet",
     "outlet", "axis", "coordinates", "unit",
 )  # fmt: skip
-_STEEPEST = 89.0
-"""Largest stagger in degrees; at 90 the blades close the channel."""
+_STEEPEST = 89.0  # largest stagger in degrees; at 90 the blades close the channel
 _PROFILE = re.compile(r"profile (\d+)")
 _PERCENT = re.compile(r"\s*([0-9.eE+-]+)\s*%\s*")
 

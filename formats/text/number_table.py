@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats
 from meshonet.kernels._native import FLOAT_BYTES, INTEGER_BYTES, count_words, put_rows, take_numbers
 
-_ROWS = 1 << 13
-"""Number of rows converted at a time, so that their text stays in the second-level cache."""
+_ROWS = 1 << 13  # number of rows converted at a time, so that their text stays in the second-level cache
 
 
 def write_rows(stream: BinaryIO, form: str, rows: NDArray[Any]) -> None:

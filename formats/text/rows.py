@@ -21,20 +21,15 @@ MOST_BYTES = 16 * 2**20
 MOST_LINES = 300_000
 """Largest number of lines, so that a file of line ends is rejected at once."""
 
-_REMEMBERED = 200_000
-"""Longest text, in characters, whose lines are kept for the next reader."""
+_REMEMBERED = 200_000  # longest text, in characters, whose lines are kept for the next reader
 
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdDqQ][+-]?\d+)?"
-"""A number in the notation of C or Fortran."""
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdDqQ][+-]?\d+)?"  # a number in the notation of C or Fortran
 _ONE = re.compile(_NUMBER)
 _FUSED = re.compile(r"([+-]?\d*\.\d+(?:[eEdD][+-]?\d+)?)([+-]\d*\.\d+(?:[eEdD][+-]?\d+)?)")
 """Two numbers without a separator."""
-_COMMA = re.compile(r"[+-]?(?:\d*,)?\d+(?:[eEdD][+-]?\d+)?")
-"""A number with a decimal comma."""
-_SPLIT = re.compile(r"[\s,;]+")
-"""Separators of columns."""
-_PLACEHOLDER = re.compile(r"[._?-]{2,}|-")
-"""Dots or dashes in place of a number."""
+_COMMA = re.compile(r"[+-]?(?:\d*,)?\d+(?:[eEdD][+-]?\d+)?")  # a number with a decimal comma
+_SPLIT = re.compile(r"[\s,;]+")  # separators of columns
+_PLACEHOLDER = re.compile(r"[._?-]{2,}|-")  # dots or dashes in place of a number
 _MEANT = re.compile(
     r"[+-]?(?:nan|inf(?:inity)?|\*{2,}|(?=[^.]*\.?\w*\d)[\dOolI]*\.[\w.]*(?:e[+-]?\w+)?|\d+(?:_\d+)+)",
     re.IGNORECASE,

@@ -30,10 +30,8 @@ _KINDS = {
     "short": "i2", "unsigned_short": "u2", "char": "i1", "unsigned_char": "u1",
 }  # fmt: skip
 """NumPy's number types by the type names of legacy files, in lower case."""
-_LINE = 4096
-"""Largest number of bytes that are read as one line."""
-_WORD = re.compile(rb"\S")
-"""Start of the next line that is not blank."""
+_LINE = 4096  # largest number of bytes that are read as one line
+_WORD = re.compile(rb"\S")  # start of the next line that is not blank
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:

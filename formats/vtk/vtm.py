@@ -26,8 +26,7 @@ from meshonet.geometry.errors import InputError, in_place
 
 CellData: TypeAlias = Callable[[Grid], Sequence[Mapping[str, NDArray[Any]]]]
 """Function from a grid to cell values of each block, by name (`meshonet.formats.vtk.vts.write`)."""
-_OURS = re.compile(r"block-\d+\.vts")
-"""Names of the files that this package writes into the folder."""
+_OURS = re.compile(r"block-\d+\.vts")  # names of the files that this package writes into the folder
 
 
 def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = None) -> None:
@@ -67,8 +66,7 @@ def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = 
     path.write_text("\n".join(index), encoding="utf-8")
 
 
-_MOST_BYTES = 16 << 20
-"""Largest index that is read; a larger one would list some hundred thousand blocks."""
+_MOST_BYTES = 16 << 20  # largest index that is read; a larger one would list some hundred thousand blocks
 
 
 def read_grids(source: Source) -> Iterator[Grid]:

@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
 Extent = tuple[int, int, int, int, int, int]
-_MOST_NODES = 1 << 40
-"""Largest plausible number of nodes; their coordinates would take 24 TB."""
+_MOST_NODES = 1 << 40  # largest plausible number of nodes; their coordinates would take 24 TB
 
 
 def read_grids(source: Source) -> Iterator[Grid]:

@@ -54,8 +54,7 @@ class Figure:
         return (f" along {self.along}" if self.along else "") + (f" at {named(self.at)}" if self.at else "")
 
 
-_SAME = 1e-9
-"""Largest distance of the ends of a closed line, divided by its extent: rounding."""
+_SAME = 1e-9  # largest distance of the ends of a closed line, divided by its extent: rounding
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,8 +23,7 @@ from meshonet.kernels import _native
 
 CORNERS, BEZIER = 0, 1
 """Tests for folded cells, by corner Jacobians or Bezier coefficients."""
-_MOST = 1 << 16
-"""Largest number of folded cells that are searched for the worst."""
+_MOST = 1 << 16  # largest number of folded cells that are searched for the worst
 
 
 def count_folded_solids(nodes: Floats, test: int = CORNERS) -> int:

@@ -22,12 +22,9 @@ from meshonet.geometry.shapes.named_edges import Labelled, runs
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.polygon_shape import PolygonRing, polygon_shape
 
-_JOIN = 1e-6
-"""Largest distance between the ends of two edges that meet, divided by the extent."""
-_PARTS = 16
-"""Number of straight pieces per interval of a curve that are searched for names."""
-_STRAIGHT = 0.5
-"""A curve is a wall, not a closed outline, if its ends are this part of its length apart."""
+_JOIN = 1e-6  # largest distance between the ends of two edges that meet, divided by the extent
+_PARTS = 16  # number of straight pieces per interval of a curve that are searched for names
+_STRAIGHT = 0.5  # a curve is a wall, not a closed outline, if its ends are this part of its length apart
 
 
 class DrawnEdge(NamedTuple):

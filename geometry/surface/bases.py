@@ -23,12 +23,9 @@ from meshonet.geometry.surface.planes import FLAT, planes_of
 
 _THICK = 0.1
 """Largest thickness of an open trailing edge, divided by the length of the patches in front of it."""
-_ALIKE = 0.5
-"""Smallest cosine of the angle between the two sides of a trailing edge."""
-_THIN = 0.02
-"""Largest thickness over length of a trailing edge in a plane at an end of the surface."""
-_CELLS = (2, 16)
-"""Smallest and largest number of cells across a base whose ends are not given."""
+_ALIKE = 0.5  # smallest cosine of the angle between the two sides of a trailing edge
+_THIN = 0.02  # largest thickness over length of a trailing edge in a plane at an end of the surface
+_CELLS = (2, 16)  # smallest and largest number of cells across a base whose ends are not given
 _TURNS = {"west": 1, "north": 2, "east": -1, "south": 0}
 
 

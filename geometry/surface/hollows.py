@@ -11,8 +11,7 @@ from meshonet.geometry.surface.surface import Surface
 
 CONCAVE_DEG = 30.0
 """Smallest turn of the normal at a concave edge, in degrees: walls that meet at 150 degrees."""
-_LEAST = 0.01
-"""Concave edges shorter together than this fraction of the surface's size are dents."""
+_LEAST = 0.01  # concave edges shorter together than this fraction of the surface's size are dents
 
 _BESIDE = 0.1
 """Largest distance from a concave edge, divided by the surface's size, at which cells fold because of it."""

@@ -11,8 +11,7 @@ from meshonet.geometry.surface.planes import FLAT, Plane, edges_in
 NEARLY_CLOSED = 0.3
 """Largest ratio of the vector area to the area of a surface with holes that counts as enclosing a volume."""
 
-_HOLE = 0.1
-"""Largest extent of open edges that are the rim of a hole, divided by the extent of the surface."""
+_HOLE = 0.1  # largest extent of open edges that are the rim of a hole, divided by the extent of the surface
 
 
 def turned_alike(

@@ -13,8 +13,7 @@ from meshonet.geometry.arrays import Floats, norms, smooth_step
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.elementary import arctan2, power
 
-_SIZE = 0.35
-"""Half the width of a core, divided by the arc length from the pole to the column `at`."""
+_SIZE = 0.35  # half the width of a core, divided by the arc length from the pole to the column `at`
 _ROUNDING = 0.5
 """Exponent of the map from the square to the core: 0 keeps the square's corners, 1 makes a disc's rim."""
 _EVEN = 0.25
@@ -24,8 +23,7 @@ a = 0 keeps the square, 1/2 makes a disc; this value makes corners of 127 degree
 """
 _NOSE = 0.65
 """Smallest ratio of a column's width to its distance from the pole, relative to the largest, on a nose."""
-_FEWEST = 3
-"""Fewest rows between a core and the column `at`, and fewest columns that they replace."""
+_FEWEST = 3  # fewest rows between a core and the column `at`, and fewest columns that they replace
 
 
 @dataclass(frozen=True)

@@ -15,12 +15,9 @@ BARS = 48
 """Number of bars of a histogram."""
 LEVELS = 65535
 """Number of levels between the smallest and the largest value to which values are rounded."""
-_RATIO = 50.0
-"""Ratio of the 99th to the 1st percentile above which a scale is logarithmic."""
-_CANDIDATES = 20_000
-"""Number of worst cells from which the listed ones are selected."""
-_NEAR = 3
-"""Smallest distance between two listed cells, in cells."""
+_RATIO = 50.0  # ratio of the 99th to the 1st percentile above which a scale is logarithmic
+_CANDIDATES = 20_000  # number of worst cells from which the listed ones are selected
+_NEAR = 3  # smallest distance between two listed cells, in cells
 _NEAR_PART = 0.06
 """Smallest distance between two listed cells relative to the number of cells along some direction."""
 

@@ -17,15 +17,12 @@ from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import Metric, metrics_of
 from meshonet.geometry.quality.report import QualityReport
 
-_WORST = 3
-"""Number of worst cells listed per metric."""
-_DOTS = 110
-"""Dots per inch of the pictures."""
+_WORST = 3  # number of worst cells listed per metric
+_DOTS = 110  # dots per inch of the pictures
 
 _WIDTH, _HEIGHT, _FOOT = 240, 64, 16
 """Width and height of a histogram and of the space for numbers below it, in pixels."""
-_TINY = 1e-300
-"""Smallest divisor, so that a scale of zero length does not cause a division by zero."""
+_TINY = 1e-300  # smallest divisor, so that a scale of zero length does not cause a division by zero
 
 
 def article(label: str, report: QualityReport, gates: Sequence[Gate], number: int) -> str:

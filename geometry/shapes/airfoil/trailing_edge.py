@@ -28,8 +28,7 @@ _ALONG = 2.0  # length of the fillet along the surface, over that along the base
 _CAP = 5e-3  # upper limit of the length that a fillet takes of the base, in chords
 _PULL = 0.6  # position of the fillet's control points between its ends (0) and the corner (1)
 _POINTS = 24  # points on a fillet
-_TURN = 0.5
-"""On half a base of 90 degrees: nodes placed by turning, for each node placed by length."""
+_TURN = 0.5  # on half a base of 90 degrees: nodes placed by turning, for each node placed by length
 _MORE = 1.3  # factor up to which cells are added so that neither half has too few
 _NEAR = 0.1  # chords from the corner within which the surface gets new points, taken from the curve
 REACH = 4.0

@@ -31,10 +31,8 @@ _EDGE_PART = 0.24
 """Length of the same cell for spacing by curvature, the default of marched grids, in mean cells."""
 _BASE_GROWTH = 1.06
 """Largest ratio of neighbouring cells on a base: 46 of 400 cells on one of 8 % of the chord."""
-_MANY = 192
-"""Fewest cells of a side for which half a base has four, which coarsening by four keeps."""
-_BASE_JUMP = 4.0
-"""Largest ratio of a prescribed cell beside a base to those on it; at 16, cells fold."""
+_MANY = 192  # fewest cells of a side for which half a base has four, which coarsening by four keeps
+_BASE_JUMP = 4.0  # largest ratio of a prescribed cell beside a base to those on it; at 16, cells fold
 _ROUND_CELLS = 14  # fewest cells on half a rounded base, if there are 16 times as many in total
 _CROWDED, _BASE_SHARE = 0.2, 0.3
 """Fraction of all cells on a base from which on they may grow by `_CROWDED_GROWTH`, and the largest one."""
