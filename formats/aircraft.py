@@ -1,23 +1,24 @@
 """Aircraft in TOML, an input of ``meshonet stack`` with ``kind = "aircraft"`` (docs/guide/aircraft.md)."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
 
-from meshonet.formats.fin_table import fin_of, fin_table
 from meshonet.formats.rows.points import point_blocks
 from meshonet.formats.source import Source, open_source, printable
-from meshonet.formats.stack_table import stack_table
+from meshonet.formats.stack_table import along, section_shape, stack_options, stack_table
 from meshonet.formats.toml_table import Table, toml_table
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.aircraft.axes import FILE_AXES, AircraftAxes
 from meshonet.geometry.aircraft.body import Body
 from meshonet.geometry.aircraft.body_section import BodySection
+from meshonet.geometry.aircraft.fin import Fin
 from meshonet.geometry.aircraft.lofted_body import LoftedBody
 from meshonet.geometry.aircraft.surface_wing import SurfaceWing
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError, in_source
+from meshonet.geometry.sections.section import Section
 from meshonet.geometry.sections.stack import Stack
 
 
@@ -102,9 +103,7 @@ def _wing(row: Table, folder: Path, body: Body, axes: AircraftAxes, fins: list[s
         row.word("plane", ("symmetry",), "symmetry")
     if "file" not in row.data:
         with row.located():
-            return (
-                fin_table(row, folder, ("on", "plane")) if fin else stack_table(row, folder, "wing", ("on",))
-            )
+            return _fin(row, folder, ("on", "plane")) if fin else stack_table(row, folder, "wing", ("on",))
     row.only("on", "name", "file", "plane")
     file = str(folder / row.text("file"))
     with row.in_file_of("file"):
@@ -112,5 +111,32 @@ def _wing(row: Table, folder: Path, body: Body, axes: AircraftAxes, fins: list[s
     with in_source(source.name):
         wing = stack_table(toml_table(source), source.path.parent if source.path else folder, "wing")
         if fin:
-            return fin_of(wing, row.text("name", "fin"))
+            return _fin_of(wing, row.text("name", "fin"))
     return replace(wing, name=row.text("name", wing.name))
+
+
+def _fin(data: Table, folder: Path, more: tuple[str, ...]) -> Fin:
+    """Return the fin of a table, which may also have the keys `more`; paths are relative to `folder`.
+
+    Raises InputError: a section that is not symmetric; see also `stack_table`.
+    """
+    options = stack_options(data, "fin", more)
+    sections: list[Section] = []
+    for row in data.rows("sections", least=2):
+        sections.append(_fin_section(row, sections, folder))
+    return Fin(tuple(sections), **options)
+
+
+def _fin_of(wing: Stack, name: str) -> Fin:
+    """Return a wing as a fin, whose span is along y; `name` is the name of the fin."""
+    values = {field.name: getattr(wing, field.name) for field in fields(wing)}
+    return Fin(**(values | {"name": name}))
+
+
+def _fin_section(row: Table, before: list[Section], folder: Path) -> Section:
+    row.only("airfoil", "chord", "y", "x", "sweep")
+    y = row.number("y")
+    if before and not y > before[-1].z:
+        remedy = "give sections upwards; fins below a body are not made"
+        raise row.error("y", f"{y:g} is not above {before[-1].z:g}", remedy)
+    return Section(section_shape(row, folder), row.positive("chord"), y, along(row, "x", "sweep", y, before))

@@ -49,7 +49,9 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
         if stream and beside:
             raise InputError("is a stream, and a folder is to be written", "name a file", source=name)
         if stream:
-            part = _part_in_tmp()
+            import tempfile
+
+            part = Path(tempfile.gettempdir(), os.urandom(8).hex() + PART_SUFFIX)
         else:
             target = Path(os.path.realpath(destination))
             if make_folder and not target.is_dir():
@@ -182,12 +184,6 @@ def _alive(process: int) -> bool:
     except (PermissionError, OverflowError):
         pass
     return True
-
-
-def _part_in_tmp() -> Path:
-    import tempfile
-
-    return Path(tempfile.gettempdir(), os.urandom(8).hex() + PART_SUFFIX)
 
 
 def _is_stream(path: Path) -> bool:

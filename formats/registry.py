@@ -119,10 +119,7 @@ def read_shapes(text: str, fmt: str | None = None, *, surfaces: bool = False) ->
             format_named(fmt)
         word, _, rest = text.partition(":")
         return iter([later(_DESIGNATIONS[f"{word.lower()}:"], rest)])
-    source = source_of(text)
-    record = format_of(source, fmt)
-    if source.split or source.rows:
-        _check_selection(source, record)
+    source, record = _recognised(text, fmt)
     if record.read_shapes is not None:
         return _Records(source, partial(record.read_shapes, source))
     if record.read_grids is not None:
@@ -156,10 +153,7 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
     if is_designation(text):
         remedy = f"make a grid of it first: meshonet infer {text} -o grid.vts"
         raise InputError("is a shape, not a grid", remedy, source=text)
-    source = source_of(text)
-    record = format_of(source, fmt)
-    if source.split or source.rows:
-        _check_selection(source, record)
+    source, record = _recognised(text, fmt)
     if record.read_grids is not None:
         return _Records(source, partial(record.read_grids, source))
     if record.read_shapes is not None and record.write_grids is not None:
@@ -170,6 +164,18 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
         remedy = f"make a grid of it first: meshonet infer {source.name} -o grid.vts"
         raise InputError("holds a boundary, not a grid", remedy, source=source.name)
     raise _unreadable(record, source.name)
+
+
+def read_sections(text: str, fmt: str | None = None) -> Iterator[Grid | Shape]:
+    """Yield the planar grids of a path, or else its shapes; designations and layouts yield shapes.
+
+    Raises InputError: see `read_shapes`.
+    """
+    if not is_designation(text):
+        record = format_of(open_source(text), fmt)
+        if record.read_grids is not None and record.name != "layout":
+            return iter(read_grids(text, fmt))
+    return iter(read_shapes(text, fmt))
 
 
 def is_designation(text: str) -> bool:
@@ -211,14 +217,17 @@ class _Records(Iterator[T]):
         return record
 
 
-def _check_selection(source: Source, record: Format) -> None:
-    """Raise InputError if samples are selected from a file that is not a dataset."""
+def _recognised(text: str, fmt: str | None) -> tuple[Source, Format]:
+    """Return a source and its format. Raises InputError: samples of a file that is not a dataset."""
+    source = source_of(text)
+    record = format_of(source, fmt)
     if record.name != "hdf5" and source.split:
         problem = f"{record.name} files do not say which samples are to {source.split}"
         raise InputError(problem, f"leave #{source.split} out", source=source.name)
-    if record.name != "hdf5":
+    if record.name != "hdf5" and source.rows:
         problem = f"samples of {record.name} files have no numbers"
         raise InputError(problem, "leave out what is behind #", source=source.name)
+    return source, record
 
 
 def _known() -> str:

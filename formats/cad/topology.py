@@ -40,8 +40,7 @@ def model_of(shape: Any, name: str, notes: tuple[str, ...]) -> CadModel:
     if not faces:
         raise InputError("has no faces", "export surfaces or solids, not only curves or meshes")
     records = tuple(_edge(edge, vertices) for edge in edges.shapes)
-    points = [BRep_Tool.Pnt_s(vertex) for vertex in vertices.shapes]
-    places = np.array([(p.X(), p.Y(), p.Z()) for p in points]).reshape(-1, 3)
+    places = np.array([BRep_Tool.Pnt_s(vertex).Coord() for vertex in vertices.shapes]).reshape(-1, 3)
     return CadModel(places, records, faces, name, notes)
 
 
@@ -70,13 +69,12 @@ def _face(shape: Any, edges: _Numbers) -> CadFace:
     while walk.More():
         edge = TopoDS.Edge(walk.Current())
         trace = BRepAdaptor_Curve2d(edge, face)
-        uses.append(EdgeUse(edges(edge), edge.Orientation() != TopAbs_REVERSED, _evaluator(trace, _pair)))
+        uses.append(EdgeUse(edges(edge), edge.Orientation() != TopAbs_REVERSED, _evaluator(trace)))
         walk.Next()
     surface = BRepAdaptor_Surface(face, False)
 
     def points(places: Floats) -> Floats:
-        values = (surface.Value(u, v) for u, v in places.tolist())
-        return np.array([(p.X(), p.Y(), p.Z()) for p in values]).reshape(-1, 3)
+        return np.array([surface.Value(u, v).Coord() for u, v in places.tolist()]).reshape(-1, 3)
 
     holes = sum(1 for _ in _parts(face, TopAbs_WIRE)) - 1
     return CadFace(tuple(uses), points, shape.Orientation() == TopAbs_REVERSED, holes)
@@ -90,22 +88,14 @@ def _edge(shape: Any, vertices: _Numbers) -> CadEdge:
     first, last = (vertices(vertex) for vertex in ends)
     if BRep_Tool.Degenerated_s(edge):
         return CadEdge((first, last), None)
-    return CadEdge((first, last), _evaluator(BRepAdaptor_Curve(edge), _triple))
+    return CadEdge((first, last), _evaluator(BRepAdaptor_Curve(edge)))
 
 
-def _evaluator(curve: Any, coordinates: Callable[[Any], tuple[float, ...]]) -> Callable[[Floats], Floats]:
+def _evaluator(curve: Any) -> Callable[[Floats], Floats]:
     """Return a function from parameters (n,) from 0 to 1 to points (n, 2 or 3) of a curve."""
     first, last = curve.FirstParameter(), curve.LastParameter()
 
     def points(part: Floats) -> Floats:
-        return np.array([coordinates(curve.Value(t)) for t in (first + part * (last - first)).tolist()])
+        return np.array([curve.Value(t).Coord() for t in (first + part * (last - first)).tolist()])
 
     return points
-
-
-def _pair(point: Any) -> tuple[float, float]:
-    return point.X(), point.Y()
-
-
-def _triple(point: Any) -> tuple[float, float, float]:
-    return point.X(), point.Y(), point.Z()

@@ -46,7 +46,9 @@ def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure
         raise InputError("a surface has no slices", "slice volumes", parameter="slice")
     if where.index is None:
         box = flat_box(view.zoom, where.direction)
-        return _cut_figure(grid, cut(grid, where, values), colouring, view, box)
+        names = [name for k, name in enumerate("xyz") if k != where.direction]
+        titled = replace(grid, name=f"{grid.name}   {where}".strip())
+        return _sections_figure(titled, [cut(grid, where, values)], names, colouring, box, [""])
     sheets = layers(grid, where, values)
     flat, across = _flattened(sheets)
     if flat is None:
@@ -134,15 +136,6 @@ def _within(sheet: CellSheet, zoom: tuple[float, ...] | None) -> Any:
     )
     low, high = np.array(zoom[::2]), np.array(zoom[1::2])
     return ((centre >= low) & (centre <= high)).all(axis=-1)
-
-
-def _cut_figure(
-    grid: Grid, polygons: Cut, colouring: Colouring | None, view: View, zoom: Box | None
-) -> Figure:
-    """Return a picture of the polygons in which a plane intersects cells."""
-    names = [name for k, name in enumerate("xyz") if view.part is None or k != view.part.direction]
-    title = f"{grid.name}   {view.part}".strip()
-    return _sections_figure(replace(grid, name=title), [polygons], names, colouring, zoom, [""])
 
 
 def _row_figure(grid: Grid, values: list[Any] | None, colouring: Colouring | None, view: View) -> Figure:

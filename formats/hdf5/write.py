@@ -57,7 +57,10 @@ class Writer:
         self._check_size(sample)
         arrays = _arrays_of(sample)
         if isinstance(sample, Grid):
-            facts = {name: _simple(fact) for name, fact in sample.provenance.items()}
+            facts = {
+                name: fact if isinstance(fact, str | int | float) else json.dumps(fact, default=plain)
+                for name, fact in sample.provenance.items()
+            }
             known = facts if self._count == 0 else self._common
             self._common = {name: fact for name, fact in known.items() if facts.get(name) == fact}
         if sample.origin.parameters:
@@ -212,10 +215,6 @@ def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid], failed: S
         writer.note_failed(list(map(json.dumps, failed)))
     if empty:
         raise InputError(f"there is no {kind.removeprefix('meshonet-')} to write", "check the input")
-
-
-def _simple(fact: Any) -> str | int | float:
-    return fact if isinstance(fact, str | int | float) else json.dumps(fact, default=plain)
 
 
 def _digest(text: str) -> str:

@@ -3,8 +3,7 @@
 Curves inside another curve are holes of a domain; curves next to each other are separate shapes.
 """
 
-from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -90,15 +89,6 @@ def noted(shape: Shape, notes: tuple[str, ...]) -> Shape:
     elif isinstance(shape, Boundary):
         return replace(shape, notes=(*notes, *shape.notes))
     return shape
-
-
-def left_out(kinds: Iterable[str]) -> tuple[str, ...]:
-    """Return the note on elements of a drawing whose `kinds` are not curves."""
-    counts = Counter(kinds)
-    if not counts:
-        return ()
-    listed = ", ".join(f"{count} {printable(kind)}" for kind, count in sorted(counts.items()))
-    return (f"of the drawing, elements that are no curves are left out: {listed}",)
 
 
 def _free_edges(cells: list[Indices]) -> Indices:

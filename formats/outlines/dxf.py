@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.formats.mesh.surface import MOST_EDGES, left_out, noted, shapes_of
-from meshonet.formats.outlines.joined import MOST_BYTES, SAG, extent_checked, joined
+from meshonet.formats.mesh.surface import MOST_EDGES
+from meshonet.formats.outlines.joined import SAG, drawing_bytes, extent_checked, shapes_of_drawing
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
@@ -32,9 +32,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         from ezdxf.filemanagement import read
     except ImportError:
         raise InputError("needs the package ezdxf", "install it: pip install 'meshonet[dxf]'") from None
-    if source.size > MOST_BYTES:
-        raise InputError(f"{source.size >> 20} MB are too much for a drawing", "give a file below 64 MB")
-    data = source.read_bytes()
+    data = drawing_bytes(source)
     if data.startswith(b"AutoCAD Binary DXF"):
         raise InputError("is a binary DXF", "save it as text (ASCII) DXF")
     if b"\0" in data:  # no text has one, and a reader of drawings takes seconds to find out
@@ -58,8 +56,8 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         raise InputError(f"has more than {MOST_EDGES} entities", "simplify the drawing")
     if not lines:
         raise InputError("has no curves in its model space", "draw lines, polylines, arcs or splines")
-    notes = left_out(kind for kind in (entity.dxftype() for entity in entities) if kind not in _KINDS)
-    yield from (noted(shape, notes) for shape in shapes_of(joined(lines), source.stem))
+    skipped = (kind for kind in (entity.dxftype() for entity in entities) if kind not in _KINDS)
+    yield from shapes_of_drawing(lines, skipped, source.stem)
 
 
 def _lines(curves: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:

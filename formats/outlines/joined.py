@@ -1,12 +1,16 @@
 """Joins the curves of a drawing at coincident ends."""
 
+from collections import Counter
+from collections.abc import Iterable, Iterator
+
 import numpy as np
 
-from meshonet.formats.mesh.surface import MOST_EDGES, MeshBoundary
+from meshonet.formats.mesh.surface import MOST_EDGES, MeshBoundary, noted, shapes_of
 from meshonet.formats.mesh.unstructured import Indices
-from meshonet.formats.source import LARGEST
+from meshonet.formats.source import LARGEST, Source, printable
 from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.shape import Shape
 
 MOST_BYTES = 64 << 20
 """Largest drawing that is read, in bytes."""
@@ -14,6 +18,21 @@ SAG = 1e-5
 """Largest distance of a chord from its curve, relative to the extent."""
 MEET = 1e-6
 """Largest distance of two ends that are joined, relative to the extent."""
+
+
+def drawing_bytes(source: Source) -> bytes:
+    """Return the bytes of a drawing. Raises InputError: 64 MB or more."""
+    if source.size > MOST_BYTES:
+        raise InputError(f"{source.size >> 20} MB are too much for a drawing", "give a file below 64 MB")
+    return source.read_bytes()
+
+
+def shapes_of_drawing(lines: list[tuple[str, Floats]], skipped: Iterable[str], name: str) -> Iterator[Shape]:
+    """Yield the shapes of named curves (n, 2), with a note on elements of `skipped` kinds, no curves."""
+    counts = Counter(skipped)
+    listed = ", ".join(f"{count} {printable(kind)}" for kind, count in sorted(counts.items()))
+    notes = (f"of the drawing, elements that are no curves are left out: {listed}",) if counts else ()
+    yield from (noted(shape, notes) for shape in shapes_of(joined(lines), name))
 
 
 def extent_checked(points: Floats) -> float:

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from meshonet.formats.mesh.surface import MOST_EDGES, left_out, noted, shapes_of
-from meshonet.formats.outlines.joined import MOST_BYTES, SAG, extent_checked, joined
+from meshonet.formats.mesh.surface import MOST_EDGES
+from meshonet.formats.outlines.joined import SAG, drawing_bytes, extent_checked, shapes_of_drawing
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import cos, product, sin
@@ -134,9 +134,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
     """
     from xml.etree.ElementTree import ParseError, fromstring
 
-    if source.size > MOST_BYTES:
-        raise InputError(f"{source.size >> 20} MB are too much for a drawing", "give a file below 64 MB")
-    data = source.read_bytes()
+    data = drawing_bytes(source)
     if b"<!ENTITY" in data:  # entities can expand without bound, and no drawing needs one
         raise InputError("its XML defines entities", "save it again as plain SVG")
     try:
@@ -158,8 +156,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         pieces = [curve.chords(sag) for curve in line]
         lines.append((name, product(np.concatenate(pieces), a) + shift))
     tags = (str(element.tag).rpartition("}")[2] for element in root.iter())
-    notes = left_out(tag for tag in tags if tag in _NO_CURVES)
-    yield from (noted(shape, notes) for shape in shapes_of(joined(lines), source.stem))
+    yield from shapes_of_drawing(lines, (tag for tag in tags if tag in _NO_CURVES), source.stem)
 
 
 def _drawn(

@@ -109,14 +109,16 @@ def _geometries(text: str) -> list[tuple[str, BaseGeometry, str]]:
 
 def _named(drawn: list[_Geometry], stem: str) -> Iterator[Shape]:
     """Yield the shapes of geometries, numbered if several share a name; open lines form one."""
-    edges = _edges(drawn)
-    if len(edges) == 4 or (len(edges) == 2 and all(edge.is_wall for edge in edges)):
-        yield (four_edges if len(edges) == 4 else channel)(edges, stem)
-        return
-    lines = _lines(drawn)
-    if lines:
-        yield from shapes_of(joined(lines), stem)
-        return
+    lines = [(each, line) for each in drawn for line in getattr(each.geometry, "geoms", [each.geometry])]
+    if all(line.geom_type == "LineString" and not line.is_empty for _, line in lines):
+        closed = [_is_closed(line) for _, line in lines]
+        edges = [] if all(closed) else [_edge(each, line) for each, line in lines]
+        if not any(closed) and (len(edges) == 4 or (len(edges) == 2 and all(edge.is_wall for edge in edges))):
+            yield (four_edges if len(edges) == 4 else channel)(edges, stem)
+            return
+        if len(edges) > 1:
+            yield from shapes_of(joined([(edge.name, edge.points) for edge in edges]), stem)
+            return
     parts = [(each, rings) for each in drawn for rings in _rings(each.geometry, each.place)]
     if not parts:
         raise InputError("holds no geometry", _ASK)
@@ -129,31 +131,10 @@ def _named(drawn: list[_Geometry], stem: str) -> Iterator[Shape]:
             raise
 
 
-def _edges(drawn: list[_Geometry]) -> list[DrawnEdge]:
-    """Return open lines as edges with their names; empty if there are other geometries too."""
-    edges = []
-    for each in drawn:
-        for line in getattr(each.geometry, "geoms", [each.geometry]):
-            if line.geom_type != "LineString" or line.is_empty or _is_closed(line):
-                return []
-            points = _points(line)
-            places = [", ".join(filter(None, (each.place, f"point {k}"))) for k in range(len(points))]
-            edges.append(DrawnEdge(points, places, printable(str(each.properties.get("name") or ""))))
-    return edges
-
-
-def _lines(drawn: list[_Geometry]) -> list[tuple[str, Floats]]:
-    """Return name and points of each line if all geometries are lines, and some of them are open."""
-    lines = [
-        (printable(str(each.properties.get("name") or "")), line)
-        for each in drawn
-        for line in getattr(each.geometry, "geoms", [each.geometry])
-    ]
-    if any(line.geom_type != "LineString" or line.is_empty for _, line in lines):
-        return []
-    if len(lines) < 2 or all(_is_closed(line) for _, line in lines):
-        return []
-    return [(name, _points(line)) for name, line in lines]
+def _edge(drawn: _Geometry, line: Any) -> DrawnEdge:
+    points = _points(line)
+    places = [", ".join(filter(None, (drawn.place, f"point {k}"))) for k in range(len(points))]
+    return DrawnEdge(points, places, printable(str(drawn.properties.get("name") or "")))
 
 
 def _shape(drawn: _Geometry, rings: list[Any], name: str) -> Shape:

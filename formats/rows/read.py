@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from meshonet.formats.rows.points import placed_blocks, point_blocks
-from meshonet.formats.section_shape import section_shape
 from meshonet.formats.source import Source, open_source
+from meshonet.formats.stack_table import section_shape
 from meshonet.formats.toml_table import Table
 from meshonet.geometry.arrays import Floats, arc_parts, extent_of
 from meshonet.geometry.blocks.motion import Motion

@@ -4,7 +4,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.monotone import hermite_piece
-from meshonet.kernels._native import cubic_values, solve_tridiagonal
+from meshonet.kernels._native import cubic_values, sampled_lines, solve_tridiagonal
 
 
 class CubicTable:
@@ -120,3 +120,14 @@ class LimitedSpline:
         return hermite_piece(
             t, self.values[i], self.values[i + 1], h * self.slopes[i], h * self.slopes[i + 1]
         )
+
+
+def sampled(lines: Floats, arc: Floats, at: Floats) -> Floats:
+    """Return points (k, n, ...) at arc lengths `at` (k, n), clipped, of cubic `lines` (k, m, ...).
+
+    Tangents at nodes are those of parabolas through three nodes; `arc` (k, m) are the nodes' arc lengths.
+    """
+    points = np.empty((*at.shape, lines.shape[2]))
+    lines, arc, at = (np.ascontiguousarray(each) for each in (lines, arc, np.minimum(at, arc[:, -1:])))
+    sampled_lines(lines, arc, at, points)
+    return points

@@ -157,3 +157,10 @@ class Curve:
         starts, ways = ends[:-1, None], np.diff(ends, axis=0)[:, None]
         parts = self.polyline(_EDGES[:-1])[: len(ways) * _STEPS].reshape(len(ways), _STEPS, 2) - starts
         return float((np.abs(cross2(ways, parts)) / np.hypot(ways[..., 0], ways[..., 1])).max())
+
+
+def wall_line(nodes: Floats) -> Curve:
+    """Return the open curve through `nodes` (n, 2) of a wall, with corners at slight kinks too (`Curve`)."""
+    from meshonet.geometry.polygon.straights import find_kinks  # which most curves do not need
+
+    return Curve(nodes, corners=np.concatenate([find_corners(nodes), find_kinks(nodes, few=0)]))

@@ -17,9 +17,8 @@ from meshonet.geometry.quality.gates import Gate, Judgement, beyond, parse_gate
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.quality.profiles import CheckResult, ProfileReport, profile_report
-from meshonet.geometry.quality.wall_skewness import skewness_at
 from meshonet.geometry.quality.wall_y_plus import Flow, YPlus, y_plus_at
-from meshonet.geometry.quality.walls import Spread, WallRow
+from meshonet.geometry.quality.walls import Spread, WallRow, skewness_at
 from meshonet.geometry.summary import Quality
 
 if TYPE_CHECKING:
@@ -282,3 +281,23 @@ def _check(result: CheckResult) -> dict[str, Any]:
         "gated": result.gated,
         "verdict": result.verdict,
     }
+
+
+_BEYOND = "beyond the limits of OpenFOAM's checkMesh"
+
+
+def with_checkmesh_notes(notes: tuple[str, ...], grid: object) -> tuple[str, ...]:
+    """Return `notes`, with those of `checkmesh_notes` on a grid unless they are there."""
+    if not isinstance(grid, Grid) or any(note.startswith(_BEYOND) for note in notes):
+        return notes
+    return (*notes, *checkmesh_notes(grid))
+
+
+def checkmesh_notes(grid: Grid, coarsened: int = 1) -> tuple[str, ...]:
+    """Return a note on exceeded limits of checkMesh, if any, of a grid `coarsened` by a factor."""
+    judged = quality_report(grid, "openfoam").profile
+    exceeded = judged.beyond() if judged else []
+    if not exceeded:
+        return ()
+    cause = f"; growth ratios are those of the fine grid to the power {coarsened}" if coarsened > 1 else ""
+    return (f"{_BEYOND}: {', '.join(exceeded)}{cause}",)

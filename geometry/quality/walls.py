@@ -8,10 +8,12 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, cross2, norms, percentiles_of
 from meshonet.geometry.blocks.across import rows_at
+from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.quality.growth import Extreme
+from meshonet.geometry.quality.measure import per_cell_of_blocks
 
 DEPTH = 33
 """Number of nodes along a line that are examined for equal cells."""
@@ -127,3 +129,30 @@ def _spread(parts: Sequence[Floats], *, percentile: bool) -> Spread:
     values = parts[0] if len(parts) == 1 else np.concatenate([part.ravel() for part in parts])
     p95 = percentiles_of(values, (95,))[0] if percentile else None
     return Spread(float(values.min()), float(values.mean()), float(values.max()), p95)
+
+
+def skewness_at(grid: Grid, walls: Sequence[Patch]) -> dict[str, Extreme]:
+    """Return, by name of the wall, the skewness of the cells at each of the `walls` of a volume."""
+    cells = per_cell_of_blocks(grid, "skewness")
+    stretches: dict[str, list[tuple[Floats, Patch]]] = {}
+    for wall in walls:
+        axis, end = PLACES[wall.side]
+        face = np.moveaxis(cells[wall.block], axis, 0)[end]
+        (a, b), (c, d) = wall.range(tuple(n + 1 for n in face.shape))
+        stretches.setdefault(wall.name, []).append((face[a:b, c:d], wall))
+    return {name: _extreme(grid, parts) for name, parts in stretches.items()}
+
+
+def _extreme(grid: Grid, parts: Sequence[tuple[Floats, Patch]]) -> Extreme:
+    """Return the extreme of values (n, m) of the cells at stretches of a wall."""
+    values, wall = max(parts, key=lambda part: float(part[0].max()))
+    axis, end = PLACES[wall.side]
+    last = grid.blocks[wall.block].counts[axis] - 2
+    place = [int(index) for index in np.unravel_index(int(values.argmax()), values.shape)]
+    starts = [first for first, _ in wall.range(tuple(n + 1 for n in values.shape))]
+    at = [index + start for index, start in zip(place, starts, strict=True)]
+    at.insert(axis, last if end else 0)
+    every = np.concatenate([part.ravel() for part, _ in parts])
+    return Extreme(
+        float(values.max()), float(every.mean()), (wall.block, *at), percentiles_of(every, (99,))[0]
+    )

@@ -157,16 +157,19 @@ def c_boundary(
     those of `Boundary`. Raises InputError: the wake leaves the far field, or crosses the wall.
     """
     south = np.concatenate([wake[:0:-1], wall[:-1], wake])
-    behind, beside = along_and_across(wake[-1] - centre, axis)
-    if behind <= 0 or abs(beside) >= radius:
-        raise InputError("the wake does not reach the outlet inside the far field", "use a larger far field")
-    north = c_far_field(len(wall) - 1, len(wake) - 1, centre, radius, axis, float(behind))
+    north = c_far_field(len(wall) - 1, len(wake) - 1, centre, radius, axis, wake[-1])
     west, east = straight(south[0], north[0], nj), straight(south[-1], north[-1], nj)
     return Boundary(south, north, west, east, "c", name=name, wall=curve, chord=chord, notes=notes)
 
 
-def c_far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, behind: float) -> Floats:
-    """Return far-field nodes (body + 2 wake + 1, 2): in front with equal steps, behind changing gradually."""
+def c_far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, outlet: Floats) -> Floats:
+    """Return far-field nodes (body + 2 wake + 1, 2), in front in equal steps, for a wake to `outlet` (2,).
+
+    Raises InputError: the outlet is outside of the far field.
+    """
+    behind, beside = map(float, along_and_across(outlet - centre, axis))
+    if behind <= 0 or abs(beside) >= radius:
+        raise InputError("the wake does not reach the outlet inside the far field", "use a larger far field")
     normal = np.array([-axis[1], axis[0]])
     angle = np.linspace(-0.5 * np.pi, -1.5 * np.pi, body + 1)
     front = centre + radius * (cos(angle)[:, None] * axis + sin(angle)[:, None] * normal)

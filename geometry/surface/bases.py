@@ -20,13 +20,13 @@ from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.surface.half_edges import open_sides, paired
 from meshonet.geometry.surface.merge import TOLERANCE, merged
 from meshonet.geometry.surface.planes import FLAT, planes_of
+from meshonet.geometry.surface.poles import TURNS
 
 _THICK = 0.1
 """Largest thickness of an open trailing edge, divided by the length of the patches in front of it."""
 _ALIKE = 0.5  # smallest cosine of the angle between the two sides of a trailing edge
 _THIN = 0.02  # largest thickness over length of a trailing edge in a plane at an end of the surface
 _CELLS = (2, 16)  # smallest and largest number of cells across a base whose ends are not given
-_TURNS = {"west": 1, "north": 2, "east": -1, "south": 0}
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def _open_sides(patches: Sequence[Floats], nodes: Floats, lattices: tuple[Indice
     slack = FLAT * extent_of(nodes)
     sides = []
     for number, (patch, lattice) in enumerate(zip(patches, lattices, strict=True)):
-        for name, turns in _TURNS.items():
+        for name, turns in TURNS.items():
             line = np.rot90(lattice, turns)[:, 0]
             pairs = zip(line[:-1].tolist(), line[1:].tolist(), strict=True)
             if all(tuple(sorted(pair)) in edges for pair in pairs):

@@ -10,7 +10,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.surface.merge import TOLERANCE
 from meshonet.geometry.surface.pole_core import core_of
 
-_TURNS = {"west": 1, "north": 2, "east": -1, "south": 0}
+TURNS = {"west": 1, "north": 2, "east": -1, "south": 0}
 """Number of quarter turns of a patch's indices (`numpy.rot90`) that make a side the south side, j = 0."""
 _LEAST = {1: 2, 2: 4, 4: 8}
 """Smallest number of cells around a pole, by the angle of its patches in right angles."""
@@ -143,11 +143,11 @@ def _fans(number: int, patch: Floats, slack: float) -> list[_FanPatch]:
     """Return a patch once for each of its poles."""
     points = {
         name: bool((np.ptp(np.rot90(patch, turns, (0, 1))[:, 0], axis=0) <= slack).all())
-        for name, turns in _TURNS.items()
+        for name, turns in TURNS.items()
     }
     pairs = {"west": "east", "east": "west", "south": "north", "north": "south"}
     return [
-        _FanPatch(number, _TURNS[name], mirrored=False, both=points[pairs[name]])
+        _FanPatch(number, TURNS[name], mirrored=False, both=points[pairs[name]])
         for name, is_pole in points.items()
         if is_pole
     ]

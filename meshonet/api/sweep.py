@@ -8,8 +8,8 @@ import numpy as np
 from meshonet.api.files import only
 from meshonet.api.grid import AnyShape, domain_parameters
 from meshonet.api.notes import noted
-from meshonet.formats.cross_section import read_sections
 from meshonet.formats.path import path_of
+from meshonet.formats.registry import read_sections
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.revolve import Revolution

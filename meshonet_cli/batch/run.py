@@ -187,7 +187,7 @@ class MemberWork:
                 elif self.destination is not None:
                     try:
                         if self.destination.format.name == "openfoam":
-                            from meshonet.geometry.quality.checkmesh_notes import with_checkmesh_notes
+                            from meshonet.geometry.quality.report import with_checkmesh_notes
 
                             report.notes = with_checkmesh_notes(report.notes, what)
                         if self.destination.is_dataset:

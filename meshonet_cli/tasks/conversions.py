@@ -7,8 +7,8 @@ from functools import partial
 from meshonet.formats.convert import Conversion, plot3d_variant, unused_iblank
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.checkmesh_notes import checkmesh_notes
 from meshonet.geometry.quality.measure import count_folded_in
+from meshonet.geometry.quality.report import checkmesh_notes
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import Batch, BatchTask, each
 from meshonet_cli.report.delivered import Delivered, delivered, part_names

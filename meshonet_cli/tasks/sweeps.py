@@ -7,8 +7,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from meshonet.api.grid import domain_parameters
-from meshonet.formats.cross_section import read_sections
 from meshonet.formats.path import path_of
+from meshonet.formats.registry import read_sections
 from meshonet.geometry.blocks.revolve import Revolution
 from meshonet.solvers.pipeline.parameters import grid_request
 from meshonet.solvers.pipeline.sweeps import make_sweep

@@ -17,7 +17,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.halves import with_image
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
-from meshonet.geometry.curves.sampled_lines import sampled
+from meshonet.geometry.curves.cubic import sampled
 from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.body_plane import level_patches
 from meshonet.solvers.aircraft.exact_cells import at_height, between_walls

@@ -6,7 +6,7 @@ from typing import TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, arc_lengths, smooth_step
-from meshonet.geometry.curves.sampled_lines import sampled
+from meshonet.geometry.curves.cubic import sampled
 from meshonet.solvers.rows.span_spacing import smooth_arcs
 
 _FINE = 65  # number of places on a line at which its length is measured

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, arc_lengths, arc_parts
-from meshonet.geometry.curves.sampled_lines import sampled
+from meshonet.geometry.curves.cubic import sampled
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import cells_for_growth
 from meshonet.solvers.layers.layer_law import STEEPER, layer_arcs

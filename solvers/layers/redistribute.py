@@ -17,10 +17,9 @@ from meshonet.geometry.arrays import Floats, as_planar, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.resample import patches_in_place
-from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.curves.cubic import sampled
+from meshonet.geometry.curves.curve import Curve, wall_line
 from meshonet.geometry.curves.monotone import monotone_cubic
-from meshonet.geometry.curves.sampled_lines import sampled
-from meshonet.geometry.curves.wall_line import wall_line
 from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import on_corners

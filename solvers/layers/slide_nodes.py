@@ -16,9 +16,8 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.resample import patches_in_place
-from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.curves.curve import Curve, wall_line
 from meshonet.geometry.curves.monotone import monotone_cubic
-from meshonet.geometry.curves.wall_line import wall_line
 from meshonet.geometry.elementary import log, product, sin, tanh
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import on_corners

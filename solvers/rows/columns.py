@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, arc_parts, norms, smooth_step
-from meshonet.geometry.curves.sampled_lines import sampled
+from meshonet.geometry.curves.cubic import sampled
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.layout import Layout
 

@@ -12,8 +12,8 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.wall_skewness import skewness_at
 from meshonet.geometry.quality.wall_y_plus import Flow
+from meshonet.geometry.quality.walls import skewness_at
 
 REYNOLDS, LENGTH = 2e6, 0.05
 FRICTION = (2.0 * np.log10(0.5 * REYNOLDS) - 0.65) ** -2.3

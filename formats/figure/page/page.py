@@ -17,18 +17,8 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.metrics import metric_of
 
-_PROGRAM = (
-    "unpack.js",
-    "camera.js",
-    "lattice.js",
-    "cut.js",
-    "shaders.js",
-    "painter.js",
-    "panel.js",
-    "pointer.js",
-    "main.js",
-)
-"""Files of the program, in the order in which the page contains them."""
+_PROGRAM = ["unpack", "camera", "lattice", "cut", "shaders", "painter", "panel", "pointer", "main"]
+"""Files ``.js`` of the program, in the order in which the page contains them."""
 _BODY = """{body}
 <script type="application/json" id="facts">{facts}</script>
 {numbers}
@@ -66,7 +56,7 @@ def page_text(name: str, scene: Scene, start: dict[str, Any]) -> str:
         # no name of a patch may end the element, nor begin a comment or a script inside it
         facts=json.dumps(facts, separators=(",", ":")).replace("<", "\\u003c"),
         numbers="\n".join(_data(key, value) for key, value in scene.numbers.items()),
-        program="\n".join(own_file(part) for part in _PROGRAM),
+        program="\n".join(own_file(f"{part}.js") for part in _PROGRAM),
     )
     return document(name or "grid", own_file("page.css"), body)
 

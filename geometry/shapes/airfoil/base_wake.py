@@ -108,10 +108,7 @@ def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float |
     lower, upper = _lines(wall, slopes, axis, body.chord, length, first, cells, len(base) - 1)
     centre = 0.5 * (body.leading_edge + body.trailing_edge)
     radius = sampling.radius * body.chord
-    behind, beside = along_and_across(0.5 * (lower[-1] + upper[-1]) - centre, axis)
-    if behind <= 0 or abs(beside) >= radius:
-        raise InputError("the wake does not reach the outlet inside the far field", "use a larger far field")
-    north = c_far_field(len(wall) - 1, cells, centre, radius, axis, float(behind))
+    north = c_far_field(len(wall) - 1, cells, centre, radius, axis, 0.5 * (lower[-1] + upper[-1]))
     nj = sampling.nj or DEFAULT_NJ
     notes = (*body.outline_notes, *grown)
     return BaseWake(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.curves.sampled_lines import sampled
+from meshonet.geometry.curves.cubic import sampled
 
 
 @pytest.mark.parametrize("dimensions", [2, 3])
