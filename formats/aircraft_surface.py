@@ -20,8 +20,7 @@ from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.notes import Change
 
-KEYS = "surface", "patches"
-"""Keys in the table of a body or wing that is a surface."""
+KEYS = "surface", "patches"  # keys in the table of a body or wing that is a surface
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,17 +16,13 @@ from meshonet.geometry.errors import InputError
 if TYPE_CHECKING:
     from zipfile import ZipFile
 
-LARGEST_MEMBER = 1 << 28
-"""Largest uncompressed size of a member, in bytes."""
+LARGEST_MEMBER = 1 << 28  # largest uncompressed size of a member, in bytes
 _IN_ARCHIVE = re.compile(r"\.zip/", re.IGNORECASE)
 """Pattern that finds the end of the archive's name in a path, where the name of a member begins."""
 
 
 def member_names(path: str) -> Iterator[str]:
-    """Return an iterator over the names of an archive's files, sorted.
-
-    Raises InputError: not a zip archive; unreadable.
-    """
+    """Return an iterator over an archive's sorted names. Raises InputError: not a zip archive; unreadable."""
     return iter(sorted(name for name in _archive(path).NameToInfo if not name.endswith("/")))
 
 

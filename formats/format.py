@@ -18,10 +18,8 @@ from meshonet.geometry.shapes.shape import Shape
 if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
 
-Space: TypeAlias = Literal["volumes", "surfaces"]
-"""Kinds of three-dimensional grids: blocks of volumes, or patches of surfaces."""
-Options: TypeAlias = frozenset[str]
-"""Options of a format: the words after its name, as in ``plot3d:big,float32``."""
+Space: TypeAlias = Literal["volumes", "surfaces"]  # three-dimensional grids: volumes, or patches of surfaces
+Options: TypeAlias = frozenset[str]  # options of a format: words after its name (``plot3d:big,float32``)
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.path import Bend, Path, PiecedPath, SplinePath
 from meshonet.geometry.errors import InputError, in_source
 
-MOST_POINTS = 100_000
-"""Largest number of points; a longer path is taken for a mistake."""
+MOST_POINTS = 100_000  # largest number of points; a longer path is taken for a mistake
 
 
 def path_of(text: str) -> Path:

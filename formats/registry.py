@@ -32,10 +32,7 @@ _LIKE_DESIGNATION = re.compile(r"([a-z]+)[\s:_-]*(\d[\w.-]*)", re.IGNORECASE)
 
 
 def format_named(name: str) -> Format:
-    """Return the format called `name`, also with options (``gmsh:4.1,ascii``) or an extension.
-
-    Raises InputError: no such format or option.
-    """
+    """Return a format by name, with options (``gmsh:4.1``), or extension. Raises InputError: unknown."""
     word, _, options = name.lower().lstrip(".").partition(":")
     if word in _OLD_NAMES:
         base, _, own = _OLD_NAMES[word].partition(":")

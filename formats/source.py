@@ -12,8 +12,7 @@ from typing import Any, BinaryIO
 
 from meshonet.geometry.errors import InputError, in_source, meant
 
-HEAD_BYTES = 65536
-"""Number of bytes by which a format recognises its files."""
+HEAD_BYTES = 65536  # number of bytes by which a format recognises its files
 _SELECTION = re.compile(
     r"(?P<split>train|test)|(?:(?P<kind>train|test),)?(?:(?P<number>\d{1,15})|(?P<range>\d{0,15}:\d{0,15}(?::[1-9]\d{0,14})?))"
 )
@@ -21,11 +20,9 @@ _SELECTION = re.compile(
 _MOST_NAMES = 10_000  # largest number of file names that are compared to suggest one
 _LIKENESS = 0.75  # smallest similarity of a suggested file name; names share their extensions
 _MAPPED = 1 << 24  # size in bytes above which a file is mapped into memory instead of read
-_MOST_TEXT = 1 << 24
-"""Largest text file in bytes; more is taken for a mistake, for instance an outline of a million points."""
+_MOST_TEXT = 1 << 24  # largest text file in bytes; more is a mistake, such as an outline of a million points
 _MOST_PIPED = 1 << 31  # largest stream in bytes, which is kept in memory
-LARGEST = 1e150
-"""Bound of coordinates in files, so that areas and their sums are finite."""
+LARGEST = 1e150  # bound of coordinates in files, so that areas and their sums are finite
 
 
 @dataclass(frozen=True)

@@ -24,10 +24,8 @@ from meshonet.geometry.blocks.screw import screw_of
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 
-_KINDS = {2: "3", 4: "9", 8: "12"}
-"""VTK's numbers of lines, quadrilaterals and hexahedra, by their number of nodes."""
-_NODES = {b"3": 2, b"5": 3, b"9": 4}
-"""Number of nodes of lines, triangles and quadrilaterals, by VTK's numbers."""
+_KINDS = {2: "3", 4: "9", 8: "12"}  # VTK's numbers of lines, quadrilaterals, hexahedra, by number of nodes
+_NODES = {b"3": 2, b"5": 3, b"9": 4}  # nodes of lines, triangles and quadrilaterals, by VTK's numbers
 _ROUNDING = 1e-14  # relative error of an angle that comes from a rotation matrix
 _CUT = "the file is cut short: write it again"  # remedy for a truncated file
 

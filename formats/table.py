@@ -189,8 +189,7 @@ _FORMATS: tuple[Format, ...] = (
     ),
 )  # fmt: skip
 
-TABLE: dict[str, Format] = {}
-"""Formats by name."""
+TABLE: dict[str, Format] = {}  # formats by name
 BY_SUFFIX: dict[str, list[Format]] = {}
 """Formats by extension: the first that can write is used, and the first that recognises the content, else the
 last.

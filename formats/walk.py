@@ -17,10 +17,8 @@ from meshonet.geometry.errors import InputError, in_source
 if TYPE_CHECKING:
     from meshonet.formats.inputs import Inputs
 
-MOST_NESTED = 8
-"""Largest depth of lists that name lists."""
-LONGEST_LINE = 8192
-"""Largest length of a line of a list, in bytes; a path has at most 4096."""
+MOST_NESTED = 8  # largest depth of lists that name lists
+LONGEST_LINE = 8192  # largest length of a line of a list, in bytes; a path has at most 4096
 _WITH_FOLDER = (".h5", ".hdf5", ".vtm")  # extensions of files to which a folder of the same name belongs
 
 

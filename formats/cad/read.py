@@ -19,15 +19,11 @@ _MILLIMETRES = {
 """Units of length as STEP files name them."""
 SECONDS, _BYTES_PER_SECOND = 60.0, 1e5
 """Time limit for reading a file: seconds, and the number of bytes that extend it by a second."""
-_SEWN = 1e-6
-"""Largest distance at which edges of separate faces are joined, relative to the extent of the model."""
+_SEWN = 1e-6  # largest distance at which edges of separate faces are joined, relative to the model's extent
 
 
 def read_step(source: Source) -> Iterator[CadModel]:
-    """Yield the model of all faces of a STEP file.
-
-    Raises InputError: Open Cascade is not installed; not a STEP file; no faces.
-    """
+    """Yield the model of a STEP file. Raises InputError: no Open Cascade; not a STEP file; no faces."""
     yield _model(source, _step_shape, "STEP")
 
 

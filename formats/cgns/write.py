@@ -25,8 +25,7 @@ _CONDITIONS: dict[Kind, str] = {
     "symmetry": "BCSymmetryPlane", "wedge": "BCAxisymmetricWedge",
 }  # fmt: skip
 """CGNS's names of boundary conditions; other kinds become BCGeneral."""
-_IN_MEMORY = 1 << 24
-"""Most coordinates of multi-block grids whose file, of thousands of objects, is built in memory."""
+_IN_MEMORY = 1 << 24  # most coordinates of multi-block grids whose file (many objects) is built in memory
 _METRE = np.array([0, 1, 0, 0, 0], np.float64)
 """Exponents of mass, length, time, temperature and angle in a coordinate."""
 

@@ -16,9 +16,7 @@ from meshonet.geometry.blocks.vertices import irregular_points
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_FEW, _MANY = "#f2b705", "#e4572e"
-"""Colours of vertices at which fewer than four and more than four cells meet."""
-
+_FEW, _MANY = "#f2b705", "#e4572e"  # colours of vertices at which fewer or more than four cells meet
 Lines = tuple[tuple[int, int], tuple[bool, bool]]
 """Steps between drawn lines i = const and j = const, and whether they are counted from the last line."""
 

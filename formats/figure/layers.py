@@ -16,15 +16,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.collections import QuadMesh
 
-Box = tuple[float, float, float, float]
-"""x0, x1, y0, y1 in the unit of the grid."""
-
-DOTS = 160
-"""Dots per inch of a picture."""
+Box = tuple[float, float, float, float]  # x0, x1, y0, y1 in the unit of the grid
+DOTS = 160  # dots per inch of a picture
 INK = "#1b2733"
 _BODY = "#e8eaed"
-_LINE_GAP = 6.0
-"""Smallest distance in pixels between drawn grid lines, in the middle of the cells that fill the picture."""
+_LINE_GAP = 6.0  # smallest distance in pixels between drawn grid lines, in the middle of the cells
 _BLOCK = 1.0  # smallest size in pixels of a coloured group of cells
 _SAMPLE = 200_000  # number of cells that are examined to select the step between drawn lines
 
@@ -110,10 +106,7 @@ def paint(
     limits: tuple[float, float],
     colouring: Colouring,
 ) -> QuadMesh:
-    """Colour the cells of `part`; groups of cells in a pixel get their worst value.
-
-    `values` (ni-1, nj-1) are the values of all cells of the block.
-    """
+    """Colour the cells of `part` by values (ni-1, nj-1) of all cells; groups in a pixel get their worst."""
     nodes = grid.nodes[part.i0 : part.i1 + 1, part.j0 : part.j1 + 1]
     shown = values[part.i0 : part.i1, part.j0 : part.j1]
     columns = _blocks(_extents(nodes, part.mask, 0) * pixels)

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 
 
 _GAP = 5.0  # approximate distance between drawn lines in pixels
-_LIGHT = np.array([-0.36, 0.48, 0.8])
-"""Direction towards the light in the axes of the picture: right, up, towards the viewer."""
+_LIGHT = np.array([-0.36, 0.48, 0.8])  # direction towards the light: right, up, towards the viewer
 _FORWARD = 0.004  # shift of outlines towards the viewer, relative to the size of the picture
 
 

@@ -14,8 +14,7 @@ from meshonet.geometry.polygon.area import check_extent
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import ALL_NAMES, FACE_NAMES, LINE_METRIC, metric_of
 
-DRAWN = (*ALL_NAMES, LINE_METRIC.name, *FACE_NAMES)
-"""Names of the metrics by which cells can be coloured."""
+DRAWN = (*ALL_NAMES, LINE_METRIC.name, *FACE_NAMES)  # names of the metrics by which cells can be coloured
 _RATIO, _ANGLE = LINE_METRIC.name, "max_angle"
 _RELATED = {
     "folded": "scaled_jacobian, which is 0 or less there",
@@ -34,10 +33,7 @@ _RELATED = {
 
 @dataclass(frozen=True)
 class Picture(View):
-    """A view, and the `metric` that colours the cells; None draws lines only.
-
-    Raises InputError: an unknown metric; see also `View`.
-    """
+    """A view, and the `metric` that colours cells; None: lines only. Raises InputError: an unknown metric."""
 
     metric: str | None = "max_angle"
 

@@ -20,10 +20,8 @@ from meshonet.geometry.linear import symmetric_eigen
 _POINTS = 200  # number of points of the curves of hub and shroud
 _STEP = 8  # number of points of a curve between two of its first, coarse points
 _NEWTON = 8
-_BALANCED = 1e-6
-"""Largest relative difference of the moments of inertia about the two axes across a full ring."""
-_ALONG = 1.0 - 1e-9
-"""Smallest component, along a coordinate axis, of the direction of an axis that counts as parallel to it."""
+_BALANCED = 1e-6  # largest relative difference of moments of inertia about the two axes across a full ring
+_ALONG = 1.0 - 1e-9  # smallest component, along a coordinate axis, of a direction that counts as parallel
 _AT_ONCE = 1 << 13  # number of nodes that are looked up together
 
 

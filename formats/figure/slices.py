@@ -13,8 +13,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
-_SPEC = re.compile(r"\s*([ijkxyz])\s*=\s*([-+.\w]+)\s*", re.ASCII)
-"""A slice as text: a direction and a number."""
+_SPEC = re.compile(r"\s*([ijkxyz])\s*=\s*([-+.\w]+)\s*", re.ASCII)  # a slice as text: direction and number
 _MOST = 12  # number of edges of a cell, the largest number of corners of a polygon
 
 
@@ -91,10 +90,7 @@ class Cut:
 
 
 def cut(grid: Grid, at: Slice, values: list[Floats] | None) -> Cut:
-    """Return the intersection of a plane of constant coordinate with the cells of a grid.
-
-    Raises InputError: the plane intersects no cell.
-    """
+    """Return the cut of cells by a plane of constant coordinate. Raises InputError: it intersects no cell."""
     nodes = [block.nodes for block in grid.blocks]
     distances = [each[..., at.direction] - at.coordinate for each in nodes]
     flat = [np.delete(each, at.direction, axis=-1) for each in nodes]

@@ -10,8 +10,7 @@ from meshonet.formats.figure.slices import Slice, parse_slice
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 
-SEEN_FROM = (-125.0, 25.0)
-"""Default azimuth and elevation in degrees."""
+SEEN_FROM = (-125.0, 25.0)  # default azimuth and elevation in degrees
 
 
 @dataclass(frozen=True)
@@ -100,10 +99,7 @@ def check_flat(view: View) -> None:
 
 
 def flat_box(zoom: tuple[float, ...] | None, across: int | None = None) -> Box | None:
-    """Return the box of a planar picture; a box in space loses its extent along the axis `across`.
-
-    Raises InputError: a box in space for a planar grid.
-    """
+    """Return a planar picture's box, without the axis `across`. Raises InputError: in space, planar grid."""
     if zoom is None:
         return None
     if len(zoom) == 6 and across is not None:

@@ -19,8 +19,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.motion import Motion
 
-INTERIOR = "fluid"
-"""Name of the group of all cells."""
+INTERIOR = "fluid"  # name of the group of all cells
 _KINDS = {2: 1, 4: 3, 8: 5}  # Gmsh's numbers of lines, quads and hexahedra by their nodes
 
 
@@ -33,8 +32,7 @@ class Link(NamedTuple):
     nodes: Indices
 
 
-CellGroup: TypeAlias = "tuple[str, Indices]"
-"""Name of a group of cells and their nodes (m, k) counted from 0."""
+CellGroup: TypeAlias = "tuple[str, Indices]"  # name of a group of cells and their nodes (m, k) counted from 0
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:

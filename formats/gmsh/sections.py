@@ -14,7 +14,6 @@ from meshonet.geometry.errors import InputError
 SIZES = {1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 8: 3, 9: 6, 10: 9, 11: 10, 12: 27, 15: 1, 16: 8, 17: 20}
 """Nodes of each kind of element."""
 _CUT = "the file is cut short: write it again"  # remedy for a file that ends too soon
-
 Elements: TypeAlias = "list[tuple[int, int, Indices]]"
 """Kind, physical group (0: none) and node tags (n, nodes) of blocks of elements."""
 
@@ -105,10 +104,7 @@ def _blocks_of_nodes(stream: _Stream) -> NumberedNodes:
 def elements(
     section: bytes, version: str, binary: bool, order: str, tags: dict[tuple[int, int], int]
 ) -> Elements:
-    """Return the elements of a section ``$Elements``.
-
-    In version 4.1, `tags` has the physical group of each entity, by its dimension and tag.
-    """
+    """Return the elements of ``$Elements``; in 4.1, `tags` has groups of entities by dimension and tag."""
     stream = _Stream(section, binary, order)
     if version == "4.1":
         blocks = _blocks_of_elements(stream, tags)

@@ -25,15 +25,10 @@ from meshonet.geometry.errors import InputError
 if TYPE_CHECKING:
     import h5py
 
-TOGETHER = 1 << 17
-"""Number of bytes of small samples that are read together."""
-
-LARGE = 1 << 22
-"""Largest sample, in bytes, that is not read in parts."""
-_DEFLATE_LIMIT = 1032
-"""Largest compression ratio of deflate, the best of HDF5's filters; a larger one means damage."""
-_MOST_SEARCHED = 1 << 28
-"""Largest file, in bytes, that is searched for heaps, so that this takes a small part of the time."""
+TOGETHER = 1 << 17  # number of bytes of small samples that are read together
+LARGE = 1 << 22  # largest sample, in bytes, that is not read in parts
+_DEFLATE_LIMIT = 1032  # largest compression ratio of deflate, the best of HDF5's filters; more means damage
+_MOST_SEARCHED = 1 << 28  # largest file, in bytes, that is searched for heaps, so that this is quick
 _DAMAGE = (OSError, RuntimeError, LookupError, TypeError, ValueError, ArithmeticError)
 """Exceptions that h5py raises for damaged data."""
 _TEXT = np.dtype([("length", "<u4"), ("heap", "<u8"), ("index", "<u4")])

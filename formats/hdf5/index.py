@@ -18,10 +18,8 @@ if TYPE_CHECKING:
     import h5py
 
 
-OF_PARTS = ("request", "part_size", "size", "common")
-"""Attributes of parts that the index does not have."""
-_AGAIN = "repeat the command that made it, with {skip_existing}"
-"""Remedy for parts that do not match their index."""
+OF_PARTS = ("request", "part_size", "size", "common")  # attributes of parts that the index does not have
+_AGAIN = "repeat the command that made it, with {skip_existing}"  # remedy for parts that do not fit the index
 
 
 class Failed(NamedTuple):
@@ -150,10 +148,7 @@ def _parts(mappings: Any, index: Path, split: str) -> Iterator[Part]:
 
 
 def write_index(file: Path, index: Path, parts: Sequence[PartFacts]) -> None:
-    """Write to `file` the index of `parts`, some with samples; it is later renamed to `index`.
-
-    Raises InputError: the parts differ in size or settings.
-    """
+    """Write to `file`, later renamed to `index`, the index of `parts`. Raises InputError: sizes differ."""
     filled = [facts for facts in parts if facts.count]
     first = filled[0]
     for facts in filled[1:]:

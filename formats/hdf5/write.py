@@ -25,20 +25,14 @@ if TYPE_CHECKING:
 
     from meshonet.formats.hdf5.index import Failed
 
-BLOCK = 1 << 22
-"""Bytes of samples that are collected before they are written together."""
-TEXTS = ("names", "titles", "split", "parts", "provenance")
-"""Datasets of texts, one text per sample."""
-CHUNK = 1 << 14
-"""Largest row, in bytes, that shares a chunk with other samples."""
+BLOCK = 1 << 22  # bytes of samples that are collected before they are written together
+TEXTS = ("names", "titles", "split", "parts", "provenance")  # datasets of texts, one text per sample
+CHUNK = 1 << 14  # largest row, in bytes, that shares a chunk with other samples
 Kind = Literal["meshonet-boundary", "meshonet-grid"]
 
 
 class Writer:
-    """A dataset that is written sample by sample (see `writing`).
-
-    Raises InputError: a sample differs from the first in size or topology.
-    """
+    """A dataset written sample by sample (see `writing`). Raises InputError: another size or topology."""
 
     def __init__(self, file: h5py.File, kind: Kind) -> None:
         self._file = file

@@ -25,15 +25,11 @@ from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.shapes.domain_shape import DomainShape
 
-MOST_BYTES = 256 << 20
-"""Largest file in bytes; parsing takes many times its size in memory."""
+MOST_BYTES = 256 << 20  # largest file in bytes; parsing takes many times its size in memory
 
 
 def read_layout(source: Source) -> Layout:
-    """Return the layout of a file.
-
-    Raises InputError, with the place: not JSON; not a layout; parts that do not match.
-    """
+    """Return the layout of a file. Raises InputError: not JSON; not a layout; parts that do not match."""
     if source.size > MOST_BYTES:
         raise InputError(f"{source.size >> 20} MB are too much for a layout", "give a file below 256 MB")
     try:

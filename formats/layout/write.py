@@ -14,8 +14,7 @@ from meshonet.geometry.domain.places_on_loops import place_at
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
 
-NAME, VERSION = "meshonet-layout", 1
-"""Format and version in the file."""
+NAME, VERSION = "meshonet-layout", 1  # format and version in the file
 
 
 def write_layouts(path: Path, layouts: Iterable[Layout]) -> None:

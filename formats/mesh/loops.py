@@ -73,10 +73,7 @@ def _followed(flat: list[int], twin: list[int], names: list[str]) -> list[EdgeLo
 
 
 def with_loop_names(grid: Grid) -> Grid:
-    """Return a planar grid with patches on all outer edges.
-
-    The outermost curve is ``outer``, those around bodies are ``body``, ``body2`` and so on.
-    """
+    """Return a planar grid with patches on outer edges: ``outer``; around bodies ``body``, ``body2``, ..."""
     outer = grid.outer_patches()
     unnamed = [
         p

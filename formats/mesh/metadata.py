@@ -9,8 +9,7 @@ from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import kind_of
 
-Facts: TypeAlias = Mapping[str, Sequence[str]]
-"""Texts by key."""
+Facts: TypeAlias = Mapping[str, Sequence[str]]  # texts by key
 
 
 def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]]:

@@ -15,8 +15,7 @@ from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.linear import nearest_rotation
 
-LOOSE = 1e-3
-"""Largest distance of connected nodes, relative to the shortest edge along their side."""
+LOOSE = 1e-3  # largest distance of connected nodes, relative to the shortest edge along their side
 _DIGITS = range(1, 18)  # possible numbers of significant digits of a translation in a file
 
 

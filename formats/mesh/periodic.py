@@ -18,8 +18,7 @@ from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.outer_patches import owners_of
 
 _SAME = 1e-9  # largest difference of motions that count as equal; for translations relative to their length
-_OPPOSITE = {2: [1, 0], 4: [0, 3, 2, 1]}
-"""Order of the nodes in the partner's row, by the number of nodes per row."""
+_OPPOSITE = {2: [1, 0], 4: [0, 3, 2, 1]}  # order of the nodes in the partner's row, by number of nodes
 
 
 class NamedFaces(NamedTuple):
@@ -127,10 +126,7 @@ def _parts(
 
 
 def cells_beside(connection: Connection, cells: Sequence[Indices]) -> tuple[Indices, Indices]:
-    """Return the numbers of the cells on both sides of a connection, in one order.
-
-    `cells` are the cell numbers of all blocks.
-    """
+    """Return the cells on both sides of a connection, in one order, from the cell numbers of all blocks."""
     own, donor = cells_at(connection, lambda block, side: face_of(cells[block][..., None], side))
     return own[..., 0], donor[..., 0]
 

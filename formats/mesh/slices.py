@@ -18,10 +18,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.handedness import signed_volume
 from meshonet.geometry.errors import InputError, in_place
 
-_SAME = 1e-6
-"""Tolerance for equal planes and constant coordinates, relative to the grid's size (float32 has 1e-7)."""
-
-
+_SAME = 1e-6  # tolerance for equal planes and coordinates, relative to the grid's size (float32 has 1e-7)
 _SURFACES = ContextVar("_SURFACES", default=False)
 
 
@@ -81,10 +78,7 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
 
 
 def planar(coordinates: Sequence[Floats]) -> Floats:
-    """Return the nodes (ni, nj, 2) of a planar block of one or more equal planes.
-
-    Raises InputError: planes that are not equal.
-    """
+    """Return the nodes (ni, nj, 2) of a planar block of equal planes. Raises InputError: planes differ."""
     with np.errstate(all="ignore"):
         cut = _slice_of(coordinates, most=max(coordinates[0].shape))
         if cut:

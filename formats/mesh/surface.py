@@ -27,10 +27,8 @@ from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, polygon_shape
 from meshonet.geometry.shapes.shape import Shape
 
-MOST_EDGES = 400_000
-"""Largest number of edges; more edges are taken for a mistake."""
-NAMELESS = "boundary"
-"""Name of edges without a name if other edges have names."""
+MOST_EDGES = 400_000  # largest number of edges; more edges are taken for a mistake
+NAMELESS = "boundary"  # name of edges without a name if other edges have names
 
 
 @dataclass(frozen=True)

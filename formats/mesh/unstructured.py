@@ -17,8 +17,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.shared_nodes import shared_nodes
 
 Indices: TypeAlias = NDArray[np.int64]
-CELLS = {2: "line", 4: "quad", 8: "hexahedron"}
-"""meshio's names of cells by their number of nodes."""
+CELLS = {2: "line", 4: "quad", 8: "hexahedron"}  # meshio's names of cells by their number of nodes
 
 
 @dataclass(frozen=True)

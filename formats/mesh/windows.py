@@ -57,10 +57,7 @@ class SidePart(NamedTuple):
 
 
 def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | None:
-    """Return the side part of a window; None if it is an edge, or all of a planar block.
-
-    Raises InputError: no such block, or an index out of range.
-    """
+    """Return a window's side part; None: an edge, a whole planar block. Raises InputError: no such place."""
     if not 0 <= window.block < len(lattices):
         problem = f"a face of block {window.block + 1} is named and there are {len(lattices)}"
         raise InputError(problem, "name those that there are")

@@ -21,8 +21,7 @@ from meshonet.kernels._native import inner_faces
 Labels = NDArray[np.int32]
 Indices = NDArray[np.int64]
 _LEAST = 3  # smallest number of nodes of a face
-MOST_LABELS = 2**31 - 1
-"""Largest label, and largest total number of nodes of all faces, in 32 bits."""
+MOST_LABELS = 2**31 - 1  # largest label, and largest total number of nodes of all faces, in 32 bits
 
 
 class Faces(NamedTuple):

@@ -15,12 +15,8 @@ from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.patches import Kind
 from meshonet.geometry.blocks.screw import screw_of
 
-PLANES = ""
-"""Key, different from all names, of the two planes of a grid one cell thick."""
-
-EMPTY = "frontAndBack"
-"""Name of the patch of these planes, whose type is ``empty``."""
-
+PLANES = ""  # key, different from all names, of the two planes of a grid one cell thick
+EMPTY = "frontAndBack"  # name of the patch of these planes, whose type is ``empty``
 _TYPES: dict[Kind, str] = {"wall": "wall", "symmetry": "symmetry", "wedge": "wedge"}
 """OpenFOAM's types of patches; other kinds are ``patch``."""
 

@@ -29,8 +29,7 @@ _DICTIONARIES = {
     "fvSolution": "",
 }
 """Minimal entries of the dictionaries without which OpenFOAM's tools do not start."""
-_SMALL = 1 << 16
-"""Largest number of cells for which a mesh is written as readable text, unless options say otherwise."""
+_SMALL = 1 << 16  # largest number of cells of a mesh that is written as text, unless options say otherwise
 _ZONE = "passage"  # name of the zone of a grid without one
 
 

@@ -12,12 +12,9 @@ from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 
-MOST_BYTES = 64 << 20
-"""Largest drawing that is read, in bytes."""
-SAG = 1e-5
-"""Largest distance of a chord from its curve, relative to the extent."""
-MEET = 1e-6
-"""Largest distance of two ends that are joined, relative to the extent."""
+MOST_BYTES = 64 << 20  # largest drawing that is read, in bytes
+SAG = 1e-5  # largest distance of a chord from its curve, relative to the extent
+MEET = 1e-6  # largest distance of two ends that are joined, relative to the extent
 
 
 def drawing_bytes(source: Source) -> bytes:
@@ -44,10 +41,7 @@ def extent_checked(points: Floats) -> float:
 
 
 def joined(lines: list[tuple[str, Floats]]) -> MeshBoundary:
-    """Return named curves (n, 2) as edges between numbered points; coincident ends are one point.
-
-    Raises InputError: too many points.
-    """
+    """Return curves (n, 2) as edges of numbered points, equal ends being one. Raises InputError: too many."""
     lines = [(name, line[np.append(True, (np.diff(line, axis=0) != 0).any(axis=1))]) for name, line in lines]
     lines = [(name, line) for name, line in lines if len(line) > 1]
     if sum(len(line) for _, line in lines) > MOST_EDGES:

@@ -29,8 +29,7 @@ repeated in z along the first (as for FUN3D and NASA) or the second index.
 
 _INTEGER_LINE = re.compile(rb"\s*(?:\d+(?:\*\d+)?[ \t,]*)+\r?\n")
 """First line of a text file: the number of blocks, or node counts."""
-_INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")
-"""First word of a text file: an integer, possibly with a repeat count."""
+_INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")  # first word: an integer, possibly with a repeat count
 
 
 def sniff(head: bytes) -> bool:

@@ -25,10 +25,8 @@ Header = Callable[[int], "int | None"]
 _MOST_BLOCKS = 100_000  # largest plausible number of blocks
 _MOST_FLAGS = 1000  # largest plausible number of different iblank values
 _JUDGED = 100  # number of nodes along each index that are used to compare layouts
-_LESS_LIKELY = 0.1
-"""Amount by which the regularity of a surface is reduced in the comparison with a planar grid."""
-MOST_INTEGERS = 1 + 3 * _MOST_BLOCKS
-"""Number of integers in the longest header."""
+_LESS_LIKELY = 0.1  # by how much a surface's regularity is reduced when compared with a planar grid's
+MOST_INTEGERS = 1 + 3 * _MOST_BLOCKS  # number of integers in the longest header
 
 
 @dataclass(frozen=True)

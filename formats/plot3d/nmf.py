@@ -20,10 +20,8 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Kind, kind_of
 from meshonet.geometry.errors import InputError
 
-PART = "# part: "
-"""Start of a comment with the patch name of the next row, or of both sides of a connection."""
-FACES = (3, 5, 1)
-"""Number of the face where each index is 1; the next number is the face where it is largest."""
+PART = "# part: "  # start of a comment with the patch name of the next row, or of both sides of a connection
+FACES = (3, 5, 1)  # number of the face where each index is 1; the next number is the face where it is largest
 _TYPES: dict[Kind, str] = {
     "wall": "VISCOUS", "farfield": "FARFIELD", "inlet": "INFLOW", "outlet": "OUTFLOW", "symmetry": "SYMMETRY",
 }  # fmt: skip
@@ -119,10 +117,7 @@ class Map(NamedTuple):
 
 
 def read_map(path: Path, dims: Sequence[tuple[int, int, int]]) -> Map:
-    """Return the map at `path` of blocks with node counts `dims`.
-
-    Raises InputError: it cannot be read, or belongs to blocks of other sizes.
-    """
+    """Return the map of blocks with node counts `dims`. Raises InputError: unreadable; of other blocks."""
     name = printable(path.name)
     try:
         if path.stat().st_size > _MOST_BYTES:

@@ -16,8 +16,7 @@ _FREE_FORMAT = bytes.maketrans(b",;dDqQ\x1a\v\f", b"  eeee   ")
 _NUMBER = re.compile(rb"([+-]?(?:\d+\.?\d*|\.\d+))(?:e?([+-]\d{1,4})|e(\d{1,4}))?", re.IGNORECASE)
 """A number whose exponent may lack its letter."""
 _MOST_NODES = 1e12  # largest plausible node count
-_MOST_REPEATED = 4
-"""Largest plausible number of values per byte of the file, after repeat counts are expanded."""
+_MOST_REPEATED = 4  # largest plausible number of values per byte of the file, with repeat counts expanded
 
 
 def candidates(data: bytes, wanted: Options = frozenset()) -> list[Candidate]:

@@ -13,15 +13,11 @@ from meshonet.formats.text.rows import Line, decode, read_lines, table
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError, in_source
 
-MOST_POINTS = 200_000
-"""Largest number of points; more points are taken for a mistake."""
-_SPLITTER = re.compile(r"\bsplitter\b", re.IGNORECASE)
-"""Word in the heading of a second blade in a file of TurboGrid."""
+MOST_POINTS = 200_000  # largest number of points; more points are taken for a mistake
+_SPLITTER = re.compile(r"\bsplitter\b", re.IGNORECASE)  # word in the heading of a second blade (TurboGrid)
 _BETWEEN = re.compile(r"[\s,;|]+")
 _UNIT = re.compile(r"[\[(][^\])]*[\])]")
 _MARK = re.compile(r"[\s,;]+(?:le|te)\d*[\s,;]*$", re.IGNORECASE | re.MULTILINE)
-
-
 _ANGLES = ("theta", "t", "phi", "\u03b8", "\u03c6")
 _NAMES = {"x", "y", "z", "r", *_ANGLES}
 

@@ -19,13 +19,11 @@ from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.notes import Change
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
-MOST_POINTS = 20_000
-"""Largest number of points; more are taken for a mistake."""
+MOST_POINTS = 20_000  # largest number of points; more are taken for a mistake
 _ASK = "give an airfoil as lines of x y from the trailing edge round to it again, or in Lednicer's order"
 """Remedy for a file that is not an airfoil."""
 
-sniff = partial(mostly_rows, counts=(2,), least=4)
-"""Return whether bytes begin a text in which most lines are pairs of numbers."""
+sniff = partial(mostly_rows, counts=(2,), least=4)  # whether most lines of bytes are pairs of numbers
 
 
 def read_shapes(source: Source) -> Iterator[Airfoil]:

@@ -21,8 +21,7 @@ from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, 
 from meshonet.geometry.shapes.shape import Shape
 
 AnyOutline = TypeVar("AnyOutline", bound=Outline | Airfoil)
-MOST_POINTS = 100_000
-"""Largest number of points of a curve; more are taken for a mistake."""
+MOST_POINTS = 100_000  # largest number of points of a curve; more are taken for a mistake
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:

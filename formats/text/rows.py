@@ -14,15 +14,9 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
 
 Kind = Literal["blank", "text", "row", "noted", "gap", "broken", "damaged"]
-
-MOST_BYTES = 16 * 2**20
-"""Largest file that is read; larger ones are taken for a mistake."""
-
-MOST_LINES = 300_000
-"""Largest number of lines, so that a file of line ends is rejected at once."""
-
+MOST_BYTES = 16 * 2**20  # largest file that is read; larger ones are taken for a mistake
+MOST_LINES = 300_000  # largest number of lines, so that a file of line ends is rejected at once
 _REMEMBERED = 200_000  # longest text, in characters, whose lines are kept for the next reader
-
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdDqQ][+-]?\d+)?"  # a number in the notation of C or Fortran
 _ONE = re.compile(_NUMBER)
 _FUSED = re.compile(r"([+-]?\d*\.\d+(?:[eEdD][+-]?\d+)?)([+-]\d*\.\d+(?:[eEdD][+-]?\d+)?)")
@@ -35,8 +29,7 @@ _MEANT = re.compile(
     re.IGNORECASE,
 )
 """A word meant as a number: not finite, Fortran's stars, or digits among other characters."""
-_HTML = re.compile(r"</?[a-z!][^<>]*>|&#?\w+;", re.IGNORECASE)
-"""A tag or an entity."""
+_HTML = re.compile(r"</?[a-z!][^<>]*>|&#?\w+;", re.IGNORECASE)  # a tag or an entity
 _REMARK = re.compile(r"\s(?:#|!|//|<-).*$|^\s*(?:#|!|//).*$")
 
 

@@ -10,15 +10,11 @@ from numpy.typing import NDArray
 from meshonet.formats.source import printable
 from meshonet.geometry.arrays import Floats
 
-_BLOCK_NODES = 1 << 15
-"""Number of nodes converted at a time; at 24 bytes each they stay in the second-level cache."""
+_BLOCK_NODES = 1 << 15  # nodes converted at a time; at 24 bytes each they stay in the second-level cache
 
 
 def points_of(nodes: Floats, dtype: str) -> Iterator[NDArray[Any]]:
-    """Yield nodes (ni, nj[, nk], 2 or 3) as points (n, 3), i fastest, several rows at a time.
-
-    Planar nodes get z = 0.
-    """
+    """Yield nodes (ni, nj[, nk], 2 or 3), rows at a time, as points (n, 3), i fastest; in planes z is 0."""
     *counts, coordinates = nodes.shape
     last = len(counts) - 1
     step = max(1, _BLOCK_NODES * counts[-1] // math.prod(counts))

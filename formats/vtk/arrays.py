@@ -19,10 +19,8 @@ _KINDS = {
     "Int32": "i4", "UInt32": "u4", "Int64": "i8", "UInt64": "u8",
 }  # fmt: skip
 """NumPy's number types by VTK's names."""
-CUT = "the file is cut short or its sizes are wrong: write it again"
-"""Remedy for a truncated file."""
-_MOST_SHRINKING = 1 << 15
-"""Largest plausible compression ratio; LZMA reaches about ten thousand for zeros, zlib a thousand."""
+CUT = "the file is cut short or its sizes are wrong: write it again"  # remedy for a truncated file
+_MOST_SHRINKING = 1 << 15  # largest plausible compression ratio; of zeros, LZMA reaches 1e4, zlib 1e3
 
 
 @dataclass(frozen=True)

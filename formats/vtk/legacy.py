@@ -106,10 +106,7 @@ class _Cursor:
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grid of a legacy ``.vtk`` file.
-
-    Raises InputError: another format; another dataset than STRUCTURED_GRID; a damaged file.
-    """
+    """Yield the grid of a legacy ``.vtk`` file. Raises InputError: not a STRUCTURED_GRID; a damaged file."""
     cursor = _Cursor(source.buffer())
     try:
         coordinates, facts = _read(cursor)

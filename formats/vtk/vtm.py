@@ -30,10 +30,7 @@ _OURS = re.compile(r"block-\d+\.vts")  # names of the files that this package wr
 
 
 def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = None) -> None:
-    """Write all `grids`, with optional cell data.
-
-    Raises InputError: no grid; the folder of the blocks contains other files.
-    """
+    """Write grids, with optional cell data. Raises InputError: no grid; other files in the blocks' folder."""
     folder = path.with_name(f"{Path(final_name(path)).stem}_blocks")
     if folder.is_dir() and not all(_OURS.fullmatch(entry.name) for entry in folder.iterdir()):
         shown = printable(str(folder.name))

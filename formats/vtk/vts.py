@@ -42,10 +42,7 @@ def write(
     facts: Facts | None = None,
     block: int = 0,
 ) -> None:
-    """Write one block of a grid.
-
-    `cell_data` has values (ni-1, nj-1[, nk-1]) by name; `facts` are the block's texts (`facts_of`).
-    """
+    """Write a block, with cell data (ni-1, nj-1[, nk-1]) by name, and texts `facts` (`facts_of`)."""
     nodes = grid.blocks[block].nodes
     cells = dict(cell_data or {})
     for name, values in cells.items():

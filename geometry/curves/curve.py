@@ -37,18 +37,12 @@ class Curve:
     [[0.5, 1.0]]
     """
 
-    points: Floats
-    """(n, 2) the given points; the first point of a closed curve is not repeated."""
-    length: float
-    """Arc length of the whole curve."""
-    knots: Floats
-    """(n,) arc length at each given point."""
-    corners: Floats
-    """Arc lengths at the corners."""
-    corner_index: Indices
-    """Indices of the points that are corners."""
-    straight: Bools | None
-    """(intervals,) whether an interval is straight; None: none is."""
+    points: Floats  # (n, 2) the given points; the first point of a closed curve is not repeated
+    length: float  # arc length of the whole curve
+    knots: Floats  # (n,) arc length at each given point
+    corners: Floats  # arc lengths at the corners
+    corner_index: Indices  # indices of the points that are corners
+    straight: Bools | None  # (intervals,) whether an interval is straight; None: none is
 
     def __init__(
         self,
@@ -124,10 +118,7 @@ class Curve:
         return i, t
 
     def at(self, s: Floats) -> Floats:
-        """Return points (m, 2) at arc lengths `s` (m,), clipped to an open curve.
-
-        At `knots` they are bitwise the given points.
-        """
+        """Return points (m, 2) at arc lengths, clipped if open; at `knots`, bitwise the given points."""
         i, t = self._locate(s)
         points = np.empty((len(t), 2))
         curve_points(self._cubic, i, t, self.points[0 if self.closed else -1], points)

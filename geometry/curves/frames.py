@@ -12,8 +12,7 @@ from meshonet.geometry.curves.path import Path
 from meshonet.geometry.elementary import cos, product, sin
 from meshonet.geometry.errors import InputError
 
-STEPS = 4
-"""Default number of integration steps between neighbouring arc lengths."""
+STEPS = 4  # default number of integration steps between neighbouring arc lengths
 
 
 def frames_along(

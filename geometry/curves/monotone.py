@@ -1,7 +1,4 @@
-"""Monotone piecewise cubic interpolation.
-
-Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304.
-"""
+"""Monotone piecewise cubics: Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304."""
 
 import numpy as np
 

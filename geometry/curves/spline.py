@@ -12,11 +12,9 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import angle_between, turning
 from meshonet.kernels._native import solve_tridiagonal
 
-SLACK = 0.25
-"""How far a tangent may lie outside the angle between its two chords, as a fraction of the turns nearby."""
+SLACK = 0.25  # how far a tangent may lie outside the angle between its chords, in parts of the turns nearby
 LEAST_SLACK = np.radians(0.5)  # where chords hardly turn
-LONGEST = 2.0
-"""Largest size of a slope: a longer one makes a loop or a cusp."""
+LONGEST = 2.0  # largest size of a slope: a longer one makes a loop or a cusp
 
 
 def spline_slopes(

@@ -14,14 +14,9 @@ from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.along_curve import on_corners
 
-FINE = 960
-"""Points of a curve before nodes are placed on it."""
-
-CLEARANCE = 0.12
-"""Least distance between body and far field, in mean radii of the body."""
-
-BEND = np.radians(25.0)
-"""A turn at a point of a curve that makes it a corner."""
+FINE = 960  # points of a curve before nodes are placed on it
+CLEARANCE = 0.12  # least distance between body and far field, in mean radii of the body
+BEND = np.radians(25.0)  # a turn at a point of a curve that makes it a corner
 
 
 class BodyCurve(NamedTuple):

@@ -15,9 +15,7 @@ from meshonet.geometry.families.family import FAMILIES, Family, family
 from meshonet.geometry.families.split import split
 from meshonet.geometry.spacing.sampling import Sampling
 
-NODES = 101
-"""Default number of nodes along xi and eta, as in the paper."""
-
+NODES = 101  # default number of nodes along xi and eta, as in the paper
 RANDOM = {"procedural": "procedural", "four-sided": "four_sided", "bodies": "bodies"}
 """Modules in `meshonet.geometry.families` of shapes that have no parameter, by the family's name."""
 
@@ -27,8 +25,7 @@ class Draw:
     """One member of a family; `seed` and `index` determine all random numbers."""
 
     kind: str
-    family: Family | None
-    """One of the paper's six, or None for random shapes."""
+    family: Family | None  # one of the paper's six, or None for random shapes
     low: float
     high: float
     seed: int

@@ -24,18 +24,14 @@ class Family:
     """A family of shapes with one parameter, drawn from `low` to `high` by default."""
 
     name: str
-    parameter: str
-    """Meaning of the parameter, with its unit."""
+    parameter: str  # meaning of the parameter, with its unit
     low: float
     high: float
     least: float
-    most: float
-    """Smallest and largest value of the parameter for which the shape exists."""
+    most: float  # smallest and largest value of the parameter for which the shape exists
     topology: Topology
-    make: Callable[[float, int, int], Boundary]
-    """Function from the parameter, ni and nj to the boundary."""
-    to_low: bool = False
-    """Whether extrapolation tests low values of the parameter instead of high values."""
+    make: Callable[[float, int, int], Boundary]  # function from the parameter, ni and nj to the boundary
+    to_low: bool = False  # whether extrapolation tests low values of the parameter instead of high values
 
     def boundary(self, parameter: float, ni: int, nj: int) -> Boundary:
         """Return the member with the given parameter and ni by nj nodes, named after both.

@@ -14,20 +14,12 @@ from meshonet.geometry.elementary import angle, exp, expm1, power, product, sin,
 from meshonet.geometry.families.bodies import arc_lengths, at_lengths
 from meshonet.geometry.polygon.self_intersection import find_crossing
 
-FINE = 601
-"""Points of a side before nodes are placed on it."""
-
-CHECKED = 65
-"""Nodes per side with which a domain is accepted, so that a seed gives one shape for all counts."""
-
-LEAST, MOST = np.radians(3.0), np.radians(178.0)
-"""Angles of the four corners."""
-
+FINE = 601  # points of a side before nodes are placed on it
+CHECKED = 65  # nodes per side with which a domain is accepted, so that a seed gives one shape for all counts
+LEAST, MOST = np.radians(3.0), np.radians(178.0)  # angles of the four corners
 LEAST_AREA = 0.05  # in units of the unit square: a smaller outline is drawn again
-
 CORNERS = np.array([0.0, 1.0, 1.0 + 1.0j, 1.0j])  # corners of the square whose sides are deflected
-ENDS = ((0, 1), (3, 2), (0, 3), (1, 2))
-"""Corners where south, north, west and east begin and end."""
+ENDS = ((0, 1), (3, 2), (0, 3), (1, 2))  # corners where south, north, west and east begin and end
 
 
 def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:

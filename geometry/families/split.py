@@ -1,7 +1,4 @@
-"""Which members of a family are for training an operator, and which for testing it.
-
-Xiao et al., arXiv 2501.11937, section IV.
-"""
+"""Which members of a family train an operator, and which test it: Xiao et al., arXiv 2501.11937, IV."""
 
 from collections.abc import Sequence
 from typing import Literal, get_args
@@ -12,8 +9,7 @@ from meshonet.geometry.errors import InputError
 
 Way = Literal["interpolation", "extrapolation", "random"]
 WAYS: tuple[str, ...] = get_args(Way)
-SHARE = 1 / 6
-"""Fraction of test members: 6 of 36 in the settings of the paper's authors."""
+SHARE = 1 / 6  # fraction of test members: 6 of 36 in the settings of the paper's authors
 
 
 def split(

@@ -10,10 +10,7 @@ from meshonet.geometry.blocks.grid import Grid
 
 @dataclass(frozen=True)
 class BadCell:
-    """A folded cell: indices of its lower-left node, its centre and, in a multi-block grid, its block.
-
-    k is None except in volumes, z in the plane.
-    """
+    """A folded cell: indices of its first node, centre, block (None: only one); k None except in volumes."""
 
     i: int
     j: int

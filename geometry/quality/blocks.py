@@ -67,8 +67,7 @@ class BlockFigures(BlockCounts):
         }
 
 
-LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")
-"""Fields of `Lines` that reports contain."""
+LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")  # fields of `Lines` in reports
 
 
 def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None = None) -> BlockFigures:

@@ -12,12 +12,9 @@ from meshonet.geometry.summary import Summary
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import measure_cells
 
-PERCENTS = (1.0, 99.0)
-"""Percentiles of reports."""
-FEW = 1 << 22
-"""Most cells for which the values of all metrics are in memory at once."""
-NONE = slice(0)
-"""Slice of no metric."""
+PERCENTS = (1.0, 99.0)  # percentiles of reports
+FEW = 1 << 22  # most cells for which the values of all metrics are in memory at once
+NONE = slice(0)  # slice of no metric
 
 
 class CellRun(NamedTuple):

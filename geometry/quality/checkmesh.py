@@ -21,9 +21,7 @@ from meshonet.geometry.quality.checkmesh_solid import Cells, cell_at, cells_of, 
 from meshonet.geometry.quality.growth import Extreme, Tally, strips
 from meshonet.geometry.quality.metrics import FACE_NAMES
 
-FACES = FACE_NAMES
-"""Names of the measures in `FaceMeasures`."""
-
+FACES = FACE_NAMES  # names of the measures in `FaceMeasures`
 Values: TypeAlias = tuple[tuple[int, ...], Floats | None, Floats]
 """Of faces (m, n[, l]): cell of the first, angles in degrees (None at the boundary), skewness."""
 

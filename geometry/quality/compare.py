@@ -9,8 +9,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
-NEAR = 0.1
-"""Fraction of the rows that are near the wall."""
+NEAR = 0.1  # fraction of the rows that are near the wall
 
 
 @dataclass(frozen=True)
@@ -19,14 +18,10 @@ class Difference:
 
     max: float
     mean: float
-    at: tuple[int, ...]
-    """Node with the largest distance: (i, j), in multi-block grids (block, i, j) or (block, i, j, k)."""
-    relative_l2: float
-    """Root mean square distance, divided by that of the reference nodes from their mean."""
-    near_wall: float
-    """The same for the tenth of all rows nearest to j = 0; in multi-block grids nearest to walls."""
-    boundary: float
-    """Largest distance on outer sides, in O grids on body and far field."""
+    at: tuple[int, ...]  # node with the largest distance: (i, j), or with blocks (block, i, j[, k])
+    relative_l2: float  # root mean square distance, divided by that of the reference nodes from their mean
+    near_wall: float  # the same for the tenth of all rows nearest to j = 0; with blocks, to walls
+    boundary: float  # largest distance on outer sides, in O grids on body and far field
 
 
 def compare(grid: Grid, reference: Grid) -> Difference:

@@ -87,10 +87,7 @@ class Figures:
         return wall_rows(self.grid, self.walls, by_wall)
 
     def __call__(self, name: str, statistic: str = "max") -> Figure | None:
-        """Return the figure `name`, of a metric this `statistic`; None if the grid has none.
-
-        Raises InputError: a checkMesh measure of a surface.
-        """
+        """Return a figure, `statistic` of a metric, or None. Raises InputError: checkMesh of a surface."""
         if name in COUNTS:
             count = getattr(self.quality, name)
             return None if count is None else Figure(float(count))

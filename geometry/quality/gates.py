@@ -26,13 +26,10 @@ class Gate:
     """A condition that a grid must not meet, written as ``METRIC[.STATISTIC] OPERATOR VALUE``."""
 
     text: str
-    metric: str
-    """Name of a metric, a count (`COUNTS`), one of `FIGURES`, or another figure that the caller allows."""
-    statistic: str
-    """Statistic of the metric over all cells: min, mean, max, p01 or p99."""
+    metric: str  # name of a metric, a count (`COUNTS`), one of `FIGURES`, or another that the caller allows
+    statistic: str  # statistic of the metric over all cells: min, mean, max, p01 or p99
     compare: str
-    limit: float
-    """Limit, in the unit of the metric."""
+    limit: float  # limit, in the unit of the metric
 
     def figure(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> Figure:
         """Return the limited figure, of `figures` or `more`. Raises InputError: there is none."""
@@ -158,8 +155,7 @@ def need_percentiles(gates: Iterable[Gate]) -> bool:
     return any(gate.statistic in ("p01", "p99") for gate in gates)
 
 
-VERDICTS = ("pass", "warn", "fail", "error")
-"""Verdicts from best to worst; ``error``: there is no grid to judge."""
+VERDICTS = ("pass", "warn", "fail", "error")  # from best to worst; ``error``: there is no grid to judge
 
 
 def verdict_word(verdict: str) -> str:

@@ -14,14 +14,9 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 
 Singles = NDArray[np.float32]
-
-ROWS = 128
-"""Columns of nodes processed at a time, so that large grids need little memory."""
-
+ROWS = 128  # columns of nodes processed at a time, so that large grids need little memory
 DIRECTIONS = ("xi", "eta", "zeta")
-
-LARGE = 1e30
-"""Growth that is reported at an edge of zero length."""
+LARGE = 1e30  # growth that is reported at an edge of zero length
 
 
 @dataclass(frozen=True)

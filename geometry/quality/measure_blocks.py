@@ -13,8 +13,7 @@ from meshonet.geometry.quality.metrics import NAMES, QUAD_METRICS
 from meshonet.geometry.quality.surfaces import areas, quad_metrics
 from meshonet.geometry.summary import Quality
 
-_TINY, _LARGE = 1e-300, 1e30
-"""Ratio of areas that is reported next to a cell without area, as in the compiled metrics."""
+_TINY, _LARGE = 1e-300, 1e30  # ratio of areas next to a cell without area, as in the compiled metrics
 
 
 def measure_blocks(grid: Grid, folded: int, *, percentiles: bool = False) -> Quality:

@@ -23,8 +23,7 @@ class Metric:
     unit: str
     worst: Literal["min", "max"]
     short: str
-    cells: Callable[[Floats], Floats] | None = None
-    """From nodes of a block (ni, nj[, nk], d) to values of its cells; None: by compiled kernels."""
+    cells: Callable[[Floats], Floats] | None = None  # from nodes (ni, nj[, nk], d) to values; None: compiled
 
 
 _NAME = attrgetter("name")
@@ -66,7 +65,6 @@ FACE_METRICS: tuple[Metric, ...] = (
 )
 # that of geometry/quality/lines.py: drawn, but no part of the table, since lines have it and not cells
 LINE_METRIC = Metric("growth", "", "max", "greatest growth of lines at its nodes")
-
 SOLID_NAMES: tuple[str, ...] = tuple(map(_NAME, SOLID_METRICS))
 FACE_NAMES: tuple[str, ...] = tuple(map(_NAME, FACE_METRICS))
 ALL_NAMES = tuple(dict.fromkeys((*NAMES, *SOLID_NAMES, *map(_NAME, METRICS))))

@@ -13,22 +13,17 @@ from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.blocks.screw import Screw, screw_of
 from meshonet.geometry.elementary import arctan2
 
-_ALIKE = 1e-9
-"""Relative difference that counts as rounding: of two motions, or of a whole turn and a number of periods."""
+_ALIKE = 1e-9  # relative difference that is rounding: of two motions, or of a turn and a number of periods
 
 
 @dataclass(frozen=True)
 class Period:
     """The rotation or translation between periodic sides."""
 
-    angle: float
-    """Angle of the rotation in degrees, 0 for a translation."""
-    shift: float
-    """Length of the translation, 0 for a rotation."""
-    mismatch: float
-    """Largest distance of nodes after the motion, divided by their radius or the shift's length."""
-    along: tuple[float, ...] = ()
-    """Unit vector (x, y, z) of the translation, empty for a rotation."""
+    angle: float  # angle of the rotation in degrees, 0 for a translation
+    shift: float  # length of the translation, 0 for a rotation
+    mismatch: float  # largest distance of nodes after the motion, divided by radius or the shift's length
+    along: tuple[float, ...] = ()  # unit vector (x, y, z) of the translation, empty for a rotation
 
 
 def periods(grid: Grid) -> tuple[Period, ...]:

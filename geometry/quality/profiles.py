@@ -22,8 +22,7 @@ class Limit:
     """A condition that a figure must not meet, and the outcome (warning or failure) if it does."""
 
     level: Level
-    compare: str
-    """One of `COMPARE`."""
+    compare: str  # one of `COMPARE`
     value: float
 
 

@@ -28,10 +28,8 @@ COMPARED = (
     "relative_l2", "near_wall", "max", "boundary", "folded_other", "max_angle_ratio", "mean_angle_ratio",
 )  # fmt: skip
 """Names of the figures of a comparison, which gates may use."""
-Y_PLUS = "y_plus"
-"""Name of the largest y+ at all walls, which gates may use if a flow is given."""
-Gates: TypeAlias = str | Sequence[str | Gate]
-"""Gates, or their texts as in `parse_gate`."""
+Y_PLUS = "y_plus"  # name of the largest y+ at all walls, which gates may use if a flow is given
+Gates: TypeAlias = str | Sequence[str | Gate]  # gates, or their texts as in `parse_gate`
 
 
 @dataclass(frozen=True)
@@ -39,8 +37,7 @@ class Comparison:
     """Distances of a grid's nodes from those of a reference, and ratios of both grids' largest angles."""
 
     difference: Difference
-    folded: int
-    """Number of folded cells of the reference."""
+    folded: int  # number of folded cells of the reference
     max_angle_ratio: float
     mean_angle_ratio: float
 

@@ -21,8 +21,7 @@ from meshonet.geometry.summary import Quality, Summary
 from meshonet.geometry.threads import over_blocks, threads_for
 from meshonet.kernels import _native
 
-CORNERS, BEZIER = 0, 1
-"""Tests for folded cells, by corner Jacobians or Bezier coefficients."""
+CORNERS, BEZIER = 0, 1  # tests for folded cells, by corner Jacobians or Bezier coefficients
 _MOST = 1 << 16  # largest number of folded cells that are searched for the worst
 
 

@@ -15,13 +15,9 @@ from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 
-DEPTH = 33
-"""Number of nodes along a line that are examined for equal cells."""
-
+DEPTH = 33  # number of nodes along a line that are examined for equal cells
 NO_GROWTH: Mapping[str, Extreme] = MappingProxyType({})
-
-SAME = 0.01
-"""Relative difference up to which two heights count as equal."""
+SAME = 0.01  # relative difference up to which two heights count as equal
 
 
 @dataclass(frozen=True)
@@ -31,8 +27,7 @@ class Spread:
     min: float
     mean: float
     max: float
-    p95: float | None = None
-    """95th percentile; None in a grid of one block."""
+    p95: float | None = None  # 95th percentile; None in a grid of one block
 
 
 @dataclass(frozen=True)
@@ -40,16 +35,11 @@ class WallRow:
     """Figures of the cells at a named wall; in a multi-block grid, at all walls so named."""
 
     name: str
-    side: str | None
-    """The side of the block; None if the name is on several sides."""
-    height: Spread
-    """Distance from each wall node to the next node of the line that leaves it, in the grid's unit."""
-    off_square: Spread
-    """Deviation from 90 degrees of cell angles at the wall, in volumes from the wall's normal."""
-    equal_cells: int
-    """Fewest successive cells from the wall, at most 32, with heights within 1 % of the first."""
-    growth: Extreme | None = None
-    """In multi-block grids: growth along the lines that start at the wall, through all blocks."""
+    side: str | None  # the side of the block; None if the name is on several sides
+    height: Spread  # distance from each wall node to the next node of its line, in the grid's unit
+    off_square: Spread  # deviation from 90 degrees of angles at the wall, in volumes from its normal
+    equal_cells: int  # fewest cells in a row from the wall, at most 32, with heights within 1 % of the first
+    growth: Extreme | None = None  # with blocks: growth along the lines from the wall, through all blocks
 
 
 def wall_row(grid: Grid, patch: Patch) -> WallRow:

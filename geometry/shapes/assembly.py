@@ -27,8 +27,7 @@ from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 
-CIRCLE = 256
-"""Number of points of the spline of a far field."""
+CIRCLE = 256  # number of points of the spline of a far field
 FARFIELD = "farfield"
 
 

@@ -8,8 +8,7 @@ from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.outline import Outline
 
-POINTS = 256
-"""Points of the curve, which is within 1e-9 of the radius everywhere."""
+POINTS = 256  # points of the curve, which is within 1e-9 of the radius everywhere
 
 
 class Circle(Outline):

@@ -16,8 +16,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 
-FAR = 2.0
-"""Smallest distance between a hole and a smooth loop around it, in extents of the hole, for a far field."""
+FAR = 2.0  # smallest distance of a smooth loop around a hole from it, in extents of the hole, for a far field
 _SAMPLES = 512  # points of each loop for which distances are computed
 
 

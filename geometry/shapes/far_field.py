@@ -28,8 +28,7 @@ def straight(a: Floats, b: Floats, n: int) -> Floats:
     return np.asarray(nodes)
 
 
-TURNED = 10.0
-"""Turn of the first far-field node, in degrees, from which on a note mentions it."""
+TURNED = 10.0  # turn of the first far-field node, in degrees, from which on a note mentions it
 
 
 def _start(wall: Floats, behind: float) -> tuple[float, str]:

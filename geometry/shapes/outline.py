@@ -23,8 +23,7 @@ from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.spacing.along_curve import stretch_arcs
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
-_DEPARTURE = 5e-3
-"""Largest distance of a smooth side from the lines between its points, in extents, without a note."""
+_DEPARTURE = 5e-3  # largest distance of a smooth side from lines between points, in extents, without a note
 
 
 class Outline:
@@ -34,10 +33,8 @@ class Outline:
     input. Raises InputError: too few points; equal neighbours; an outline that crosses itself or has no area.
     """
 
-    far_field_unit = "extents of the body"
-    """Unit of the far-field distance."""
-    notes: tuple[str, ...] = ()
-    """Notes on parts of the file that the reader left out."""
+    far_field_unit = "extents of the body"  # unit of the far-field distance
+    notes: tuple[str, ...] = ()  # notes on parts of the file that the reader left out
 
     def __init__(
         self,

@@ -78,15 +78,11 @@ class WakeLine:
     (at most 34°) and the relaxation length l.
     """
 
-    begin: Floats
-    """(2,) the trailing edge."""
-    axis: Floats
-    """(2,) unit direction of the far end."""
-    slope: float
-    """Slope tan(b) of the bisector of the trailing edge, relative to the axis."""
+    begin: Floats  # (2,) the trailing edge
+    axis: Floats  # (2,) unit direction of the far end
+    slope: float  # slope tan(b) of the bisector of the trailing edge, relative to the axis
     relaxation: float
-    length: float
-    """Length of the wake along the axis."""
+    length: float  # length of the wake along the axis
 
     @classmethod
     def behind(cls, wall: Floats, axis: Floats, chord: float, length: float) -> Self:

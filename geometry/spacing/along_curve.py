@@ -11,8 +11,7 @@ from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.laws import LAWS, Spacing
 
-MANY = 64
-"""Corners beyond this number, and beyond a quarter of the cells, are facets that need not be nodes."""
+MANY = 64  # corners beyond this number, and beyond a quarter of the cells, are facets that need not be nodes
 
 
 def stretch_arcs(

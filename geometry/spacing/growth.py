@@ -8,8 +8,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import exp, log, power, product
 from meshonet.geometry.errors import InputError
 
-LARGEST = 10.0
-"""Largest growth ratio that is accepted."""
+LARGEST = 10.0  # largest growth ratio that is accepted
 
 
 def check_growth(growth: float | None, most: float = LARGEST) -> None:

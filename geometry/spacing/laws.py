@@ -13,18 +13,15 @@ from typing import TYPE_CHECKING, TypeAlias
 if TYPE_CHECKING:
     from meshonet.geometry.arrays import Floats
 
-Spacing: TypeAlias = str
-"""Name of a spacing, a key of `LAWS`."""
+Spacing: TypeAlias = str  # name of a spacing, a key of `LAWS`
 
 
 @dataclass(frozen=True)
 class Law:
     """A spacing."""
 
-    place: Callable[[Floats], Floats] | None = None
-    """The function s(q), both from 0 to 1; None: it depends on the curve or its end cells."""
-    sets_ends: bool = False
-    """Whether the cells at the two ends of a stretch can be prescribed."""
+    place: Callable[[Floats], Floats] | None = None  # the function s(q), 0 to 1; None: set by the curve
+    sets_ends: bool = False  # whether the cells at the two ends of a stretch can be prescribed
 
 
 def _cosine(q: Floats) -> Floats:

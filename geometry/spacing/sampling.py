@@ -10,7 +10,6 @@ from meshonet.geometry.spacing.laws import SPACINGS, Spacing
 
 TrailingEdge: TypeAlias = Literal["auto", "exact", "round", "wedge"]
 TRAILING_EDGES: tuple[TrailingEdge, ...] = get_args(TrailingEdge)
-
 DEFAULT_NI = 200  # default node counts
 DEFAULT_NJ = 100  # half as many as along xi
 DEFAULT_FAR_FIELD = 15.0  # in chords

@@ -11,18 +11,14 @@ from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.elementary import arctan2, exp, expm1, geomspace, log, product
 from meshonet.geometry.spacing.gradual_sizes import limited_sizes
 
-GROWTH = math.log(1.10)
-"""Largest growth of cells along the wall: 10 % from one cell to the next."""
-HURRY = 1.3
-"""Factor on the growth if nodes are few, before curvature and nose are resolved more coarsely."""
-RUSH = math.log(1.18) / GROWTH
-"""Factor on the growth from the corners of a base on, whose cells are small, if nodes are few."""
+GROWTH = math.log(1.10)  # largest growth of cells along the wall: 10 % from one cell to the next
+HURRY = 1.3  # factor on the growth if nodes are few, before curvature and nose are resolved more coarsely
+RUSH = math.log(1.18) / GROWTH  # factor on growth from the corners of a base (small cells), if nodes are few
 _LONGEST = 2.5  # largest cell between the corners of a base, in mean cells
 _SCARCE = 5.0  # coarsening of curvature and nose beyond which growth is increased again
 _RAMP = 3.0  # cells over which growth sets in behind a trailing edge with a prescribed size
 _EDGE = 0.025  # fraction of the wall at either end where curvature asks for no cell below the edge's size
-TURN = math.radians(3.0)
-"""Largest turning angle of the curve along one cell."""
+TURN = math.radians(3.0)  # largest turning angle of the curve along one cell
 _WINDOW = 2e-3  # chords over which curvature is averaged, against noise in the last digit of the points
 _SAMPLES = 1600  # approximate number of points on the curve at which sizes are computed
 _SCARCEST = math.log(64.0)  # logarithm of the largest coarsening of curvature and leading edge

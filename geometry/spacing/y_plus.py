@@ -6,8 +6,7 @@ from meshonet.geometry.errors import InputError
 
 FORMULA = "y = y+ c / (Re sqrt(Cf/2)), Cf = (2 log10(Re x/c) - 0.65)^-2.3"
 SOURCE = "Schlichting, Boundary-Layer Theory, 7th ed. (1979), chapter XXI"
-SAME = 1e-6
-"""Largest relative difference of heights that count as the requested ones."""
+SAME = 1e-6  # largest relative difference of heights that count as the requested ones
 
 
 def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> float:

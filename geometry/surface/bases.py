@@ -22,8 +22,7 @@ from meshonet.geometry.surface.merge import TOLERANCE, merged
 from meshonet.geometry.surface.planes import FLAT, planes_of
 from meshonet.geometry.surface.poles import TURNS
 
-_THICK = 0.1
-"""Largest thickness of an open trailing edge, divided by the length of the patches in front of it."""
+_THICK = 0.1  # largest thickness of an open trailing edge, divided by the length of the patches before it
 _ALIKE = 0.5  # smallest cosine of the angle between the two sides of a trailing edge
 _THIN = 0.02  # largest thickness over length of a trailing edge in a plane at an end of the surface
 _CELLS = (2, 16)  # smallest and largest number of cells across a base whose ends are not given

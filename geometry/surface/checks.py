@@ -9,9 +9,7 @@ from meshonet.geometry.surface.half_edges import ends_of
 from meshonet.geometry.surface.merge import SLANT, near_pairs
 
 _GAP = 0.2  # open nodes nearer than this fraction of the shorter adjacent edge, but not coincident, are a gap
-
 _ON = 0.05  # a node nearer to an edge than this fraction of the edge's length lies on the edge
-
 _SIDES = ("west", "east", "south", "north")
 
 

@@ -9,12 +9,9 @@ from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.surface.half_edges import ends_of
 from meshonet.geometry.surface.surface import Surface
 
-CONCAVE_DEG = 30.0
-"""Smallest turn of the normal at a concave edge, in degrees: walls that meet at 150 degrees."""
+CONCAVE_DEG = 30.0  # smallest turn of the normal at a concave edge, in degrees: walls meet at 150 degrees
 _LEAST = 0.01  # concave edges shorter together than this fraction of the surface's size are dents
-
-_BESIDE = 0.1
-"""Largest distance from a concave edge, divided by the surface's size, at which cells fold because of it."""
+_BESIDE = 0.1  # largest distance from a concave edge, in sizes of the surface, at which it makes cells fold
 
 
 @dataclass(frozen=True, eq=False)

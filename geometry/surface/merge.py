@@ -8,9 +8,7 @@ from meshonet.geometry.arrays import Floats, Indices, extent_of
 from meshonet.geometry.blocks.shared_nodes import joined_labels
 from meshonet.geometry.elementary import product
 
-TOLERANCE = 1e-8
-"""Edge nodes nearer than this fraction of the surface's size are one node."""
-
+TOLERANCE = 1e-8  # edge nodes nearer than this fraction of the surface's size are one node
 SLANT = np.array([0.5257311, 0.6513887, 0.5470973])
 """Direction along which points are sorted; along an oblique one few distant points are equal."""
 

@@ -8,9 +8,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Indices, distinct, extent_of
 from meshonet.geometry.surface.planes import FLAT, Plane, edges_in
 
-NEARLY_CLOSED = 0.3
-"""Largest ratio of the vector area to the area of a surface with holes that counts as enclosing a volume."""
-
+NEARLY_CLOSED = 0.3  # largest ratio of vector area to area of a surface with holes that encloses a volume
 _HOLE = 0.1  # largest extent of open edges that are the rim of a hole, divided by the extent of the surface
 
 

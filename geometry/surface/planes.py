@@ -7,11 +7,8 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Indices, extent_of, norms
 from meshonet.geometry.elementary import arctan2
 
-FLAT = 1e-6
-"""Largest distance of nodes from a plane of symmetry, divided by the size of the surface."""
-FEWEST = 3
-"""Smallest number of open edges in a plane of symmetry."""
-
+FLAT = 1e-6  # largest distance of nodes from a plane of symmetry, divided by the size of the surface
+FEWEST = 3  # smallest number of open edges in a plane of symmetry
 SLANT_DEG = 5.0
 """Largest angle, in degrees, between a surface that encloses no volume and the normal of a plane of symmetry.
 

@@ -14,15 +14,13 @@ from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.elementary import arctan2, power
 
 _SIZE = 0.35  # half the width of a core, divided by the arc length from the pole to the column `at`
-_ROUNDING = 0.5
-"""Exponent of the map from the square to the core: 0 keeps the square's corners, 1 makes a disc's rim."""
+_ROUNDING = 0.5  # exponent of the map from square to core: 0 keeps the corners, 1 makes a disc's rim
 _EVEN = 0.25
 """Constant a of the map x sqrt(1 - a y^2), y sqrt(1 - a x^2) from the square to an even core.
 
 a = 0 keeps the square, 1/2 makes a disc; this value makes corners of 127 degrees, as in other cores.
 """
-_NOSE = 0.65
-"""Smallest ratio of a column's width to its distance from the pole, relative to the largest, on a nose."""
+_NOSE = 0.65  # smallest ratio of a column's width to its distance from the pole, over the largest, on a nose
 _FEWEST = 3  # fewest rows between a core and the column `at`, and fewest columns that they replace
 
 

@@ -12,16 +12,12 @@ from meshonet.geometry.surface.pole_core import core_of
 
 TURNS = {"west": 1, "north": 2, "east": -1, "south": 0}
 """Number of quarter turns of a patch's indices (`numpy.rot90`) that make a side the south side, j = 0."""
-_LEAST = {1: 2, 2: 4, 4: 8}
-"""Smallest number of cells around a pole, by the angle of its patches in right angles."""
+_LEAST = {1: 2, 2: 4, 4: 8}  # smallest number of cells around a pole, by its right angles
 
 
 @dataclass(frozen=True)
 class _FanPatch:
-    """A patch turned (and mirrored) so that its pole is at j = 0 and i runs as in the fan.
-
-    `both`: there is a pole at its other end too.
-    """
+    """A patch turned (and mirrored): pole at j = 0, i as in the fan; `both`: a pole at its other end too."""
 
     patch: int
     turns: int

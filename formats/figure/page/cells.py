@@ -11,15 +11,12 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.metrics import Metric
 
-BARS = 48
-"""Number of bars of a histogram."""
-LEVELS = 65535
-"""Number of levels between the smallest and the largest value to which values are rounded."""
+BARS = 48  # number of bars of a histogram
+LEVELS = 65535  # number of levels between the smallest and the largest value to which values are rounded
 _RATIO = 50.0  # ratio of the 99th to the 1st percentile above which a scale is logarithmic
 _CANDIDATES = 20_000  # number of worst cells from which the listed ones are selected
 _NEAR = 3  # smallest distance between two listed cells, in cells
-_NEAR_PART = 0.06
-"""Smallest distance between two listed cells relative to the number of cells along some direction."""
+_NEAR_PART = 0.06  # smallest distance between listed cells relative to the number of cells along a direction
 
 
 @dataclass(frozen=True)
@@ -49,10 +46,7 @@ def scale_of(values: Floats) -> Scale:
 
 
 def histogram(values: Floats, scale: Scale) -> list[int]:
-    """Return the number of values (n,) in each of `BARS` equal intervals from `start` to `stop`.
-
-    The outer bars include the values beyond the ends.
-    """
+    """Return how many `values` are in each of `BARS` equal intervals; the outer ones have those beyond."""
     first, last = scale.parts(np.array([scale.start, scale.stop]))
     part = (scale.parts(values) - first) / max(last - first, 1e-300)
     bar = np.clip((part * BARS).astype(np.int64), 0, BARS - 1)

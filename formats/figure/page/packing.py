@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats
 
 _PARTS = 256  # number of rounding steps in the shortest edge
-
 _MOST = 2.0**50  # largest integer coordinate; differences of such numbers are exact in JavaScript
 
 

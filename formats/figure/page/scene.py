@@ -26,8 +26,7 @@ from meshonet.geometry.blocks.vertices import irregular_points
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import Metric, metric_of, metrics_of
 
-MOST_NODES = 1_500_000
-"""Most nodes of a volume that is on the page as a whole, not by boundary and layers."""
+MOST_NODES = 1_500_000  # most nodes of a volume that is on the page as a whole, not by boundary and layers
 _AROUND = 5  # cells to each side of a bad one whose lines a page of such a volume has
 _LAYERS = 3  # fewest layers across each direction of such a volume
 

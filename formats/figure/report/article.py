@@ -19,9 +19,7 @@ from meshonet.geometry.quality.report import QualityReport
 
 _WORST = 3  # number of worst cells listed per metric
 _DOTS = 110  # dots per inch of the pictures
-
-_WIDTH, _HEIGHT, _FOOT = 240, 64, 16
-"""Width and height of a histogram and of the space for numbers below it, in pixels."""
+_WIDTH, _HEIGHT, _FOOT = 240, 64, 16  # width, height of a histogram, and of the space below it, in pixels
 _TINY = 1e-300  # smallest divisor, so that a scale of zero length does not cause a division by zero
 
 

@@ -11,15 +11,11 @@ from meshonet.formats.figure.report.article import article, passed, size_words, 
 from meshonet.geometry.quality.gates import Gate
 from meshonet.geometry.quality.report import QualityReport
 
-SHOWN = 20
-"""Largest number of grids with pictures in a report; of more grids, the worst are shown."""
+SHOWN = 20  # largest number of grids with pictures in a report; of more grids, the worst are shown
 
 
 class QualityPage:
-    """Quality reports of grids; keeps only the `SHOWN` worst grids, by gates, then largest angle.
-
-    `software` is named as the author of the page.
-    """
+    """Reports of the `SHOWN` worst grids, by gates, then largest angle; `software` is the page's author."""
 
     def __init__(self, gates: Sequence[Gate] = (), software: str = "meshonet") -> None:
         self._gates, self._software = tuple(gates), software

@@ -31,7 +31,6 @@ from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
 __all__ = ["SHARP_GAP", "Airfoil"]
-
 _WIDEST_WEDGE = 50.0  # degrees; a C grid by default needs surfaces that meet at a smaller angle
 
 
@@ -55,34 +54,21 @@ class Airfoil:
     changed before. Raises InputError, with the place: the points are no airfoil.
     """
 
-    chord: float
-    """Distance from the leading to the trailing edge."""
-    leading_edge: Floats
-    """(2,) the point farthest from the trailing edge."""
-    trailing_edge: Floats
-    """(2,) the trailing edge; if it is blunt, the middle of the base."""
-    crossing: InputError | None
-    """Why there is no `curve`: the surfaces cross, perhaps by noise of the points (`smoothed`)."""
-    gap: float
-    """Distance between the ends of the upper and the lower surface."""
-    nose_radius: float
-    """Radius of the leading edge: that of a parabola which is as thick as the section at 2 % of the chord."""
-    half_base: float
-    """Arc length at which the lower side begins; 0 when the trailing edge is sharp."""
-    nose_arc: float
-    """Arc length of the leading edge."""
-    upper_end: float
-    """Arc length at which the upper side ends."""
-    base_is_round: bool
-    """Whether the base is rounded, without corners."""
-    blunt: bool
-    """Whether the trailing edge is a straight base; a gap below 2e-4 chords is closed at its middle."""
+    chord: float  # distance from the leading to the trailing edge
+    leading_edge: Floats  # (2,) the point farthest from the trailing edge
+    trailing_edge: Floats  # (2,) the trailing edge; if it is blunt, the middle of the base
+    crossing: InputError | None  # why there is no `curve`: surfaces cross, perhaps by noise (`smoothed`)
+    gap: float  # distance between the ends of the upper and the lower surface
+    nose_radius: float  # radius of the parabola that is as thick as the section at 2 % of the chord
+    half_base: float  # arc length at which the lower side begins; 0 when the trailing edge is sharp
+    nose_arc: float  # arc length of the leading edge
+    upper_end: float  # arc length at which the upper side ends
+    base_is_round: bool  # whether the base is rounded, without corners
+    blunt: bool  # whether the trailing edge is a base; a gap below 2e-4 chords is closed at its middle
 
-    far_field_unit = "chords"
-    """Unit of the far-field distance."""
+    far_field_unit = "chords"  # unit of the far-field distance
 
-    notes: tuple[str, ...]
-    """Sentences on changes of the given points."""
+    notes: tuple[str, ...]  # sentences on changes of the given points
 
     def __init__(
         self,

@@ -14,14 +14,10 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import find_corners, turning
 
-SHARP_GAP = 2e-4
-"""Gap in chords below which a trailing edge is sharp; a smaller one folds more grids of real files."""
-SAME_POINT = 1e-5
-"""Points nearer than this fraction of the extent count as one: their direction is noise of the last digit."""
-ON_BASE = 5e-5
-"""Distance, in chords, from the straight base up to which a point is dropped as lying on it."""
-MOST_CORNERS = 12
-"""If there are more corners than this, those of the trailing edge included, they are noise: none is kept."""
+SHARP_GAP = 2e-4  # gap in chords below which a trailing edge is sharp; a smaller limit folds more real grids
+SAME_POINT = 1e-5  # nearer points, relative to the extent, are one: their direction is noise of a last digit
+ON_BASE = 5e-5  # distance, in chords, from the straight base up to which a point is dropped as lying on it
+MOST_CORNERS = 12  # if there are more corners, with those of the trailing edge, they are noise: none is kept
 _CORNER = np.radians(35.0)  # least turn of a corner of the trailing edge
 _STRAIGHT = np.radians(5.0)  # largest turn of the middle of a base
 _SHORT = 5.0  # least length of half a base over the pieces that round its corners
@@ -37,15 +33,11 @@ class CleanSection:
     """
 
     points: Floats
-    index: Indices
-    """(n,) index of each point among the given ones."""
+    index: Indices  # (n,) index of each point among the given ones
     blunt: bool
-    gap: float
-    """Distance between the two ends of the surfaces, before a sharp edge was closed."""
-    corners: Indices
-    """Indices of the points at which the tangent jumps, including those of the trailing edge."""
-    swapped: tuple[int, ...] = ()
-    """Indices of the given points that were in the wrong order among their neighbours."""
+    gap: float  # distance between the two ends of the surfaces, before a sharp edge was closed
+    corners: Indices  # indices of the points at which the tangent jumps, including those of the trailing edge
+    swapped: tuple[int, ...] = ()  # indices of given points that were in the wrong order
 
     def moved_apart(self) -> Self:
         """Return the section with nearly touching surfaces moved apart (`separate_surfaces`)."""

@@ -14,11 +14,8 @@ from meshonet.geometry.elementary import arctan, cos, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
-POINTS = 161
-"""Default number of points per surface: the spline through them is within 2e-6 chords of the formula."""
-
-THICK = 40
-"""Thickness in percent of the chord from which on a note mentions it; the reports have 6 to 25."""
+POINTS = 161  # default points per surface: their spline is within 2e-6 chords of the formula
+THICK = 40  # thickness in percent of the chord from which on a note mentions it; the reports have 6 to 25
 
 _SIMPLE = {
     1: (0.0580, 361.400), 2: (0.1260, 51.640), 3: (0.2025, 15.957), 4: (0.2900, 6.643), 5: (0.3910, 3.230),
@@ -45,10 +42,7 @@ def naca(designation: str) -> Airfoil:
 
 
 def naca_points(designation: str, n: int = POINTS) -> Floats:
-    """Return points (2 n - 1, 2) from the trailing edge over the upper side and back.
-
-    Each surface has `n` points, with cosine spacing in x.
-    """
+    """Return points (2 n - 1, 2) from the trailing edge over the top and back, with cosine spacing in x."""
     digits, sharp = _split(designation)
     x = 0.5 - 0.5 * cos(np.linspace(0.0, np.pi, n))
     half = thickness(x, int(digits[-2:]) / 100, sharp=sharp)

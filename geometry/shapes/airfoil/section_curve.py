@@ -26,14 +26,12 @@ _CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31
 """Parameters at which an interval of the curve is divided into straight pieces, to search for crossings."""
 DEPARTURE, FAR_OFF = 1e-3, 5e-3
 """Distance in chords beyond which the curve counts as another wall than the lines between its points."""
-RIPPLES = 10
-"""Fewest sign changes of the curvature that are ripples; designed sections have at most six."""
+RIPPLES = 10  # fewest sign changes of the curvature that are ripples; designed sections have at most six
 _FLAT = 0.1  # curvature times chord below which its sign is ignored
 OBLIQUE = 30.0  # least angle in degrees between a base and the normal of the chord to be called oblique
 BESIDE = 0.01  # chords along the surfaces that count as next to the base
 MOST_BASE = 0.25  # chords; a longer last segment of a surface is no base
-UNLIKE = 1.5
-"""Largest ratio of the two wall cells at a corner of the base without a note."""
+UNLIKE = 1.5  # largest ratio of the two wall cells at a corner of the base without a note
 _PARTS = 128  # parts of a stretch in the search for the point farthest from the trailing edge
 
 

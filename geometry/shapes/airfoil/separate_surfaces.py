@@ -6,8 +6,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, along_and_across
 
-MOST = 4.5e-5
-"""Largest displacement of a point, in chords."""
+MOST = 4.5e-5  # largest displacement of a point, in chords
 _WEDGE = 0.02  # near an edge the least thickness is this fraction of the distance from it
 
 

@@ -31,10 +31,8 @@ _POINTS = 24  # points on a fillet
 _TURN = 0.5  # on half a base of 90 degrees: nodes placed by turning, for each node placed by length
 _MORE = 1.3  # factor up to which cells are added so that neither half has too few
 _NEAR = 0.1  # chords from the corner within which the surface gets new points, taken from the curve
-REACH = 4.0
-"""Largest length of the wedge in widths of the base: 14 degrees between parallel surfaces."""
-LEAST = 1.0
-"""Smallest length of the wedge in widths of the base; surfaces that would meet before are bent."""
+REACH = 4.0  # largest length of the wedge in widths of the base: 14 degrees between parallel surfaces
+LEAST = 1.0  # smallest length of the wedge in widths of the base; surfaces that would meet before are bent
 _WEDGE_POINTS = 9  # on each side of a wedge
 
 
@@ -134,10 +132,7 @@ def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> Clean
 
 
 def opened_base(airfoil: Airfoil, gap: float) -> CleanSection:
-    """Return an airfoil's section opened to a trailing edge of thickness `gap`.
-
-    Points move in proportion to their distance from the nose.
-    """
+    """Return a section opened to a base `gap`: points move in proportion to their distance from the nose."""
     curve, section = airfoil.curve, airfoil._section
     points, knots, index, corners = curve.points, curve.knots, section.index, section.corners
     if airfoil.blunt:

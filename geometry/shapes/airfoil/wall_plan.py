@@ -27,18 +27,15 @@ _EDGE_STEP = 20.0
 
 Measured on O grids: with smaller cells grids are less orthogonal, with larger ones more grids fold there.
 """
-_EDGE_PART = 0.24
-"""Length of the same cell for spacing by curvature, the default of marched grids, in mean cells."""
-_BASE_GROWTH = 1.06
-"""Largest ratio of neighbouring cells on a base: 46 of 400 cells on one of 8 % of the chord."""
+_EDGE_PART = 0.24  # the same length for spacing by curvature, default of marched grids, in mean cells
+_BASE_GROWTH = 1.06  # largest ratio of neighbouring cells on a base: 46 of 400 cells on one of 8 % chord
 _MANY = 192  # fewest cells of a side for which half a base has four, which coarsening by four keeps
 _BASE_JUMP = 4.0  # largest ratio of a prescribed cell beside a base to those on it; at 16, cells fold
 _ROUND_CELLS = 14  # fewest cells on half a rounded base, if there are 16 times as many in total
 _CROWDED, _BASE_SHARE = 0.2, 0.3
 """Fraction of all cells on a base from which on they may grow by `_CROWDED_GROWTH`, and the largest one."""
 _CROWDED_GROWTH = 1.25
-_LEAN = math.radians(0.8)
-"""Largest angle between a surface at a corner of the base and its first cells, coarsened by four."""
+_LEAN = math.radians(0.8)  # largest angle between surface and first cells, coarsened by four, at a base
 _COARSENED = 4  # two halvings, for a family of three grids
 _LONGER = 1.2  # factor on the length of that many cells, since they grow away from the corner
 _SMALLER = 64.0  # largest factor by which cells beside a base are smaller for this
