@@ -48,8 +48,8 @@ The deformations are random (seed {seed}).
 
 The columns and methods of the table are:
 
-- *deformations*: kind, with the number of deformations in brackets. Deformations whose new outline is not
-  valid are left out; their number is {refused}.
+- *deformations*: kind, with the number of deformations in brackets. Of the random deformations, {refused}
+  gave an invalid outline and were left out.
 - *folded*: number of grids with folded cells and, if there are any, the largest number of folded cells in
   one grid.
 - *first cell*: largest relative change of a first-cell height, over all wall nodes and deformations.
@@ -64,10 +64,10 @@ The columns and methods of the table are:
 
 """
 TAIL = """
-`meshonet deform` uses the method of Luke, Collins and Blades. Their paper has the exponents 3 and 5; for
-two-dimensional grids, as here, `deform` uses 2 and 4. To save time, `deform` combines distant boundary
-nodes in groups. If the result has folded cells, `deform` repeats the deformation in several steps. Number
-of deformations that needed this: {steps}.
+`meshonet deform` uses the method of Luke, Collins and Blades. The weights in their paper have the
+exponents -3 and -5; for two-dimensional grids, as here, `deform` uses -2 and -4. To save time, `deform`
+combines distant boundary nodes in groups. If the result has folded cells, `deform` repeats the deformation
+in several steps. Number of deformations that were repeated: {steps}.
 """
 SEED = 20261122
 COLUMNS = "deformations", "method", "folded", "first cell", "angle", "CPU ms"

@@ -29,7 +29,7 @@ HEAD = """# Interactive pages: size and time
 
 `meshonet plot -o grid.html` writes an interactive HTML page. Use the tables to find the size of this page,
 the time to write it, and the time until the browser has drawn the grid for the first time. The browser is
-Chromium without a graphics card, on a shared machine with two cores; with a graphics card it draws sooner.
+Chromium without a graphics card, on a shared machine with two cores; a graphics card shortens the drawing.
 Times are medians of three runs. For the use of the pages see [pictures](../guide/pictures.md).
 
 ## Size and time by number of cells

@@ -50,8 +50,8 @@ NETWORKS = """## A network: 3DMeshNet
 (15,000 by default), default settings and seed 0. The training is part of the CPU time. The boundary nodes
 that the network predicts do not lie on the given faces. The largest distance of a boundary node from its
 given position is {off} % of the size of the domain (median over the domains). The predicted boundary nodes
-are therefore replaced by the given nodes (`infer --answer pasted`). *Repaired* is the output of `infer` by
-default.
+are therefore replaced by the given nodes (row *given faces*, `infer --answer pasted`). In the row *repaired*,
+folded cells are then repaired, as `infer` does by default.
 """
 
 METHODS: dict[str, Callable[[SixFaces], Solution]] = {

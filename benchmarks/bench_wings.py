@@ -53,11 +53,13 @@ make such grids.
 Each of the {count} wings has two sections, drawn at random from {files} airfoil files with sharp and blunt
 trailing edges. The taper is 0.25 to 1 and the twist -8 to 4 degrees. The tip is displaced by -0.2 to 0.8
 spans downstream (sweep) and by -0.1 to 0.25 spans upwards (dihedral). The far field is at 15 chords, in
-the first row of the table at 12 chords.
+the first row of the table at 12 chords. The {count} blades are drawn in the same way; they stand between two
+walls.
 
 - *valid*: grids without a folded cell, tested by the Jacobians at the eight corners of every cell and by
   the Bezier coefficients of the Jacobian.
-- *first cell error*: largest relative error of the first-cell height over all wall nodes.
+- *first cell error*: largest relative error of the first-cell height over all wall nodes; for blades, over
+  the wall nodes of the two given sections.
 - *minimum scaled Jacobian* (*SJ*), *largest angle* (of cell faces, degrees): median / worst over the
   grids.
 - *CPU s*: CPU time to compute the grid and its quality report, median / maximum, one thread of {machine},

@@ -155,5 +155,5 @@ def as_good(found: Mapping[str, Floats]) -> str:
         if rivals:
             told.setdefault("`, `".join(rivals), []).append(ours)
     pairs = (("`, `".join(ours), rivals) for rivals, ours in told.items())
-    lines = [f"- As good as `{own}`: `{rivals}`.".replace("**", "") for own, rivals in pairs]
+    lines = [f"- `{rivals}`, compared with `{own}`.".replace("**", "") for own, rivals in pairs]
     return "\n".join([_RIVALS, *lines]) + "\n" if lines else ""

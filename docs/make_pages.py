@@ -35,7 +35,7 @@ training parameters and the held-out errors. `make train` repeats the training.
 | training parameter | meaning |
 | --- | --- |
 | `datasets` | files with the training grids, which a solver made |
-| `strips`, `domains` | number of samples (airfoils or domains) in the datasets, with the held-out samples |
+| `strips`, `domains` | number of samples (airfoils or domains) in the datasets, held-out ones included |
 | `held_out` | number of samples that are used only to measure errors, not for training |
 | `epochs`, `batch`, `seed` | passes over the training samples, samples per step, seed of the random numbers |
 | `rate`, `warm_up` | largest learning rate, reached after `warm_up` steps; then the rate falls as a cosine |

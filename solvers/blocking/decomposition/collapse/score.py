@@ -1,4 +1,4 @@
-"""Score of a quad mesh as the start of a layout: its angles after optimisation, and a price for blocks.
+"""Score of a quad mesh, lower is better: its angles after optimisation, and a penalty for each block.
 
 ::
 

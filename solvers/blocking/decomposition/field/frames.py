@@ -1,4 +1,4 @@
-"""Frames of a cross field that agree across all edges except a cut, the cut, and the size of the frames."""
+"""One frame of each cross, continuous across all edges but those of a cut; the cut; the sizes of frames."""
 
 from dataclasses import dataclass
 
