@@ -18,7 +18,7 @@ STEEPEST = 8.0
 
 
 class WantedCounts:
-    """Target numbers of cells of chords, computed for several metrics with equal points but other sizes."""
+    """Target cell counts of chords (rows of blocks), for metrics that share points but differ in sizes."""
 
     def __init__(self, chords: Chords, metric: SizeMetric) -> None:
         self.chords = chords
@@ -45,8 +45,8 @@ class WantedCounts:
 def metric_places(chords: Chords, counts: Indices, metric: SizeMetric) -> list[Floats]:
     """Return, for each edge, the positions (cells + 1,) of its new nodes as fractional indices of old nodes.
 
-    `counts` (chords,) are the new numbers of cells. The integral of 1/size is divided into equal parts, and
-    the results for opposite edges of blocks are averaged, so that lines across blocks are nearly straight.
+    `counts` (chords,) are the new numbers of cells. New nodes divide the integral of 1/size into equal parts.
+    Positions on opposite edges of a block are averaged, so that grid lines between them are nearly straight.
     """
     nodes = chords.layout.mesh.nodes
     cells = counts[chords.chord]

@@ -113,8 +113,8 @@ def _cut_off(fine: Layout) -> str:
 def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
     """Return the blocks of a domain.
 
-    Without a number of cells in the request, its quad mesh has the default number of the decomposition.
-    Raises InputError: see `make_blocks`. Raises SolverError: the decomposition fails.
+    If the request has no number of cells, the quad mesh has the default number of `decompose`. Raises
+    InputError: see `make_blocks`. Raises SolverError: the decomposition fails.
     """
     domain = _checked(shape.domain, request)
     if request.pitch is not None:

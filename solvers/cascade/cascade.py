@@ -71,7 +71,7 @@ class Cascade:
     share: float = 1.0
 
     def ending(self, near: tuple[float, float], centre: complex) -> Cascade:
-        """Return the cascade with another `near` and `centre`; the layers do not depend on these."""
+        """Return the cascade with another `near` and `centre`; the layers stay the same."""
         return replace(self, near=near, centre=centre, marched=self.ring)
 
     @property
@@ -125,7 +125,7 @@ class Cascade:
 
     @property
     def kept(self) -> float:
-        """Largest fraction of `thickness` that layers have after they are thinned until no cell is folded."""
+        """Largest thickness of layers over `thickness`; below 1 if layers were thinned to unfold cells."""
         return min(float(self.ring.thickness.max()) / self.thickness, 1.0)
 
     @cached_property
@@ -143,7 +143,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Measures whose steps along the front should be even, by loop; empty if growth has no limit."""
+        """Functions whose steps should grow slowly along the front, by loop; empty without a growth limit."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:
@@ -154,7 +154,7 @@ class Cascade:
 
     @cached_property
     def reach(self) -> tuple[float, float]:
-        """Requested lengths from the front (the outer edge of the layers) to inlet and outlet, unchecked."""
+        """Requested lengths from the front (the outer edge of the layers) to inlet and outlet."""
         axial, around = self._axial(self.blade), self._axial(self.ring.front)
         before = self.inlet * self.chord - float(axial.min() - around.min())
         return before, self.outlet * self.chord - float(around.max() - axial.max())
@@ -195,7 +195,7 @@ class Cascade:
         return replace(sizes, points=points, normals=normals, across=across, along=along)
 
     def check_reach(self, cells: int | None, cell_size: float | None) -> None:
-        """Raise InputError if the passage needs far more than `cells` cells, or too many of `cell_size`."""
+        """Raise InputError if the passage needs far more than `cells`, or too many of `cell_size`."""
         largest = cell_size or abs(self.left) / ACROSS * COARSEST**0.5
         length = (1.0 + self.inlet + self.outlet) * self.chord
         most = MOST_CELLS if cell_size else min(MORE * (cells or CELLS), MOST_CELLS)

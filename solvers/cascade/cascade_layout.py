@@ -52,9 +52,9 @@ def cascade_layout(
     cascade: Cascade, *, cells: int | None = None, cell_size: float | None = None,
     timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
-    """Return a fine layout of a passage with about `cells` cells, or `cell_size` away from the blade.
+    """Return a fine layout of a passage with about `cells` cells, or `cell_size` far from the blade.
 
-    Its outer loop consists of periodic1, outlet, periodic2 (periodic1 moved by the pitch) and inlet. Raises
+    The outer loop consists of periodic1, outlet, periodic2 (periodic1 moved by the pitch) and inlet. Raises
     InputError: too little room for layers, inlet or outlet; far more cells needed than requested;
     NoValidGridError: folded cells.
     """
@@ -137,7 +137,7 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
 
 
 def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
-    """Return, for the rows to the inlet and to the outlet, index of the loop, length, direction (1, -1)."""
+    """Return loop index, length, and sign of the axial direction of the rows to inlet and outlet."""
     passage = cascade.passage
     axial = passage.axial(passage.front.curve.points)
     before = cascade.ends[0] - float(axial.min() - passage.inlet)
@@ -195,7 +195,7 @@ def attached_cells(
 ) -> int:  # fmt: skip
     """Return the number of cells in the layers and in the rows to inlet and outlet, for `counts` (chords,).
 
-    `layers` replaces the number of layers; `longest` are smallest lengths of the rows, by their loops.
+    `layers` replaces the number of layers; `longest` are lower bounds of the lengths of rows, by loop index.
     """
     along = chords.along_loops(counts).tolist()
     total = along[BLADE] * (cascade.rows_of_layers if layers is None else layers)

@@ -102,7 +102,7 @@ class Passage:
         return pairs_of(self.centre + times(zeta, self.period) / (1j * np.pi))
 
     def domain(self, inlet: float, outlet: float) -> Domain:
-        """Return the domain of the blocks: loops along the front, inlet and outlet, and a loop around all.
+        """Return the domain of the blocks, with loops along the front, inlet and outlet, and one around them.
 
         The inlet is the first side of a rectangle upstream of the passage; it runs against the pitch and
         starts at `inlet`. The outlet is the first side of a rectangle downstream; it runs along the pitch and
@@ -123,7 +123,7 @@ class Passage:
 
 
 def inner_point(polygon: Floats) -> complex:
-    """Return the point inside a polygon (n, 2), of those of a lattice, that is farthest from its edges."""
+    """Return the point, among test points inside a polygon (n, 2), that is farthest from its vertices."""
     low, high = polygon.min(axis=0), polygon.max(axis=0)
     best, most = complex(*polygon.mean(axis=0)), -1.0
     for rows in (40, 160, 640):
@@ -207,7 +207,7 @@ def _closed(layout: Layout, passage: Passage, lower: Indices, upper: Indices) ->
 
 
 def turned_round(layout: Layout) -> Layout:
-    """Return a passage with its periodic sides exchanged, so that the pitch is reversed."""
+    """Return a passage with its two periodic sides exchanged and its pitch reversed."""
     mesh, places = layout.mesh, layout.mesh.places
     images = np.flatnonzero(places.partner >= 0)
     partner = np.full(len(places.partner), -1, dtype=np.intp)

@@ -37,13 +37,13 @@ _PARTS = 4  # of the places at which the function in the strip is computed, for 
 
 @dataclass(frozen=True, eq=False)
 class PassageFlow:
-    """Potential flow past a cascade: it maps a blade to a slit, and the slit to the edges of a strip.
+    """Potential flow past a cascade: a map from blade to slit (potential G), and from slit to strip (σ).
 
     Parameters
     ----------
     half : h, half the length of the slit.
-    around : (n,) increasing angles ν of points on the blade, at which G is h cos ν.
-    strip : (n,) positions σ of the points, infinite at the ends of the slit.
+    around : (n,) increasing angles ν of points on the blade; the potential is G = h cos ν.
+    strip : (n,) positions σ of these points in the strip, infinite at the ends of the slit.
     away : (n,) ζ - G at the points.
     """
 
@@ -91,8 +91,8 @@ class PassageFlow:
     def inside(self, places: Complexes) -> Complexes:
         """Return ζ - G at points σ (m,), by Cauchy's integral of its values on the blade.
 
-        The integral is a trapezoidal sum in the variable tanh σ/2, whose values fill a disc, divided by that
-        of the function 1 (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
+        The integral is a trapezoidal sum in the variable tanh σ/2, divided by the same sum for the constant 1
+        (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
         """
         finite = np.isfinite(self.strip)
         strip, away = self.strip[finite], self.away[finite]

@@ -42,7 +42,7 @@ _FEET = 1e3
 
 
 def template(passage: Passage, *, at_corners: bool) -> Layout:
-    """Return the layout of a passage; if `at_corners`, some nodes are moved to the blade's corners."""
+    """Return a layout of a passage; if `at_corners`, nodes near the blade's corners are moved to them."""
     flow = PassageFlow.of(passage.zeta(passage.front.curve.points))
     pieces, angles = _pieces(flow, passage)
     potential, blocks = _joined_pieces(pieces)

@@ -54,13 +54,13 @@ SLACK = np.array([2.0, 1.0, 0.9])
 
 @dataclass(frozen=True, eq=False)
 class Measures:
-    """Functions along a curve (such as arc length) whose steps from node to node should be even.
+    """Functions along a curve, such as arc length, whose steps from node to node should grow slowly.
 
     Parameters
     ----------
     arcs : (m,) positions along the curve, ascending.
     values : (k, m) increasing values of the k measures at these positions, linear in between.
-    slack : (k,) for each measure, the factor by which the limit (a logarithm) is multiplied.
+    slack : (k,) for each measure, a factor on the limit of log(growth ratio).
     """
 
     arcs: Floats
@@ -89,12 +89,12 @@ class Measures:
 
 @dataclass(frozen=True, eq=False)
 class PlaceLinks:
-    """Linear expressions in two places, f0 u0 + f1 u1 + rest, that should be zero.
+    """Conditions f0 u0 + f1 u1 + rest = 0 between pairs of positions u.
 
     Parameters
     ----------
-    pairs : (p, 2) indices of the two places.
-    factors : (p, 2) factors of the two places.
+    pairs : (p, 2) indices of the two positions.
+    factors : (p, 2) factors f0 and f1.
     rest : (p,) constant terms.
     """
 
@@ -114,11 +114,11 @@ def evened_places(
     places: Floats, fixed: Bools, measures: Measures, limit: float, closed: bool,
     links: PlaceLinks = NO_LINKS, most: float = MOST, change: float = CHANGE,
 ) -> Floats:  # fmt: skip
-    """Return ascending `places` (n,), moved until neighbouring steps differ by a limited ratio.
+    """Return ascending positions `places` (n,), moved until ratios of neighbouring steps are limited.
 
-    Places in the mask `fixed` (n,) do not change. `limit` is the logarithm of the largest ratio; it is
-    relaxed if places would move by more than `most` steps, and exceeded as little as possible. On a closed
-    curve the last step leads to the first place. `change` is the weight μ of `GrowthLimit`.
+    Positions in the mask `fixed` (n,) do not change. `limit` is the logarithm of the largest ratio; it is
+    relaxed if positions would move by more than `most` steps. On a closed curve, the last step leads to the
+    first position. `change` is the weight μ of `GrowthLimit`.
     """
     line = _Line.of(places, fixed, measures, closed, links, change)
     new = places
@@ -147,7 +147,7 @@ def evened_steps(steps: Floats, limit: float) -> Floats:
 def evened_loops(
     layout: Layout, measures: Mapping[int, Measures], limit: float, most: float = MOST
 ) -> Layout:
-    """Return the layout with nodes moved along some loops; displacements decrease in the adjacent blocks.
+    """Return the layout with nodes moved along loops; displacements decay across the adjacent blocks.
 
     `measures` are those of each loop, by index. Corners are fixed; `limit` and `most` are as in
     `evened_places`. If cells would fold, the given layout is returned.
@@ -210,7 +210,7 @@ class _Line:
 
     @cached_property
     def unknown(self) -> Indices:
-        """(n,) index of each place among the places that move, -1 for the others."""
+        """(n,) index of each position among the positions that move; -1 for fixed positions."""
         unknown = np.full(self.triples.max() + 1, -1, dtype=np.intp)
         unknown[self.free] = np.arange(len(self.free))
         return unknown
@@ -238,7 +238,7 @@ class _Line:
         return bool((np.abs(self._growth(places)) > self._limits(limit)[:, None]).any())
 
     def evened(self, places: Floats, limit: float) -> Floats:
-        """Return the places after some steps of Gauss-Newton.
+        """Return the positions after some Gauss-Newton iterations.
 
         Raises SolverError: the equations are singular.
         """

@@ -65,7 +65,7 @@ class GrowthLimit:
 
 
 def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part: Indices) -> Numbers:
-    """Return a step (m,), each part of which is halved until the value that depends on it decreases, or 0.
+    """Return a step (m,); each of its parts is halved until the value that depends on it decreases, else 0.
 
     `values` returns all values (p,); `part` (m,) is the index of the value that depends on each unknown.
     """

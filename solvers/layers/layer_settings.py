@@ -38,7 +38,7 @@ class LayerSettings:
     multiple : divisor of the number of layers, so that coarser grids are nested.
     heights : first-cell heights of walls by name.
     limit : largest ratio of neighbouring cells along lines from walls. If 0, the logarithm of the ratio may
-        exceed that of `growth` by a fifth, because columns differ.
+        be a fifth larger than log(`growth`).
     """
 
     first: float
@@ -50,7 +50,7 @@ class LayerSettings:
 
     @classmethod
     def limited(cls, first: float, limit: float, **others: Any) -> LayerSettings:
-        """Return layers with a limit of the growth ratio, inside the layers and beyond them."""
+        """Return settings with the growth ratio at most `limit`, inside the layers and beyond them."""
         return cls(first, math.exp(NOMINAL * math.log(limit)), limit=limit, **others)
 
     def at(self, names: Collection[str]) -> LayerSettings:
@@ -92,7 +92,7 @@ class LayerSettings:
         return min(GRADING, SPREAD * (self.limit - 1.0)) if self.limit else GRADING
 
     def below(self, growth: float) -> float:
-        """Return the growth ratio of cells outside the layers: `growth`, or less if it is near the limit."""
+        """Return the growth ratio of cells outside the layers: `growth`, or less to stay below the limit."""
         return min(growth, 1.0 + NOMINAL * (self.limit - 1.0)) if self.limit else growth
 
     def arcs(self, length: Floats, first: float | Floats, last: Floats, cells: int) -> Floats:

@@ -66,7 +66,7 @@ def decompose(
 ) -> Layout:
     """Return a layout of the blocks of a domain, with an optimised quad mesh.
 
-    The nodes of a domain with periodic sides are not made symmetric.
+    A domain with periodic sides gets no symmetric nodes.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def _optimised(mesh: QuadMesh, iterations: int, sizes: SizeMetric | None) -> Qua
 
 
 def most_folded(mesh: QuadMesh) -> str:
-    """Return the place of the most folded corner of a mesh as text; NaN counts as most folded."""
+    """Return the position of the most folded corner of a mesh as text; NaN counts as most folded."""
     jacobian = np.nan_to_num(corner_jacobians(mesh.nodes[mesh.quads]), nan=-np.inf)
     x, y = mesh.nodes[mesh.quads.ravel()[int(np.argmin(jacobian))]]
     return f"at ({x:.6g}, {y:.6g})"

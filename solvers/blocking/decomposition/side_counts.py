@@ -25,7 +25,7 @@ _NONE: Mapping[int, int] = MappingProxyType({})
 
 
 def sums_of(chords: Chords) -> Sums:
-    """Return, for each side name with a given cell count, how many edges of each chord lie on these sides.
+    """Return, for each side with a given cell count, by name, the number of edges of each chord on this side.
 
     Raises InputError: a side with a given count ends inside an edge of a block.
     """
@@ -126,7 +126,7 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return `counts` (chords,), scaled so that named sides get nearly the cell counts given for them."""
+    """Return `counts` (chords,), scaled so that named sides have nearly their given cell counts."""
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())
@@ -169,7 +169,7 @@ def _alike(chords: Chords) -> list[Row]:
 
 
 def lacking_side(layout: Layout) -> Indices | None:
-    """Return the nodes along a periodic side that has fewer cells than its partner for all counts, if any."""
+    """Return nodes of a periodic side with fewer cells than its partner for all counts; None without one."""
     if not layout.mesh.domain.periodic:
         return None
     for row, (_, first, second) in zip(_differences(Chords.of(layout)), sides_of(layout.mesh), strict=True):

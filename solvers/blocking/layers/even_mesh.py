@@ -44,11 +44,11 @@ _SLACK = 0.02  # radians by which corners beyond them may become worse
 
 
 def evened_mesh(mesh: QuadMesh, held: Bools, lines: GrowthLines, following: Indices = NO_PAIRS) -> QuadMesh:
-    """Return the mesh with nodes moved where edges along its grid lines grow too fast.
+    """Return the mesh with nodes moved where the lengths of successive edges grow too fast.
 
-    The nodes in the mask `held` (n,) are fixed. Each pair in `following` (k, 2) is a node on a loop and a
-    node that moves with it, so that first cells keep their heights. Other nodes on loops slide along the
-    loops, except corners and nodes of periodic sides. Limits are exceeded where good angles require it.
+    The nodes in the mask `held` (n,) are fixed. Each pair in `following` (k, 2) is a wall node and a node
+    that moves and rotates with it, so that first cells keep their heights. Nodes on loops slide along the
+    loops, except corners and nodes of periodic sides. Growth exceeds its limit where good angles require it.
     """
     sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0) & ~mesh.tied
     fixed = held | (mesh.wall_nodes & ~sliding)
@@ -183,7 +183,7 @@ class _Patch:
         )  # fmt: skip
 
     def evened(self, z: Complexes, weight: float) -> tuple[Complexes, float]:
-        """Return the nodes after some steps, and the last weight of the penalty for too large growth."""
+        """Return the nodes after some iterations, and the final weight of the penalty on excessive growth."""
         z, part = z.copy(), self.part[self.nodes]
         for _ in range(STEPS):
             weight = min(weight * RISE, MOST_WEIGHT)

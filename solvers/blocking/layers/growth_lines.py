@@ -47,11 +47,11 @@ class GrowthLines:
     def from_walls(
         cls, layout: Layout, walls: Bools, limit: float, elsewhere: float, sliding: Bools | bool = False
     ) -> Self:
-        """Return all pairs of a layout; `limit` applies along lines from `walls` and across block sides.
+        """Return all pairs of a layout; `limit` holds along grid lines from `walls` and across block sides.
 
-        `walls` (n,) is a mask of nodes. For all other pairs, and at irregular vertices, the limit is
-        `elsewhere`, or the ratio on a wall if larger, for pairs parallel to this wall in the blocks beside
-        it, unless the wall nodes are `sliding` (n,).
+        `walls` (n,) is a mask of nodes. For other pairs, and at irregular vertices, the limit is `elsewhere`.
+        Pairs parallel to a wall, in blocks beside it, may have the ratio on this wall if it is larger and the
+        wall nodes are not `sliding` (n,).
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes
@@ -95,7 +95,7 @@ class GrowthLines:
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:
-        """Return the largest |growth| (n,) at middle nodes, also for all nodes of the lines in `rows`."""
+        """Return the largest |growth| (n,) at each node; lines in `rows` get at least that of their start."""
         growth = np.zeros(len(mesh.nodes))
         np.maximum.at(growth, self.nodes[:, 1], np.abs(self.growth(complex_of(mesh.nodes))))
         for table in rows:

@@ -37,7 +37,8 @@ def marched(
     """Return levels (n, m, 2) and a mask of folded columns, for the best of several marches.
 
     The first level is the closed wall `start` (n, 2), with the domain on its left. The first cells have the
-    height `first`; the last level is at the distance `thickness` (n,). The levels are None if all overflow.
+    height `first`; the last level is at the distance `thickness` (n,). The levels are None if all marches
+    overflow.
     """
     cells = cells_for_growth(first, float(thickness.max()), MARCH_GROWTH)
     heights = distinct(thickness)  # most columns have the same

@@ -34,8 +34,8 @@ GROWTH = 1.18  # of cells in rows to the far field
 class NearField:
     """A circle around the bodies, and the outer loop in polar coordinates about its centre.
 
-    At the ascending `angles` (n,), over one turn, the outer loop has the `radii` (n,) and arc lengths `arcs`
-    (n,).
+    `angles` (n,) ascend over one turn; `radii` (n,) and `arcs` (n,) are the radius and the arc length of the
+    outer loop at each.
     """
 
     circle: Loop

@@ -26,7 +26,7 @@ _STEPS = 50  # of bisection, to round-off
 
 
 def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings) -> int:
-    """Return the number of layers of a row: in most columns they fill the row and do not grow too fast."""
+    """Return the number of layers that fill a row in most columns without growing too fast."""
     alone = rows.across[np.nonzero(rows.across == row)[0]].min(axis=1) < 0  # blocks of no other row
     columns = np.concatenate(list(compress(rows.columns(layout, row), alone)))
     first, extra = settings.first, settings.constant - 1
@@ -40,9 +40,10 @@ def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings)
 
 
 def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings]) -> Layout:
-    """Return a fine layout with nodes of wall rows moved along the lines across the rows into layers.
+    """Return a fine layout with layers in rows of blocks at walls; nodes move along the lines across a row.
 
-    `settings` has one entry per row. First cells are exact; others grow to the height beyond the front.
+    `settings` has one entry per row. First cells have exactly the given height; heights grow to that of the
+    cells beyond the front.
     """
     mesh = layout.mesh
     moved = np.zeros(len(mesh.nodes), dtype=bool)

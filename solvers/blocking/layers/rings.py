@@ -56,7 +56,7 @@ class Ring:
     def columns(self, places: Floats) -> tuple[Floats, Floats]:
         """Return lines (k, m, 2) from the wall to the front, and the arc lengths (k,) of their starts.
 
-        `places` (k,) are the arc lengths on the front at which the lines end. Lines are interpolated by
+        `places` (k,) are the arc lengths on the front of the ends of the lines. Lines are interpolated by
         cubics through four columns, but never across a corner.
         """
         n = len(self.arcs)
@@ -152,9 +152,9 @@ def march_ring(
 
 
 def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
-    """Return, for each ring that would hit another one, the largest thickness (n,) at each of its columns.
+    """Return the largest thickness (n,), at each column, of each ring that would hit another ring.
 
-    Columns fan out around a sharp edge, towards walls that are not in front of their starting points.
+    Rings may collide although walls do not face each other, because columns fan out around sharp edges.
     """
     rooms = {}
     walls = {k: np.arange(_SAMPLES) / _SAMPLES * ring.wall.length for k, ring in rings.items()}

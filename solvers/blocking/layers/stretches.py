@@ -27,7 +27,7 @@ class Stretch:
     last: int
 
     def span(self, loop: Loop) -> tuple[float, float]:
-        """Return the arc lengths of its start and end; the end is larger, if need be by the loop's length."""
+        """Return arc lengths of start and end; the end is larger, if needed by the loop's whole length."""
         begin, end = (float(loop.corner_arcs[k]) for k in (self.first, self.last))
         return begin, end if end > begin else end + loop.length
 
@@ -41,8 +41,8 @@ class Stretch:
 def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int], tuple[Stretch, ...]]:
     """Return the indices of the loops with layers all around, and the stretches of other loops with layers.
 
-    `names` are the walls with layers. Without names, `Domain.layered_loops` have layers, except where a name
-    says that a stretch is no wall. They go on along an axis or a symmetry line that continues a wall. Raises
+    `names` are the walls with layers. Without names, `Domain.layered_loops` have layers, except stretches
+    whose names mean no wall. Layers continue along an axis or symmetry line that continues a wall. Raises
     InputError, with the place: no boundary has this name; layers would end where the boundary is straight or
     at a reflex corner.
     """

@@ -109,7 +109,7 @@ class WallLayers:
         return tuple(map(self.settings.at, names))
 
     def symmetric(self, layout: Layout) -> Layout:
-        """Return the layout outside the layers with its nodes symmetric, if its quads are."""
+        """Return the layout outside the layers; its nodes are made symmetric if its quads are symmetric."""
         return replace(layout, mesh=made_symmetric(layout.mesh, images_of(layout.mesh, self.mirrors)))
 
     def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
@@ -148,8 +148,8 @@ class WallLayers:
     ) -> SizeMetric:
         """Return the target cell sizes outside the layers, at most `size` if given.
 
-        Next to layers, they are `scale` times the cell lengths along the wall. `wakes` are lines (k, 2) by
-        the index of their loop.
+        Next to layers, sizes are `scale` times the cell lengths along the wall. `wakes` are lines (k, 2); the
+        key is the index of the loop that the wake leaves.
         """
         scale = 1.0 if size else scale
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
@@ -168,7 +168,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Measures whose steps should be even along fronts of rings and the circle of `near`, by loop."""
+        """Functions whose steps should grow slowly along fronts and the circle of `near`, by loop index."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])

@@ -54,7 +54,7 @@ class WallRows:
         return row
 
     def columns(self, layout: Layout, row: int) -> list[Indices]:
-        """Return for each block of a row the nodes (k, n) of its lines from wall or wake to front."""
+        """Return, for each block of a row, the nodes (k, n) of its k lines from wall or wake to front."""
         tables = []
         for block, direction in zip(*np.nonzero(self.across == row), strict=True):
             table = layout.blocks[block].T if direction else layout.blocks[block]
@@ -62,7 +62,7 @@ class WallRows:
         return tables
 
     def growth(self, layout: Layout, loop: int) -> float:
-        """Return the largest |log(ratio)| of neighbouring edges along the wall of a loop and its wake."""
+        """Return the largest |log(length ratio)| of neighbouring edges along a loop's wall and its wake."""
         base = np.zeros(len(layout.mesh.nodes), dtype=bool)
         for table in self.columns(layout, self.loops.index(loop)):
             base[table[:, 0]] = True
@@ -94,7 +94,7 @@ def wake_of(mesh: QuadMesh, number: int) -> list[int]:
     edge = int(np.argmax((places.loop == number) & (places.cells == 4)))
 
     def turned(node: int, beside: int, quads: int) -> int:
-        """Return the neighbour of a node that follows another one counter-clockwise after some quads."""
+        """Return the neighbour of `node` that is `quads` quads counter-clockwise from neighbour `beside`."""
         for _ in range(quads):
             k, i = half[node, beside]
             beside = int(mesh.quads[k, (i + 3) % 4])

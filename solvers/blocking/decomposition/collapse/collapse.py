@@ -118,10 +118,11 @@ def widths(current: BaseComplex) -> Floats:
 def contract(mesh: QuadMesh, rungs: Bools) -> QuadMesh | None:
     """Return the mesh with the nodes of each edge in `rungs` (e,) merged; None if it would be invalid.
 
-    Merged nodes are moved to the corner among them, else to the mean of their arc lengths on the wall, else
-    to their mean. The mesh would be invalid if two corners were merged; if wall nodes were merged that no
-    wall edge in `rungs` connects; if more wall nodes than before had a wrong number of quads; or if it were
-    not a conforming mesh of the same domain with 3 to 5 quads around each interior node.
+    Merged nodes move to a corner if one of them is a corner; otherwise, to the mean arc length of the wall
+    nodes among them; without wall nodes, to the mean position. The mesh would be invalid if two corners were
+    merged; if wall nodes were merged that no wall edge in `rungs` connects; if more wall nodes than before
+    had a wrong number of quads; or if it were not a conforming mesh of the same domain with 3 to 5 quads
+    around each interior node.
     """
     label, count = joined_classes(np.ascontiguousarray(mesh.edges[rungs]), len(mesh.nodes))
     kept = ~rungs[mesh.edge_of].any(axis=1)

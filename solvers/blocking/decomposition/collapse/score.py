@@ -48,8 +48,8 @@ def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = Non
 def size_spread(blocks: BaseComplex, wanted: Floats | None) -> float:
     """Return the mean square of log(length / mean length) of the sides of blocks across each chord.
 
-    These sides have equally many cells, so that it is also that of cell lengths. Means are weighted by the
-    areas of the blocks. If target lengths `wanted` (e,) of edges are given, they are the units of length.
+    All sides of a chord have the same number of cells. Means are weighted by the areas of the blocks. If
+    target lengths `wanted` (e,) of edges are given, lengths are divided by them.
     """
     lengths = log(blocks.side_lengths(wanted))
     chord = blocks.sides[2]

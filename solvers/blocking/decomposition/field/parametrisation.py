@@ -24,9 +24,9 @@ class Parametrisation:
 
         |grad u - s (cos theta, sin theta)|^2 + |grad v - s (-sin theta, cos theta)|^2
 
-    u or v is constant along each wall and is one unknown there. The differences of w along an edge of the
-    cut, seen from its two sides, differ by a rotation by a multiple of 90 degrees (Lagrange multipliers).
-    This is the map of Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009) 77) with real translations.
+    u or v is constant along each wall and is one unknown there. Along an edge of the cut, the change of w on
+    one side is that on the opposite side rotated by a multiple of 90 degrees (Lagrange multipliers). This is
+    the map of Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009) 77) with real translations.
 
     Parameters
     ----------

@@ -32,8 +32,8 @@ def without_pairs(
 ) -> Complexes:
     """Return the crosses (n,) without those pairs of singular points whose removal lowers the energy.
 
-    `laplacian` has the interior vertices as free ones, `factor` is its factorisation. Crosses at walls do not
-    change. If no pair is removed, the given array is returned.
+    The free vertices of `laplacian` are the interior ones; `factor` is the factorisation of the matrix.
+    Crosses at walls do not change. If no pair is removed, the given array is returned.
     """
     phase = angle(crosses)
     steps = phase[surface.triangles[:, NEXT]] - phase[surface.triangles]

@@ -35,9 +35,9 @@ class WallDirections:
 def wall_directions(surface: Triangulation) -> WallDirections:
     """Return directions along the walls of a surface.
 
-    At a corner of alpha degrees where k cells meet, the two walls are rotated by (90 k - alpha) / 2 degrees,
-    and less at a distance from it, so that both give the same cross. At other vertices the direction is the
-    mean of the directions of the two wall edges.
+    At a corner of alpha degrees where k cells meet, the directions of the two walls are rotated by
+    (90 k - alpha) / 2 degrees, so that both give the same cross. The rotation decreases with the distance
+    from the corner. At other vertices the direction is the mean of the directions of the two wall edges.
     """
     triangle, edge = surface.walls
     start = surface.triangles[triangle, edge]

@@ -29,10 +29,11 @@ def half_edges(mesh: QuadMesh) -> HalfEdges:
 def with_row(mesh: QuadMesh, path: Sequence[int], *, closed: bool = False, of_wall: bool = False) -> QuadMesh:
     """Return the mesh with a row of quads inserted on the left of a path of nodes.
 
-    The path goes from wall to wall, or is `closed`; it may follow a wall. The opposite side of the row is its
-    front, where the new nodes are; with `of_wall`, they are on the path. The new quads are the last of the
-    mesh; the first two nodes of each are on the path, the others on the front. If a closed path begins at a
-    corner with one quad, the row crosses itself there, and the last quad is the one at this corner.
+    The path goes from wall to wall, or is `closed`; it may follow a wall. The side of the row opposite to the
+    path is its front. New nodes are on the front; with `of_wall`, they are on the path. The new quads are the
+    last of the mesh; the first two nodes of each are on the path, the others on the front. If a closed path
+    begins at a corner with one quad, the row crosses itself there, and the last quad is the one at this
+    corner.
     """
     half, n, count = half_edges(mesh), len(mesh.nodes), len(path)
     new = list(range(n, n + count))

@@ -28,13 +28,13 @@ def wrong_count(mesh: QuadMesh) -> Bools:
 
 
 def loops_to_pad(mesh: QuadMesh) -> list[int]:
-    """Return the indices of the loops without corners on which a node has a wrong number of quads."""
+    """Return the indices of those loops without corners that have a node with a wrong number of quads."""
     wrong = distinct(mesh.places.loop[wrong_count(mesh)])
     return [int(loop) for loop in wrong if loop >= 0 and not mesh.domain.loops[loop].corners]
 
 
 def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
-    """Return those stretches of `spans` in whose interior a node has a wrong number of quads."""
+    """Return those of `spans` that have an inner node with a wrong number of quads."""
     places, wrong = mesh.places, wrong_count(mesh)
     return [
         (loop, begin, end)

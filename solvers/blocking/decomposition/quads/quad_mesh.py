@@ -27,8 +27,8 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None 
 
     If `sizes` (target edge lengths) are given, `cells` is ignored. Cells may be folded.
 
-    Raises SolverError: the lines of the map form no T-mesh of rectangles, or no mesh with so few cells
-    conforms.
+    Raises SolverError: the lines of the map form no T-mesh of rectangles, or `cells` are too few for a
+    conforming mesh.
     """
     mesh = t_mesh(motorcycle_graph(seamless))
     wanted = _plane_lengths(mesh, sizes)

@@ -124,8 +124,8 @@ class Triangulation:
 def split_edges_between_walls(triangulation: Triangulation) -> Triangulation:
     """Return the triangulation with a new vertex on every interior edge that joins two wall vertices.
 
-    Otherwise a triangle with two edges on the same wall would have all its vertices on one line of the map,
-    and a gap one triangle wide could not contain a singularity.
+    Without the new vertices, the map would collapse triangles with two edges on one wall, and no singularity
+    could lie in a gap one triangle wide.
     """
     boundary = len(triangulation.arc)
     while True:

@@ -37,7 +37,7 @@ def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list
 
 
 def agree(images: Images) -> bool:
-    """Return whether `images` combine like reflections about their mirrors: two give the right rotation."""
+    """Return whether two reflections of nodes by `images` give the rotation that their mirrors give."""
     if len(images) < 2:
         return True
     (_, one), (_, other) = images[:2]
@@ -50,10 +50,10 @@ def agree(images: Images) -> bool:
 
 
 def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
-    """Return the mesh with each node at the mean of itself and its mirror images, by default in all mirrors.
+    """Return the mesh with each node averaged with its mirror images, by default those in all mirrors.
 
-    Corners do not move. If images in several mirrors do not combine to rotations, as in a ring of an odd
-    number of quads, only the first mirror is used.
+    Corners do not move. Only the first mirror is used if reflections in two mirrors give no rotation of the
+    mesh, as in a ring of an odd number of quads.
     """
     images = images_of(mesh) if images is None else images
     if not agree(images):

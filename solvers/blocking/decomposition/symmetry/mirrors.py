@@ -40,7 +40,7 @@ class Mirror:
         return _images(points, self.centre, self.along)
 
     def ahead_and_left(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return distances (...) of points (..., 2) from the centre: along the line, and to its left."""
+        """Return coordinates (...) of points (..., 2) about the centre: along the line, and to its left."""
         return along_and_across(points - self.centre, self.along)
 
 

@@ -30,7 +30,7 @@ Ray = tuple[Mirror, Floats]
 
 @dataclass(frozen=True, eq=False)
 class LoopPart:
-    """Part of a loop of the whole domain between two rays, or only the centre of the mirrors."""
+    """Part of a loop of the whole domain between two rays (halves of mirror lines), or the centre."""
 
     loop: int
     """Index of the loop; -1 for the centre."""
@@ -56,8 +56,8 @@ class DomainPart:
     domain : the part; its outer loop begins on the first ray.
     stretches, holes : walls of the part: parts of loops of the whole domain, and whole loops inside.
     rays : the mirrors that bound the part.
-    copies : for each part of the whole domain, the mirrors at which this part is reflected in turn; the
-        first entry is empty.
+    copies : one entry for each copy that fills the whole domain: the mirrors in which this part is reflected,
+        one after another. The first entry is empty.
     """
 
     whole: Domain

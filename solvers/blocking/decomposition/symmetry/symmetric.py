@@ -61,7 +61,7 @@ def symmetric_blocks(
     def best(ways: Sequence[Way], mirrors: Sequence[Mirror], enough: int = 0) -> BaseComplex | None:
         """Return the best blocks that the `ways` give; None if none are about as good as the given blocks.
 
-        If one of the first `enough` ways succeeds, the others are not tried; `enough` = 0 tries all.
+        If one of the first `enough` ways succeeds, later ways are not tried; `enough` = 0 tries all.
         """
         least = None
         for number, way in enumerate(ways):
