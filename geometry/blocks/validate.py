@@ -33,7 +33,7 @@ _SEAM = 1e-6
 
 
 def check_edges(boundary: Boundary) -> None:
-    """Raise InputError, with the place, if edges cross or touch, or if a body is outside its far field."""
+    """Raise InputError, with the position, if edges cross or touch, or if a body is outside its far field."""
     if not boundary.around_body and not find_crossings(boundary.outline(), limit=1):
         return
     lines = _lines(boundary)

@@ -20,7 +20,7 @@ _SAME = 1e-13
 
 
 def check_domain(domain: Domain) -> None:
-    """Raise InputError, with the place, if the polygons of the loops do not bound a region.
+    """Raise InputError, with the position, if the polygons of the loops do not bound a region.
 
     In this order: points are repeated; a loop has no area; a loop crosses or touches itself or another loop,
     or has the wrong orientation; a hole is outside the outer loop or inside another hole. Splines are checked

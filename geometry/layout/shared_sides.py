@@ -15,7 +15,7 @@ Line: TypeAlias = tuple[int, Side, Indices]
 
 
 def shared(lines: list[Line]) -> tuple[list[Connection], list[Line]]:
-    """Return the connections between lines with the same nodes, and the lines that match no other line."""
+    """Return the connections between sides of blocks with the same nodes, and the unmatched sides."""
     waiting: dict[tuple[int, ...], Line] = {}
     connections = []
     for line in lines:
@@ -47,7 +47,7 @@ def connection_of(
 
 
 def shared_in_part(lines: list[Line]) -> tuple[list[Connection], list[tuple[Line, int]]]:
-    """Return the connections between parts of lines; also the unconnected parts, with their start indices."""
+    """Return the connections between parts of sides; also the unconnected parts, with their start indices."""
     if not lines:
         return [], []
     edges = np.concatenate([np.sort([nodes[:-1], nodes[1:]], axis=0) for _, _, nodes in lines], axis=1)

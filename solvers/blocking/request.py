@@ -37,7 +37,7 @@ class BlockRequest(FirstCell):
     res : number of cells along the longest extent of the domain.
     first_cell : first-cell height at walls, in the domain's unit, or a mapping from names of walls to
         heights.
-    y_plus, reynolds, chord_fraction : first-cell height as y+, converted with the friction of a flat plate.
+    y_plus, reynolds, chord_fraction : first-cell height as y+; see `meshonet.geometry.spacing.y_plus`.
     length : reference length of the Reynolds number; None is the extent of the bodies.
     growth : largest ratio of neighbouring cells away from the wall.
     constant_layers : number of first layers of equal height.

@@ -33,7 +33,8 @@ class Rows:
 def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
     """Return a layout in which each block that has a side on the loop of `rows` gets a new block there.
 
-    `domain` is the extended domain: it has the same loops, but those of `rows` are where the lines end.
+    `domain` is the extended domain: it has the same loops, except that the loop of `rows` runs through the
+    ends of the lines.
     """
     mesh = layout.mesh
     nodes, places = [mesh.nodes], [replace(mesh.places, loop=mesh.places.loop.copy())]

@@ -25,7 +25,7 @@ def finished(layout: Layout, settings: LayerSettings, held: Bools, following: In
     """Return the layout with limited growth of its cells.
 
     The nodes in the mask `held` (n,) are fixed; `following` (k, 2) are pairs of a node on a wall and a node
-    that moves with it. Raises NoValidGridError, with the place: cells are folded.
+    that moves with it. Raises NoValidGridError, with the position: cells are folded.
     """
     inner = held.copy()
     for number in layout.layers:

@@ -87,9 +87,9 @@ def fitted(
 
 
 def check_room(room: Floats, first: float, place: Callable[[int], str]) -> None:
-    """Raise InputError if `room` (n,), `GAP_PART` of the gap, is too small for first cells of height `first`.
+    """Raise InputError if `room` (n,) is too small for first cells of height `first`.
 
-    `place` returns the description of column k for messages.
+    `room` is the gap times `GAP_PART`; `place` returns the description of column k for messages.
     """
     k = int(np.argmin(room))
     if room[k] < FEWEST_CELLS * first:

@@ -115,8 +115,8 @@ def march_ring(
 
     `first` is the height of first cells, `largest` the largest length of cells along the wall, both in the
     domain's unit. The ring is symmetric about `mirrors` of the loop. If given, `room` (n,) limits its
-    thickness at the columns of the ring `before`. Raises InputError, with the place: no layer fits in a gap,
-    or every march folds at a wall.
+    thickness at the columns of the ring `before`. Raises InputError, with the position: no layer fits in a
+    gap, or every march folds at a wall.
     """
     loop = domain.loops[number]
     own = [mirror for mirror in mirrors if mirror.loops[number] == number]
@@ -174,7 +174,7 @@ def room_between(rings: Mapping[int, Ring]) -> dict[int, Floats]:
 
 
 def mirrored(ring: Ring, loop: Loop, mirror: Mirror, total: float) -> Ring:
-    """Return the mirror image of a ring, around `loop`; `total` is the `Mirror.sums` of its wall."""
+    """Return the mirror image of a ring, around `loop`; `total` is the ring's entry in `Mirror.sums`."""
     arcs = _at_corners(loop, np.mod(total - ring.arcs[::-1], loop.length))
     levels = mirror.images(ring.levels[::-1])
     levels[:, 0] = loop.at(arcs)

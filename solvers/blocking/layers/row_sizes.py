@@ -100,7 +100,7 @@ class RowSizes:
         return settings.rows(float(self.thickness(scale, settings)[on if on.any() else self.on].max()))
 
     def check_room(self) -> None:
-        """Raise InputError, with the place, if a gap is too narrow for layers."""
+        """Raise InputError, with the position, if a gap is too narrow for layers."""
         for first in distinct(self.first):
             room = np.where(self.on & (self.first == first), GAP_PART * self.gap, np.inf)
             check_room(room, float(first), lambda k: place(self.loop, self.arcs[k]))

@@ -43,8 +43,8 @@ def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int
 
     `names` are the walls with layers. Without names, `Domain.layered_loops` have layers, except stretches
     whose names mean no wall. Layers continue along an axis or symmetry line that continues a wall. Raises
-    InputError, with the place: no boundary has this name; layers would end where the boundary is straight or
-    at a reflex corner.
+    InputError, with the position: no boundary has this name; layers would end where the boundary is straight
+    or at a reflex corner.
     """
     whole: list[int] = []
     stretches: list[Stretch] = []

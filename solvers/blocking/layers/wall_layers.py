@@ -238,7 +238,7 @@ class Counts:
     scale : factor by which the cell lengths along walls are multiplied.
     metric : target sizes.
     layers : (rows,) number of layers of each row divided by the number that its thickness requires; known
-        after an optimisation, and averaged with the previous one.
+        after an optimisation, and averaged with the previous value.
     """
 
     coarse: Indices
