@@ -1,7 +1,4 @@
-"""Evaluates a strip solution at the nodes of a grid of any resolution.
-
-Levels near the walls are mapped to the plane one by one, others interpolated along eta in the plane.
-"""
+"""A strip solution at the nodes of a grid of any resolution."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -102,10 +99,7 @@ def _widened(low: Complexes, ahead: Complexes, behind: Complexes) -> Complexes:
 
 @dataclass(frozen=True)
 class _HighModes:
-    """Modes of a wall beyond `MODES`: `ahead` for k = MODES + 1 .. K, `behind` for -K .. -MODES - 1.
-
-    To round-off, they are zero at the opposite wall.
-    """
+    """A wall's modes beyond `MODES`: `ahead` for k = MODES + 1 .. K, `behind` for -K .. -MODES - 1."""
 
     ahead: Complexes
     behind: Complexes
@@ -139,10 +133,7 @@ class _HighModes:
                 start = count
 
     def felt(self, depth: Floats) -> list[tuple[int, int]]:
-        """Return, for each octave of modes, on how many levels it is felt, and the end of its range of modes.
-
-        The highest octave comes first. `depth` ascends; an octave is negligible, not felt, on deeper levels.
-        """
+        """Return how many levels each octave of modes reaches, and its last mode; the highest comes first."""
         octaves: list[tuple[int, int]] = []
         strength = modulus(self.ahead) + modulus(self.behind[::-1])
         begin = 0

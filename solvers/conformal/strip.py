@@ -1,7 +1,4 @@
-"""Winslow's equations in the periodic strip, with Fourier modes along phi and Chebyshev points across.
-
-Trefethen, Spectral Methods in MATLAB (2000), chapters 6 and 7.
-"""
+"""Winslow's equations in the strip by Fourier modes and Chebyshev points (Trefethen 2000, chapters 6, 7)."""
 
 import math
 from dataclasses import dataclass

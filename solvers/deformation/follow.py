@@ -1,7 +1,4 @@
-"""Displacement of all nodes from that of the boundary, by inverse-distance weighting, and its derivative.
-
-Luke, Collins, Blades, J. Comput. Phys. 231 (2012) 586-601.
-"""
+"""Displacements of all nodes by inverse-distance weighting (Luke et al., J. Comput. Phys. 231 (2012) 586)."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -17,13 +14,10 @@ from meshonet.solvers.deformation.motions import Turning, affine, turns_in_plane
 from meshonet.solvers.deformation.outer import NodeTable, Piece
 from meshonet.solvers.deformation.sources import Sources, sources_of
 
-NEAR = 0.3
-"""Upper bound of the distance inside which the nearest wall nodes dominate, in extents of the moved walls."""
-ROOM = 0.1
-"""Upper bound of the same distance, in distances between moved and fixed nodes: gaps need a softer field."""
+NEAR = 0.3  # largest distance inside which the nearest wall nodes dominate, in extents of the moved walls
+ROOM = 0.1  # the same in distances between moved and fixed nodes: gaps need a softer field
 _SOME = 100  # approximate number of moved nodes whose distances to fixed nodes are computed
-FLAT = 1e-9
-"""Largest deviation from a line or plane, as a fraction of its extent, of a side whose nodes slide."""
+FLAT = 1e-9  # largest deviation from a line or plane, over its extent, of a side whose nodes slide
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,4 @@
-"""All nodes of a grid in one table, and its outer boundary as pieces: arrays of indices into this table.
-
-In the plane the domain is on the left of a piece. In a volume, pieces are rectangles (m, n) of nodes.
-"""
+"""All nodes of a grid in one table, and the pieces of its outer boundary as indices into this table."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,13 +16,15 @@ from meshonet.geometry.blocks.shared_nodes import node_table
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.lattice import lattice_quads
 
-_BACKWARDS = ("north", "west")
-"""Sides along which the domain is on the right in the direction of ascending indices."""
+_BACKWARDS = ("north", "west")  # sides with the domain on the right, in the order of their indices
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A part of the outer boundary: its patch, and the indices (n,) or (m, n) of its nodes."""
+    """A part of the outer boundary: its patch, and the indices (n,) or (m, n) of its nodes.
+
+    In the plane the domain is on the left of a piece.
+    """
 
     patch: Patch
     numbers: Indices

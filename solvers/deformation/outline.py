@@ -1,7 +1,4 @@
-"""Positions of wall nodes on a new outline: each keeps its fraction of arc length between matching features.
-
-These are trailing edge (or ends of a base) and leading edge of airfoils, or equally many corners.
-"""
+"""Positions of wall nodes on a new outline, at equal fractions of arc length between corners or edges."""
 
 import numpy as np
 
@@ -96,10 +93,13 @@ def _on_curve(wall: Floats, new: Curve) -> tuple[Floats, Notes]:
     ends = np.sort((way * new.corners) % new.length)
     notes: Notes = ()
     if len(corners) and len(corners) == len(ends):
-        start, shift = corners[0], _best_shift(ring[corners], new.at((way * ends) % new.length))
+        start, there = corners[0], new.at((way * ends) % new.length)
+        away = [((np.roll(there, -k, axis=0) - ring[corners]) ** 2).sum() for k in range(len(ends))]
+        shift = int(np.argmin(away))
     else:
         corners, start, shift = np.zeros(1, dtype=np.intp), 0, 0
-        ends = np.array([(way * _nearest_arc(new, ring[0])) % new.length])
+        every = np.linspace(0.0, new.length, 64 * len(new.points) + 1)
+        ends = np.array([(way * float(every[_nearest(new.at(every), ring[0])])) % new.length])
         notes = (
             "old and new outline have no corners that match: the place of the first wall node, "
             f"({ring[0, 0]:.6g}, {ring[0, 1]:.6g}), on the new one is guessed, the nearest",
@@ -110,17 +110,6 @@ def _on_curve(wall: Floats, new: Curve) -> tuple[Floats, Notes]:
     ends[1:] += new.length * np.cumsum(np.diff(ends) <= 0.0)
     arcs = np.interp(curve.knots, [*curve.knots[corners - start], curve.length], ends)
     return _closed(new.at((way * arcs) % new.length), int(start)), notes
-
-
-def _best_shift(old: Floats, new: Floats) -> int:
-    """Return the cyclic shift of the corners `new` (n, 2) that brings them nearest to `old`."""
-    away = [float(((np.roll(new, -k, axis=0) - old) ** 2).sum()) for k in range(len(old))]
-    return int(np.argmin(away))
-
-
-def _nearest_arc(curve: Curve, place: Floats) -> float:
-    arcs = np.linspace(0.0, curve.length, 64 * len(curve.points) + 1)
-    return float(arcs[_nearest(curve.at(arcs), place)])
 
 
 def on_line(wall: Floats, points: Floats) -> tuple[Floats, Notes]:

@@ -80,7 +80,8 @@ def _named(
     own = list(dict.fromkeys(patch.name for patch in table.grid.walls()))
     whole = isinstance(walls, Boundary) and not walls.around_body
     if whole or (isinstance(walls, Grid) and walls.form != "surface"):
-        theirs = {patch.name for patch in _patches(walls)}  # type: ignore[arg-type]
+        patches = walls.outer_patches() if isinstance(walls, Grid) else walls.patches  # type: ignore[union-attr]
+        theirs = {patch.name for patch in patches}
         for name in dict.fromkeys(piece.patch.name for piece in table.pieces):
             if name in theirs:
                 yield name, walls, _pieces(table, name)
@@ -90,10 +91,6 @@ def _named(
         return
     count = f"the grid has {len(own)} walls: {', '.join(own)}" if own else "no part of the boundary is a wall"
     raise InputError(count, "name one: {wall} NAME=FILE", parameter="wall")
-
-
-def _patches(new: Grid | Boundary) -> Sequence[Any]:
-    return new.outer_patches() if isinstance(new, Grid) else new.patches
 
 
 def _pieces(table: NodeTable, name: str) -> list[Piece]:

@@ -1,7 +1,4 @@
-"""Expected errors of networks' grids: relative L2 norms of what a few steps of the imitated solver change.
-
-The norm is that of `meshonet.geometry.quality.compare`.
-"""
+"""Expected errors of grids by networks: what a few steps of the imitated solver change."""
 
 import math
 from dataclasses import dataclass
@@ -18,9 +15,7 @@ from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
 
 Goal = Literal["winslow", "variational", "conformal"]  # name of the method whose grids a network imitates
 
-THRESHOLD = 0.03
-"""Largest expected error of a grid without folded cells that is accepted (docs/benchmarks/confidence.md)."""
-
+THRESHOLD = 0.03  # largest expected error of accepted grids (docs/benchmarks/confidence.md)
 MOST = 129  # nodes along a direction from which an answer is judged on fewer nodes
 CYCLES = 2  # multigrid cycles for Winslow's equations
 ITERATIONS = 16  # of the minimisation of the variational functional
@@ -45,17 +40,16 @@ def expected_error(grid: Grid, boundary: Boundary, goal: Goal) -> float:
         boundary = thinned(boundary, *counts)
         grid = boundary.grid(as_planar(refine_grid(grid.nodes, boundary)))
     try:
-        better = (_nearer_winslow if goal == "winslow" else _nearer_optimum)(grid, boundary)
+        if goal == "winslow":
+            from meshonet.solvers.elliptic.solve import solve
+
+            better = solve(boundary, tol=1e-12, max_cycles=CYCLES, initial=grid).grid
+        else:
+            better = _nearer_optimum(grid, boundary)
         error = compare(grid, better).relative_l2
     except (InputError, SolverError):
         return math.inf
     return error if math.isfinite(error) else math.inf
-
-
-def _nearer_winslow(grid: Grid, boundary: Boundary) -> Grid:
-    from meshonet.solvers.elliptic.solve import solve
-
-    return solve(boundary, tol=1e-12, max_cycles=CYCLES, initial=grid).grid
 
 
 def _nearer_optimum(grid: Grid, boundary: Boundary) -> Grid:

@@ -26,7 +26,6 @@ INSTALL_TORCH = (
     "install it: pip install 'meshonet[train]'; without a GPU install PyTorch's CPU wheel first, "
     "which is a tenth as large"
 )
-"""Remedy if torch is not installed."""
 STEPS = 3  # Picard steps of "auto" after the strip network
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Literal
 
 from meshonet.geometry.arrays import Topology
@@ -56,7 +56,8 @@ def infer_many(
         if device is None:
             solved = network.solve(some, polish, paste=answer != "raw")
         else:
-            solved = solve_on(device, network, some, polish, instead=_without_network)
+            instead = partial(_solved, goal="conformal" if topology == "o" else "variational")
+            solved = solve_on(device, network, some, polish, instead)
         pairs = zip(some, solved, strict=True)
         judged = [_judged(network, boundary, own, fallback=fallback) for boundary, own in pairs]
         solutions |= zip(rows, judged, strict=True)
@@ -109,11 +110,6 @@ def grid_of_body(boundary: Boundary, why: str) -> Solution | None:
     if count_folded(solution.grid.nodes):
         return None
     return replace(solution, notes=(f"{why}: hole-o used",))
-
-
-def _without_network(boundary: Boundary) -> Solution:
-    """Return the grid of a boundary unsuited to networks: by the conformal solver, for a quad variational."""
-    return _solved(boundary, "conformal" if boundary.topology == "o" else "variational")
 
 
 def _refuse(**parameters: object) -> None:

@@ -1,7 +1,4 @@
-"""Anderson acceleration of a batch of fixed-point iterations.
-
-Walker and Ni, SIAM J. Numer. Anal. 49 (2011) 1715-1735.
-"""
+"""Anderson acceleration of a batch (Walker and Ni, SIAM J. Numer. Anal. 49 (2011) 1715-1735)."""
 
 from collections.abc import Callable
 
@@ -59,10 +56,7 @@ class _Past:
         return few
 
     def after(self, x: Tensor, change: Tensor) -> Tensor:
-        """Return the values after `x` for which a linear model of recent steps predicts the smallest step.
-
-        `change` is the step from `x` without acceleration.
-        """
+        """Return the accelerated values after `x`; `change` is the step from `x` without acceleration."""
         if self._count:
             self._add(x, change)
         self._count, self._x, self._change = self._count + 1, x, change

@@ -1,7 +1,4 @@
-"""GMRES for a batch of linear systems; vectors are made orthogonal by classical Gram-Schmidt.
-
-Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856-869.
-"""
+"""GMRES for a batch (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856-869)."""
 
 from collections.abc import Callable
 

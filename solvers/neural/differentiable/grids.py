@@ -91,7 +91,6 @@ def variational(
 
 def _solved(equations: Equations, coarse: int | None, failed: Failed, *four: Tensor) -> Tensor:
     check_failed(failed)
-
     if coarse is not None:
         check_coarse(coarse)
 
@@ -100,11 +99,8 @@ def _solved(equations: Equations, coarse: int | None, failed: Failed, *four: Ten
         few = tuple(between(side, n) for side, n in zip(sides, counts, strict=True))
         start = interpolated(few, arc_lengths(few))
         nodes: Tensor = Converged.apply(equations, start)[0]  # type: ignore[no-untyped-call]
-        return (
-            nodes
-            if coarse is None or coarse >= max(side.shape[-1] for side in sides)
-            else refined(nodes, sides)
-        )
+        whole = coarse is None or coarse >= max(side.shape[-1] for side in sides)
+        return nodes if whole else refined(nodes, sides)
 
     return _four_sided(make, *four, decides=coarse is not None or failed == "nan", failed=failed)
 
@@ -119,10 +115,7 @@ def _four_sided(
     decides: bool = False,
     failed: Failed = "raise",
 ) -> Tensor:
-    """Return the nodes (..., ni, nj, 2); `make` takes sides (batch, 2, n) and returns (batch, 2, ni, nj).
-
-    `decides`: whether `make` takes decisions by the values of tensors, such as which members have `failed`.
-    """
+    """Return nodes (..., ni, nj, 2) by `make`, from sides (batch, 2, n); `decides`: by values of tensors."""
     check_sides(3, south=south, north=north, west=west, east=east)
     check_corners(south, north, west, east)
 

@@ -1,7 +1,4 @@
-"""The lift of `meshonet.geometry.conformal.lift` in torch, with gradients by the nodes of the wall.
-
-The NumPy function decides which nodes are corners and tips, and which branch of a root or logarithm applies.
-"""
+"""The lift of `meshonet.geometry.conformal.lift` in torch, with its decisions taken by the NumPy function."""
 
 from dataclasses import dataclass, replace
 

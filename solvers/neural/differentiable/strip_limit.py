@@ -1,7 +1,4 @@
-"""Picard's step for Winslow's equations in the strip (`meshonet.solvers.conformal.strip`), and its limit.
-
-Steps are accelerated. Where phi on the wall turns back between nodes, steps without acceleration come first.
-"""
+"""Picard's step for Winslow's equations in the strip, and the limit of accelerated steps."""
 
 from typing import Any
 
@@ -20,7 +17,7 @@ from meshonet.solvers.neural.differentiable.members import MemberError, in_parts
 SETTLED = 1e-13  # change (radians) in a step at which a member has converged
 ADJOINT = 1e-10  # the same of the system for gradients, relative to the largest one
 MOST = 600  # accelerated steps at the most; random airfoils take up to 200
-PLAIN = 8_000, 16_000, 32_000, 64_000  # plain steps before each further trial
+PLAIN = 8_000, 16_000, 32_000, 64_000  # plain steps first, where phi on the wall turns back between nodes
 KRYLOV = 300  # dimension of the space, and products, for gradients that accelerated steps do not reach
 TOGETHER = 8  # members solved at once on a CPU, so that they fit in its cache
 

@@ -3,8 +3,6 @@
 Nocedal and Wright, Numerical Optimization (2006), section 3.4; Teran et al., SCA 2005 (the convex part).
 """
 
-from typing import NamedTuple
-
 import numpy as np
 import torch
 from torch import Tensor
@@ -83,19 +81,13 @@ def newton(nodes: Tensor, smoothness: Tensor) -> Tensor:
     for _ in range(STEPS):
         if line is None:
             line = _Quadratic(nodes[moving], Functional(Weights().shape, smoothness[moving]), share)
-        state = line.stepped(nodes[moving])
-        nodes[moving] = state.nodes
-        far = ~(state.moved <= STILL)  # true where it is not a number
+        nodes[moving], moved = line.stepped(nodes[moving])
+        far = ~(moved <= STILL)  # true where it is not a number
         if not bool(far.any()):
             return nodes
-        if not bool(far.all()) or not bool(((state.moved < KEPT) & (line.share == 0)).all()):
+        if not bool(far.all()) or not bool(((moved < KEPT) & (line.share == 0)).all()):
             moving, share, line = moving[far], (line.share[far] - 1).clamp_min(0), None
     raise MemberError.of(moving.tolist(), "the variational optimum did not converge", "use layer.winslow")
-
-
-class _Step(NamedTuple):
-    nodes: Tensor
-    moved: Tensor  # (batch,) largest displacement of a node in its shortest edges
 
 
 class _Quadratic:
@@ -119,8 +111,8 @@ class _Quadratic:
                 return
             self.share = self.share + more
 
-    def stepped(self, nodes: Tensor) -> _Step:
-        """Return the nodes after a step of Newton's method from `nodes`, shortened where it has to be."""
+    def stepped(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
+        """Return `nodes` after a damped Newton step, and the largest moves (batch,) over shortest edges."""
         with torch.enable_grad():
             x = nodes.detach().requires_grad_()
             value = self._functional.value(x, self._aspect)
@@ -140,7 +132,7 @@ class _Quadratic:
             if bool(good.all()):
                 break
             size = torch.where(good, size, 0.5 * size)
-        return _Step(torch.where(good[:, None, None, None], trial, nodes), far)
+        return torch.where(good[:, None, None, None], trial, nodes), far
 
 
 def shortest_edges(nodes: Tensor) -> Tensor:
@@ -155,10 +147,7 @@ def shortest_edges(nodes: Tensor) -> Tensor:
 
 
 def _compiled(batch: Floats) -> list[tuple[Floats, float]]:
-    """Return the grids (2, ni, nj) of the compiled solver inside the boundary nodes of `batch`, and their β.
-
-    Raises MemberError, with the members for which it finds no valid grid.
-    """
+    """Return the compiled solver's grids (2, ni, nj) and their β. Raises MemberError: no valid grid."""
     optima, reasons = [], {}
     for member, nodes in enumerate(batch):
         sides = nodes[:, :, 0], nodes[:, :, -1], nodes[:, 0], nodes[:, -1]

@@ -17,9 +17,7 @@ from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.stages import reached
 
-SLOWER = "resume from the last checkpoint with a smaller learning rate"
-"""Remedy for a run with a loss or a weight that is not finite."""
-
+SLOWER = "resume from the last checkpoint with a smaller learning rate"  # where a number is not finite
 FREE = ("rate",)  # settings that may change when a run is resumed: a smaller rate is that remedy
 
 

@@ -8,8 +8,13 @@ from meshonet.geometry.errors import InputError
 
 Schedule = Literal["cosine", "step"]
 Device = Literal["auto", "cpu", "cuda"]
-MACHINE = ("device", "compiled", "log_every", "validate_every", "checkpoint_every")
-"""Settings that a resumed run may change, because they do not affect the result."""
+MACHINE = (
+    "device",
+    "compiled",
+    "log_every",
+    "validate_every",
+    "checkpoint_every",
+)  # without effect on the result
 
 
 @dataclass(frozen=True)

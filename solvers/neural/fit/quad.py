@@ -26,17 +26,14 @@ from meshonet.solvers.neural.quad.unrolled import TURN, rolled
 
 PLAN = Plan(
     epochs=24, batch=64, rate=3e-3, schedule="cosine", warm_up=200, weight_decay=1e-3, clip=1.0, device="cpu"
-)
-"""Default settings of the training: those of the shipped model."""
+)  # those of the shipped model
 
 HELD_OUT = 600  # domains, so that one folded grid is a fraction of 0.2 %
 
 AVERAGED = 0.999  # decay per step of the exponential moving average of the weights, which the file holds
 
 PARTS = {"winslow": 0.2, "variational": 1.0, "angles": 5.0, "widest": 1.0, "folds": 0.8}
-"""Weights of the parts of the loss: distances from Winslow's and variational grids; mean angle, largest angle
-and folds of the variational output.
-"""
+"""Weights in the loss: distances from both targets; mean angle, largest angle, folds of the second output."""
 
 FADE_IN = (0.1, 0.3)  # fractions of all steps between which angles and folds are faded into the loss
 NEAR, CLOSE = 0.1, 3e-4  # weight of the logarithm of the distance from Winslow's grids, and where it sets in

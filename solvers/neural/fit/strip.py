@@ -12,6 +12,7 @@ from torch import Tensor
 from meshonet.geometry.arrays import Complexes
 from meshonet.solvers.conformal.strip import across, harmonic, picard
 from meshonet.solvers.neural.fit.loop import Run, Task
+from meshonet.solvers.neural.fit.model_task import tensor
 from meshonet.solvers.neural.fit.networks import StripFNO
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
@@ -21,8 +22,7 @@ from meshonet.solvers.neural.strip.encoding import CHANNELS, SCALARS, decode, en
 
 PLAN = Plan(
     epochs=24, batch=32, rate=2e-3, schedule="cosine", warm_up=100, weight_decay=1e-4, clip=1.0, device="cpu"
-)
-"""Default settings of the training: those of the shipped model."""
+)  # those of the shipped model
 
 HELD_OUT = 300  # of the 6,000 shapes: 30 of them lie beyond the 90th percentile
 
@@ -53,7 +53,7 @@ class StripTask(Task):
         self.held_out, self.basis, self.scale = held_out, targets.basis, targets.scale
         self.net = StripFNO(CHANNELS, SCALARS, 2 * sizes.basis, sizes.width, sizes.modes, sizes.layers)
         self.count, self.device = len(targets.wanted), device
-        self.data = [_tensor(a).to(device) for a in (targets.channels, targets.scalars, targets.wanted)]
+        self.data = [tensor(a).to(device) for a in (targets.channels, targets.scalars, targets.wanted)]
         self.importance = 1.0 / ((self.data[2] ** 2).sum(1).mean(1) + 0.03) ** 0.75
         self.to(device)
 
@@ -77,7 +77,7 @@ class StripTask(Task):
         """Return the network's R for every held-out strip."""
         channels, scalars, size = encode(self.held_out.wall, self.held_out.far)
         with torch.no_grad():
-            out = self.net(_tensor(channels).to(self.device), _tensor(scalars).to(self.device)).cpu()
+            out = self.net(tensor(channels).to(self.device), tensor(scalars).to(self.device)).cpu()
         return list(decode(out.numpy().astype(np.float64), self.basis, self.scale, size))
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
@@ -131,7 +131,3 @@ def run(
 def distance(answer: Complexes, goal: Complexes) -> float:
     """Return the root mean square over the strip of |answer - goal|, in radians, from modes (.., LEVELS)."""
     return float(np.sqrt((np.abs(answer - goal) ** 2).sum(axis=0).mean()))
-
-
-def _tensor(array: np.ndarray[Any, Any]) -> Tensor:
-    return torch.tensor(array, dtype=torch.float32)

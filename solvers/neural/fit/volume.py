@@ -3,6 +3,7 @@
 Kendall, Gal & Cipolla, arXiv 1705.07115 (weights); Yu et al., arXiv 2001.06782 (projected gradients).
 """
 
+import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from itertools import combinations
@@ -84,10 +85,8 @@ class VolumeTask(Task):
             super().differentiate(parts, team)
             return
         weights = [value for key, value in self.named_parameters() if key != "spread"]
-        first, second = (
-            torch.autograd.grad(part, weights, retain_graph=True) for part in (parts[0], parts[1])
-        )
-        summed = project(_flat(first), _flat(second))
+        each = (torch.autograd.grad(part, weights, retain_graph=True) for part in parts[:2])
+        summed = project(*(torch.cat([gradient.reshape(-1) for gradient in own]) for own in each))
         (self.spread.grad,) = torch.autograd.grad(parts.sum(), [self.spread])
         self.spread.grad = team.mean(self.spread.grad)
         summed = team.mean(summed)
@@ -162,10 +161,6 @@ def _cofactor(metric: Tensor, i: int, j: int) -> Tensor:
     return minor if (i + j) % 2 == 0 else -minor
 
 
-def _flat(gradients: Sequence[Tensor]) -> Tensor:
-    return torch.cat([gradient.reshape(-1) for gradient in gradients])
-
-
 def _rim(faces: SixFaces) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
     """Return the network's inputs (p, 3) at all nodes of the faces, and the nodes (p, 3)."""
     places = []
@@ -193,14 +188,5 @@ def run(
     if plan.points is None:
         raise InputError("{points} all of a volume", "give a number")
     task = VolumeTask(made, data, plan.points, plan.seed, team.device)
-    return Run(task, {**plan.recipe, "grids": len(data)}, {**asdict(made), "data": _fingerprint(data)})
-
-
-def _fingerprint(volumes: Sequence[SixFaces]) -> str:
-    import hashlib
-
-    digest = hashlib.sha256()
-    for faces in volumes:
-        for face in faces.faces:
-            digest.update(np.ascontiguousarray(face).tobytes())
-    return digest.hexdigest()[:16]
+    shapes = hashlib.sha256(b"".join(face.tobytes() for faces in data for face in faces.faces)).hexdigest()
+    return Run(task, {**plan.recipe, "grids": len(data)}, {**asdict(made), "data": shapes[:16]})

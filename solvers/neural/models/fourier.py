@@ -1,7 +1,4 @@
-"""Fourier neural operators, along xi or on the computational square: h <- gelu(K h + W h + b).
-
-Li et al., Fourier Neural Operator for Parametric Partial Differential Equations, arXiv 2010.08895.
-"""
+"""Fourier neural operators (Li et al., arXiv 2010.08895): h <- gelu(K h + W h + b)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

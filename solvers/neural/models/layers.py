@@ -1,7 +1,4 @@
-"""Layers for NumPy and torch; `xp` is either module.
-
-The first layer of a network is ``name/0/weight`` (in, out) and ``name/0/bias`` (out,).
-"""
+"""Layers for NumPy and torch, named ``name/0/weight`` (in, out) and ``name/0/bias`` (out,) from 0 up."""
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
@@ -29,18 +26,13 @@ def dense(xp: Any, w: Weights, name: str, h: Any, *, last: bool = False) -> Any:
     """Return h (.., in) after the layers called `name`; tanh follows each, the last only if `last`."""
     k = 0
     while f"{name}/{k}/weight" in w:
-        h = _affine(xp, h, w[f"{name}/{k}/weight"], w[f"{name}/{k}/bias"])
+        weight, bias = w[f"{name}/{k}/weight"], w[f"{name}/{k}/bias"]
+        plain = xp is np or weight.ndim > 2  # torch has one operation, which saves a pass over memory
+        h = h @ weight + bias if plain else xp.nn.functional.linear(h, weight.T, bias)
         k += 1
         if last or f"{name}/{k}/weight" in w:
             h = xp.tanh(h)
     return h
-
-
-def _affine(xp: Any, h: Any, weight: Any, bias: Any) -> Any:
-    """Return h W + b, in torch as one operation, which saves a pass over memory."""
-    if xp is np or weight.ndim > 2:
-        return h @ weight + bias
-    return xp.nn.functional.linear(h, weight.T, bias)
 
 
 def products(trunk: Any, branches: Any) -> Any:

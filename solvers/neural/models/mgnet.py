@@ -1,7 +1,4 @@
-"""MGNet: physics-informed networks, one for each geometry, at any resolution.
-
-Chen et al., MGNet, Engineering with Computers 38 (2022) 4409; arXiv 2210.09546 (auxiliary lines).
-"""
+"""MGNet (Chen et al., Engineering with Computers 38 (2022) 4409) and MeshNet: one network per geometry."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -39,7 +36,7 @@ class MGNet(Architecture):
     rim: float = 1000.0  # weight of the boundary in the loss
     data: float = 1000.0  # weight of known nodes in the loss, where there are any
     finite: float = 0.0  # step of central differences; 0 for exact derivatives
-    lines: int = 0  # auxiliary lines of either direction whose nodes are known from the solved grids
+    lines: int = 0  # auxiliary lines per direction with nodes of the solved grids (arXiv 2210.09546)
     coarse: int = 0  # nodes a direction of a coarse grid whose nodes are known from the solved grids
     periodic: bool = False  # in xi (an O grid)
 

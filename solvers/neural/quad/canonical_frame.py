@@ -106,15 +106,13 @@ def _framed(sides: tuple[Complexes, ...], element: Element) -> tuple[tuple[Compl
     framed = tuple((edge - origin) / unit for edge in (south, north, west, east))
     framed = tuple(edge.conj() for edge in framed) if _mirrors(element) else framed
     step = _step(np.concatenate(framed))
-    return tuple(_rounded(edge, step) for edge in framed), complex(origin), unit
+    # no -0
+    framed = tuple(step * (np.round(z.real / step) + 1j * np.round(z.imag / step)) + 0.0 for z in framed)
+    return framed, complex(origin), unit
 
 
 def _step(edges: Complexes) -> float:
     return STEP * 2.0 ** math.ceil(math.log2(modulus(edges).max()))
-
-
-def _rounded(edge: Complexes, step: float) -> Complexes:
-    return np.asarray(step * (np.round(edge.real / step) + 1j * np.round(edge.imag / step)) + 0.0)  # no -0
 
 
 def _mirrors(element: Element) -> bool:

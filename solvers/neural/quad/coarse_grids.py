@@ -1,7 +1,4 @@
-"""Grids of four-sided domains by the quad network, in batches and at any resolution.
-
-The input is a transfinite grid of 33 nodes on each edge, in a frame without position, rotation and size.
-"""
+"""Grids of four-sided domains by the quad network, from transfinite grids of 33 nodes on each edge."""
 
 from collections.abc import Callable, Sequence
 from functools import partial

@@ -1,7 +1,4 @@
-"""The quad network's forward pass: a U-Net that is equivariant under the relabellings of a quad.
-
-`meshonet.solvers.neural.fit.networks` is the same in torch. Ronneberger et al., U-Net, MICCAI 2015.
-"""
+"""The quad network's forward pass: an equivariant U-Net (Ronneberger et al., MICCAI 2015)."""
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache

@@ -1,7 +1,4 @@
-"""O grids around bodies by the quad network, applied to the unrolled, periodic strip.
-
-The input is a strip of 65 x 33 nodes with equal steps from wall to wall, scaled to unit size.
-"""
+"""O grids by the quad network, from strips of 65 x 33 nodes with equal steps from wall to far field."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -53,9 +50,7 @@ def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
     strip = answered(base, (base * factor, 1.0 / factor), network, None, xp, around=True)
     if head == WINSLOW:
         strip = nearer(strip, (strip * factor, 1.0 / factor), xp, around=True)
-    return xp.concatenate(
-        [strip[:, :-1], strip[:, :1]], 1
-    )  # exp(-i strip) closes: a whole turn on is the same
+    return xp.concatenate([strip[:, :-1], strip[:, :1]], 1)  # exp(-i strip) is the same a whole turn on
 
 
 def _strips(boundaries: Sequence[Boundary]) -> tuple[Complexes, Complexes, Complexes, Bools]:

@@ -1,7 +1,4 @@
-"""Approximate Winslow grids for a batch: the harmonic grid, then a few Picard steps.
-
-Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 490-501.
-"""
+"""Grids near Winslow's (J. Comput. Phys. 1 (1966) 149) by Picard steps; Swarztrauber, SIAM Rev. 19 (1977)."""
 
 from functools import lru_cache
 from typing import Any
@@ -22,9 +19,8 @@ GROWTH = 4.0  # a step whose square is so many times the last one's, in the mean
 
 TINY = 1e-30  # keeps quotients finite where nothing moves
 
-THIRD, FOURTH = np.array(
-    [[-0.5, 1.0, 0.0, -1.0, 0.5], [1.0, -4.0, 6.0, -4.0, 1.0]]
-)  # differences of five values
+# differences of five values
+THIRD, FOURTH = np.array([[-0.5, 1.0, 0.0, -1.0, 0.5], [1.0, -4.0, 6.0, -4.0, 1.0]])
 
 
 def approach(
@@ -119,10 +115,9 @@ def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tup
 
 @lru_cache(maxsize=16)
 def _differences(n: int, share: float, around: bool) -> tuple[Floats, Floats]:
-    """Return the matrices (., n) of first and second differences, per step, at all but the ends of n nodes.
+    """Return matrices (., n) of first and second differences inside, a `share` of whose error is corrected.
 
-    A `share` of their leading error is corrected with five-point stencils. `around`: periodic values, two of
-    which are repeated at either end; differences are those at all others.
+    `around`: of periodic values, two of which are repeated at either end.
     """
     inner = np.arange(2, n - 2) if around else np.arange(1, n - 1)
     rows, near = np.arange(len(inner))[:, None], np.clip(inner - 2, 0, n - 5)[:, None] + np.arange(5)

@@ -1,7 +1,4 @@
-"""Convolutions that are equivariant under the eight relabellings of a quad, the dihedral group D4.
-
-Cohen & Welling, Group Equivariant Convolutional Networks, ICML 2016.
-"""
+"""Convolutions equivariant under the dihedral group D4 (Cohen & Welling, ICML 2016)."""
 
 from typing import Any, TypeAlias
 
@@ -33,7 +30,6 @@ def _number(element: Integers) -> int:
 INVERSE: Integers = np.array([_number(g.T) for g in ELEMENTS])  # (8,) number of the inverse of each element
 
 PRODUCT: Integers = np.array([[_number((a[:, :, None] * b).sum(axis=1)) for b in ELEMENTS] for a in ELEMENTS])
-"""(8, 8) number of the product of each pair of elements."""
 
 
 def _taps(size: int) -> Integers:

@@ -1,7 +1,4 @@
-"""O grids as periodic strips Z = i log(z - centre); 2 pi along the real axis is once around the body.
-
-`xp` is the module of the arrays, numpy or torch.
-"""
+"""O grids as strips Z = i log(z - centre) of period 2 pi, by `xp`, numpy or torch."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,4 @@
-"""Inputs of the strip network and scaling of its output; arrays are those of `xp`, numpy or torch.
-
-The output R is to leading order quadratic in the deviation of the walls from straight lines, the size.
-"""
+"""Inputs of the strip network and scaling of its output; `xp` is the module of the arrays."""
 
 from typing import Any
 
@@ -28,7 +25,7 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
       both divided by the size;
     - scalars (batch, SCALARS): the logarithm of the size, the height of the strip and its shear, each shifted
       so that its magnitude is about one;
-    - size (batch,): the root mean square deviation of the walls from straight lines.
+    - size (batch,): the root mean square deviation of the walls from straight lines; R grows with its square.
     """
     mean = (far - wall)[:, 0]
     a, b = (xp.concatenate([xp.zeros_like(side[:, :1]), side[:, 1:]], 1) for side in (wall, far))

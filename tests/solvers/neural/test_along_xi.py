@@ -8,11 +8,10 @@ from scipy.integrate import solve_ivp
 
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.fit.operators import OperatorTask
+from meshonet.solvers.neural.models.along_xi import WNO, respond, wavelets
 from meshonet.solvers.neural.models.architecture import Frame
 from meshonet.solvers.neural.models.architectures import architecture
 from meshonet.solvers.neural.models.fourier import mix_modes
-from meshonet.solvers.neural.models.laplace import respond
-from meshonet.solvers.neural.models.wavelet import WNO, wavelets
 
 
 @pytest.mark.parametrize(("n", "levels"), [(16, 1), (112, 3), (16, 4)])
