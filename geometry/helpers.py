@@ -85,14 +85,11 @@ class Helpers:
                     self._change.notify_all()
 
     def _next(self, own: _Jobs | None) -> tuple[_Jobs, int] | None:
-        """Return the next job, of `own` or opened later, None at the end; earlier ones would take longer.
-
-        What was opened last is begun first: other jobs wait for it.
-        """
+        """Return the next job, of `own` or opened later, None at the end; earlier ones would take longer."""
         with self._change:
             while not (self._over if own is None else own.left == 0):
                 first = 0 if own is None else self._open.index(own)
-                for jobs in reversed(self._open[first:]):
+                for jobs in self._open[first:]:
                     if jobs.begun < len(jobs.jobs):
                         jobs.begun += 1
                         return jobs, jobs.begun - 1

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.elementary import exp, log, power, product
+from meshonet.geometry.elementary import exp, power, product
 from meshonet.geometry.errors import InputError
 
 LARGEST = 10.0  # largest growth ratio that is accepted
@@ -83,27 +83,6 @@ def growth_rate(place: Floats, first: float, length: float, rate: float) -> floa
         if abs(change) < 1e-14:
             break
     return rate
-
-
-def growth_rates(first: float, lengths: Floats, cells: int) -> Floats:
-    """Return the rates g (n,) such that `cells` cells of the sizes first · exp(g · k) fill `lengths` (n,).
-
-    Rates of cells that become smaller are negative. The logarithm of the sum of the sizes is convex in g:
-    Newton's method overshoots once at the most.
-
-    >>> exp(growth_rates(1.0, np.array([7.0, 3.0, 1.75]), 3)).round(9).tolist()
-    [2.0, 1.0, 0.5]
-    """
-    place, wanted = np.arange(float(cells)), log(lengths / first)
-    rates = np.zeros(len(lengths))
-    for _ in range(100):
-        sizes = exp(rates[:, None] * place)
-        total = sizes.sum(axis=1)
-        change = (log(total) - wanted) * total / product(sizes, place)
-        rates -= change
-        if np.abs(change).max() < 1e-14:
-            break
-    return rates
 
 
 def _sum(log_ratio: float, cells: int) -> float:

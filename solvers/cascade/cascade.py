@@ -110,7 +110,7 @@ class Cascade:
         beside = [_moved(self.blade, each) for each in shift]
         farthest = max(float(np.abs(loop.curve.points).max()) for loop in (self.blade, *beside))
         try:
-            check_domain(Domain((far_loop(np.zeros(2), 4.0 * farthest), self.blade, beside[0])))
+            check_domain(Domain((far_loop(np.zeros(2), 4.0 * farthest), self.blade, *beside)))
         except InputError as error:
             problem = f"blades {abs(self.left):g} apart touch or cross"
             raise InputError(problem, "use a larger pitch", parameter="pitch") from error

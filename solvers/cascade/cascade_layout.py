@@ -148,20 +148,14 @@ def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
 
 def row_steps(first: float, length: float, largest: float) -> Floats:
     """Return the nodes on a line from 0 to `length`; cells grow from `first` to about `largest`."""
-    steps = np.cumsum([0.0, *row_cells(first, length, largest)])
-    steps *= length / steps[-1]
-    steps[-1] = length
-    return steps
-
-
-def row_cells(first: float, length: float, largest: float) -> list[float]:
-    """Return sizes of cells that grow from `first` to about `largest`, over about `length`."""
     cells = [min(first * ROW_GROWTH**0.5, length)]
     total = cells[0]
     while total < length - 0.5 * cells[-1]:
         cells.append(max(min(cells[-1] * ROW_GROWTH, largest), cells[0]))
         total += cells[-1]
-    return cells
+    steps = np.concatenate([[0.0], np.cumsum(cells)]) * (length / total)
+    steps[-1] = length
+    return np.asarray(steps)
 
 
 def counts_of(
@@ -202,6 +196,6 @@ def attached_cells(
     for number, length, _ in straight_rows(cascade):
         length = max(length, (longest or {}).get(number, 0.0))
         if length > 0.0:
-            cells = row_cells(abs(cascade.left) / along[number], length, metric.largest)
-            total += along[number] * len(cells)
+            steps = row_steps(abs(cascade.left) / along[number], length, metric.largest)
+            total += along[number] * (len(steps) - 1)
     return int(total)

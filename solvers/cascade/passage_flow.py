@@ -26,13 +26,12 @@ from meshonet.geometry.arrays import Complexes, Floats, Indices
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.elementary import arccos, arctan2, cosh, log, modulus, sinh, times
 from meshonet.geometry.linear import solve
-from meshonet.geometry.threads import in_threads, run_in_threads
+from meshonet.geometry.threads import in_threads, run_in_threads, thread_count
 
 _GAUSS = (-(3.0**-0.5), 3.0**-0.5)  # places in a side from -1 to 1, of weight 1
 _TINY = 1e-12  # in place of a distance of 0, where the integrand is 0 in the limit
 _LONGEST = 0.25  # step of the potential, of period π, between the points of Cauchy's integral
 _LEAST = 1e-9  # of the slit: by how much the potential rises from point to point
-_PARTS = 4  # of the places at which the function in the strip is computed, for threads
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +103,7 @@ class PassageFlow:
             kernel = weight / sinh(0.5 * (strip - some[:, None]))
             return np.asarray(times(kernel, away).sum(axis=1) / kernel.sum(axis=1))
 
-        return np.concatenate(in_threads(integrals, np.array_split(places, _PARTS)))
+        return np.concatenate(in_threads(integrals, np.array_split(places, thread_count())))
 
 
 def _range(start: int, stop: int, count: int) -> Indices:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Indices, norms, wrapped
+from meshonet.geometry.arrays import Floats, Indices, norms
 from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import least_squares
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.rows.gap_fill import GapFill, filled_outline
 from meshonet.solvers.rows.harmonic import HarmonicMoves
-from meshonet.solvers.rows.span_lines import SpanLines, key_heights
+from meshonet.solvers.rows.span_lines import key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, line_parts
 from meshonet.solvers.rows.zones import Zone
 
@@ -38,13 +39,16 @@ class GapBlocks:
     space: Floats  # (levels, n, 3) x, y, z
 
 
-def gap_ends(row: Row, around: SpanLines, ways: Floats, zone: Zone, first: float, growth: float) -> GapEnds:
+def gap_ends(
+    row: Row, beside: Callable[[float], Floats], lead: int, zone: Zone, first: float, growth: float
+) -> GapEnds:
     """Return the nodes inside the outline of the blade at both ends of a gap.
 
     Parameters
     ----------
-    around : places u of the k nodes of the blade, clockwise, as functions of the height.
-    ways : (k, 2) unit vectors in (m', theta) from these nodes to those next to them, away from the blade.
+    beside : function of the height that returns (k, 2, 3) s, theta, h of the blade's nodes, clockwise, and of
+        those next to them.
+    lead : index of the node at the leading edge.
     zone : the gap.
     first, growth : height of the cells inside the outline, and largest ratio of neighbours.
 
@@ -53,15 +57,15 @@ def gap_ends(row: Row, around: SpanLines, ways: Floats, zone: Zone, first: float
     tip = zone.high == 1.0  # the blade is below this gap, otherwise above it
     heights = (zone.low, zone.high) if tip else (zone.high, zone.low)
     maps = [row.channel.meridional(height) for height in heights]
-    places = [np.mod(around.at(np.array([[height]])), 1.0) for height in heights]
-    walls = [row.surface.at(u, np.full_like(u, height))[0] for u, height in zip(places, heights, strict=True)]
-    outlines = [
-        np.stack([to.forward(wall[:, 0]), wall[:, 1]], axis=1) for to, wall in zip(maps, walls, strict=True)
-    ]
-    radii = row.channel.at(walls[0][:, 0], np.full(len(ways), heights[0]))[:, 1]
-    outside = outlines[0] + (first / radii)[:, None] * ways
-    lead = int(np.abs(wrapped(places[0][0])).argmin())
-    fill = filled_outline(outlines[0], outside, lead, first / float(radii.mean()), growth)
+    outlines: list[Floats] = []
+    outside: list[Floats] = []
+    for to, height in zip(maps, heights, strict=True):
+        nodes = beside(height)
+        if height == zone.low:
+            radius = float(norms(row.channel.in_space(nodes[:, 0])[:, 1:]).mean())
+        for k, out in enumerate((outlines, outside)):
+            out.append(np.stack([to.forward(nodes[:, k, 0]), nodes[:, k, 1]], axis=1))
+    fill = filled_outline(outlines[0], outside[0], lead, first / radius, growth)
     planes = [fill.layout.mesh.nodes, _carried(fill, outlines[1])]
     ends = [
         np.stack([to.back(nodes[:, 0]), nodes[:, 1]], axis=1) for to, nodes in zip(maps, planes, strict=True)

@@ -22,13 +22,14 @@ from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.geometry.spacing.growth import cells_for_growth, growth_rates
+from meshonet.geometry.spacing.growth import cells_for_growth
 from meshonet.kernels._native import line_neighbours
 from meshonet.solvers.energy.quads import optimise
 
 _ITERATIONS = 200
 _FEWEST_ROWS = 4
 _POWER = 6.0  # how fast the core's lines gather towards its ends
+_BISECTIONS = 50
 _ROUND = 0.4  # of the width of an edge behind it, at which it ends
 _FEWER = 0.8
 FLAT, SMOOTH, MARGIN = 0.95, 1e-3, 0.93
@@ -178,12 +179,14 @@ def _first_guess(
 
 
 def _grown(lengths: Floats, first: float, cells: int) -> Floats:
-    """Return distances (n, cells + 1) from 0 to `lengths` (n,) of cells that grow from `first` by one ratio.
-
-    Where so many of the first would be too long, they are equal.
-    """
-    rates = np.maximum(growth_rates(first, lengths, cells), 0.0)
-    sizes = exp(rates[:, None] * np.arange(float(cells)))
+    """Return distances (n, cells + 1) of cells that grow from `first`, or are equal, over `lengths` (n,)."""
+    k = np.arange(float(cells))
+    low, high = np.zeros(len(lengths)), np.full(len(lengths), 3.0)
+    for _ in range(_BISECTIONS):
+        slope = 0.5 * (low + high)
+        less = first * exp(slope[:, None] * k).sum(axis=1) < lengths
+        low, high = np.where(less, slope, low), np.where(less, high, slope)
+    sizes = exp(low[:, None] * k)
     sizes *= (lengths / sizes.sum(axis=1))[:, None]
     return np.concatenate([np.zeros((len(lengths), 1)), np.cumsum(sizes, axis=1)], axis=1)
 

@@ -7,7 +7,7 @@ first.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -17,13 +17,13 @@ from meshonet.geometry.arrays import Bools, Floats, Indices, norms, wrapped
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.threads import in_threads, run_in_threads
+from meshonet.geometry.threads import run_in_threads
 from meshonet.solvers.energy.quad_problem import Problem
 from meshonet.solvers.energy.quads import minimise, problem_of
 from meshonet.solvers.layers.layer_settings import layer_lines
 from meshonet.solvers.rows.columns import layer_columns, straight_near
 from meshonet.solvers.rows.harmonic import HarmonicMoves
-from meshonet.solvers.rows.middle_section import LOWER, TOLERANCE, UPPER, folded_section
+from meshonet.solvers.rows.middle_section import LOWER, TOLERANCE, UPPER, folded_section, middle_section
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.span_places import SpanPlaces
 
@@ -76,12 +76,6 @@ class LayerColumns:
         lines = straight_near(lines, plane.from_corners(walls))
         return cls(walls, lines, plane.cascade.ring.front.at(front))
 
-    @property
-    def ways(self) -> Floats:
-        """Unit vectors (k, 2) along the columns at the blade."""
-        step = self.lines[:, 1] - self.lines[:, 0]
-        return np.asarray(step / norms(step)[:, None])
-
 
 @dataclass(frozen=True, eq=False)
 class KeySection:
@@ -94,42 +88,29 @@ class KeySection:
 
 @dataclass(frozen=True, eq=False)
 class Beginning:
-    """The data from which all key sections are made."""
+    """The middle section, and the data for all others."""
 
     plan: SectionPlan  # data that all sections share
-    planes: Sequence[SectionPlane]  # the sections as plane cascades
-    plane_at: Callable[[float], SectionPlane]  # the section at another height
-    whole: KeySection  # the middle section before its nodes around the blade are at the plan's places
-    columns: Sequence[LayerColumns]  # columns of the layers of each section
-    problems: tuple[Problem, Problem]  # minimisations of the sections towards hub and casing
-    unmoved: SpanPlaces  # places without a limit of growth
-
-    @property
-    def places(self) -> Floats:
-        """Places u (sections, k) of the first nodes of the columns of layers."""
-        every = zip(self.planes, self.columns, strict=True)
-        return np.stack([plane.places_of(columns.walls) for plane, columns in every])
-
-    def without_limit(self) -> Beginning:
-        """Return the beginning with the places `unmoved`."""
-        plan = replace(self.plan, places=self.unmoved)
-        return replace(self, plan=plan, columns=_columns(plan, self.planes))
+    columns: Sequence[LayerColumns | None]  # columns of the layers of each section; None for the middle one
+    middle: KeySection  # the middle section
+    following: tuple[NextSections, NextSections]  # makers of the sections towards hub and casing
 
 
-def _columns(plan: SectionPlan, planes: Sequence[SectionPlane]) -> list[LayerColumns]:
-    return in_threads(lambda plane: LayerColumns.of(plane, plan.places.at(plane.height)), planes)
-
-
-def beginning(
-    planes: Sequence[SectionPlane], plane_at: Callable[[float], SectionPlane], whole: Layout,
+def planned(
+    planes: Sequence[SectionPlane], coarse: Layout | None, cells: int, longest: Mapping[int, float],
     wake: tuple[float, float], gaps: tuple[bool, bool],
 ) -> Beginning:  # fmt: skip
-    """Return the beginning of a row from its `middle_section`, `whole`.
+    """Return the plan of all sections, and the middle section with about `cells` cells.
 
-    `planes` and `plane_at` are those of `Beginning`, `wake` is that of `SectionPlan`. `gaps` tells whether
-    the blade ends in a gap at the hub, and whether it does at the casing.
+    Parameters
+    ----------
+    coarse : `coarse_section` of the middle section, if known.
+    longest : largest lengths of the rows to inlet and outlet, by loop.
+    wake : as in `SectionPlan`.
+    gaps : whether the blade ends in a gap at the hub, and at the casing.
     """
     plane = planes[len(planes) // 2]
+    whole = middle_section(planes, cells, longest, coarse)
     columns, growth = layer_columns(whole), plane.cascade.layers.growth
     at = plane.places_of(whole.mesh.places.arc[columns[:, 0]])
     pairs = _pairs(whole, columns)
@@ -140,19 +121,33 @@ def beginning(
     held = np.zeros(len(m), dtype=bool)
     for own in (columns, *ends):
         held[own] = True
-    problem = partial(_problem, plane, whole.mesh, held)
-    evened, moving = partial(places.evened, planes, growth, pairs), partial(HarmonicMoves, whole.mesh, held)
-    even, below, above, moves = run_in_threads([evened, problem, problem, moving])
-    plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, held, moves, even, wake)
+    even, moves = run_in_threads(
+        [partial(places.evened, planes, growth, pairs), partial(HarmonicMoves, whole.mesh, held)]
+    )
+    plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, held, moves, places, wake)
     section = KeySection(plane, whole, at)
-    return Beginning(plan, planes, plane_at, section, _columns(plan, planes), (below, above), places)
+    try:
+        return _begun(replace(plan, places=even), planes, section)
+    except NoValidGridError:  # layers are folded where nodes had to move far
+        return _begun(plan, planes, section)
+
+
+def _begun(plan: SectionPlan, planes: Sequence[SectionPlane], section: KeySection) -> Beginning:
+    """Return the beginning for a plan; it has the middle section's nodes at the plan's places."""
+    others = [plane for plane in planes if plane is not section.plane]
+    columns = [partial(LayerColumns.of, plane, plan.places.at(plane.height)) for plane in others]
+    following = [partial(NextSections, plan, section)] * 2
+    placed, below, above, *made = run_in_threads([partial(_placed, plan, section), *following, *columns])
+    half = len(made) // 2
+    return Beginning(plan, (*made[:half], None, *made[half:]), placed, (below, above))
 
 
 class NextSections:
-    """Makes sections one after another, each from the nodes of the one before, all by the same `problem`."""
+    """Makes sections one after another with the same blocks, each from the one before."""
 
-    def __init__(self, plan: SectionPlan, problem: Problem) -> None:
-        self.plan, self._problem = plan, problem
+    def __init__(self, plan: SectionPlan, section: KeySection) -> None:
+        self.plan = plan
+        self._problem = _problem(plan, section.plane, section.layout.mesh)
 
     def of(self, before: KeySection, plane: SectionPlane, columns: LayerColumns | None = None) -> KeySection:
         """Return the section in `plane` from the section `before`; `columns` are computed unless given.
@@ -187,27 +182,21 @@ def _pairs(layout: Layout, columns: Indices) -> Indices:
     return np.stack([number[layout.blocks[UPPER][:, 0]], number[layout.blocks[LOWER][::-1, 0]]], axis=1)
 
 
-def placed(begun: Beginning) -> KeySection:
+def _placed(plan: SectionPlan, section: KeySection) -> KeySection:
     """Return the middle section with the nodes around the blade at the plan's places, in steps if need be.
 
-    Nodes of inlet and outlet slide along these. Raises NoValidGridError: cells stay folded.
+    Nodes at inlet and outlet slide along these.
     """
-    plan, section = begun.plan, begun.whole
-    plane, half = section.plane, len(begun.planes) // 2
-    move = wrapped(plan.places.at(plane.height) - section.places)
-    held = plan.held.copy()
-    for own in plan.ends:
-        held[own] = False
-    held[plan.columns] = True
+    plane, wanted = section.plane, plan.places.at(section.plane.height)
+    move = wrapped(wanted - section.places)
     for steps in (1, 2, 4):
         try:
             made = section
             for k in range(1, steps + 1):
-                part = np.mod(section.places + k / steps * move, 1.0)
-                columns = begun.columns[half] if k == steps else LayerColumns.of(plane, part)
-                layout, at = _carried(plan, made, plane, columns)
-                problem = _problem(plane, layout.mesh, held)
-                made = KeySection(plane, _optimum(plan, plane, layout, problem, FINE), at)
+                places = wanted if k == steps else np.mod(section.places + k / steps * move, 1.0)
+                layout, own = _carried(plan, made, plane, LayerColumns.of(plane, places))
+                problem = _problem(plan, plane, layout.mesh, ends_slide=True)
+                made = KeySection(plane, _optimum(plan, plane, layout, problem, FINE), own)
             return made
         except NoValidGridError:
             if steps == 4:
@@ -241,7 +230,12 @@ def _carried(
     return replace(before.layout, mesh=mesh.with_nodes(nodes)), plane.places_of(columns.walls)
 
 
-def _problem(plane: SectionPlane, mesh: QuadMesh, held: Bools) -> Problem:
+def _problem(plan: SectionPlan, plane: SectionPlane, mesh: QuadMesh, *, ends_slide: bool = False) -> Problem:
+    held = plan.held.copy()
+    if ends_slide:
+        for own in plan.ends:
+            held[own] = False
+        held[plan.columns] = True
     problem = problem_of(mesh, held)
     if problem is None:
         raise folded_section(plane, mesh)

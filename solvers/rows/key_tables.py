@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from itertools import combinations
-from typing import TypeVar
 
 import numpy as np
 
@@ -17,28 +16,18 @@ from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.rows.frame import UNITS
 from meshonet.geometry.rows.row import Row
-from meshonet.geometry.threads import run_in_threads, thread_count
+from meshonet.geometry.threads import run_in_threads
 from meshonet.solvers.cascade.cascade import SHORTEST
-from meshonet.solvers.cascade.passage import NEAR
-from meshonet.solvers.energy.quad_problem import Problem
+from meshonet.solvers.cascade.passage import INLET, NEAR, OUTLET
 from meshonet.solvers.rows.behind import even_behind
-from meshonet.solvers.rows.key_sections import (
-    Beginning,
-    KeySection,
-    LayerColumns,
-    NextSections,
-    SectionPlan,
-    beginning,
-    placed,
-)
-from meshonet.solvers.rows.middle_section import Shared, coarse_section, middle_section
+from meshonet.solvers.rows.key_sections import KeySection, LayerColumns, NextSections, SectionPlan, planned
+from meshonet.solvers.rows.middle_section import coarse_section
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.span_lines import key_heights
 
-Made = TypeVar("Made")
-
 KEYS = 9
 """Number of sections that are computed as plane cascades."""
+_PART = 0.6  # of the least room before or behind the blade that is left to blocks
 _HALVINGS = 3
 _SAME = 0.98  # ratio of thicknesses of layers from which on they are the same
 _SOME_MORE = 1.05  # than is missing, since m' is a length over the radius, which changes
@@ -48,59 +37,43 @@ LEAN = 12.0
 
 @dataclass(frozen=True, eq=False)
 class KeyTables:
-    """Key sections at `key_heights`, from hub to casing, and the beginning from which they are made."""
+    """Key sections at `key_heights`, from hub to casing, and their plan."""
 
-    begun: Beginning
+    plan: SectionPlan
     sections: tuple[KeySection, ...]
 
-    @property
-    def plan(self) -> SectionPlan:
-        """Data that all sections share."""
-        return self.begun.plan
 
-
-def begun_sections(row: Row, first: float, growth: float, cells: int) -> Beginning:
-    """Return the beginning of the key sections of a row, with about `cells` cells each.
+def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
+    """Return the key sections of a row, with about `cells` cells each.
 
     `first` and `growth` are first-cell height and growth ratio of the layers. Raises InputError: no room for
     layers, inlet or outlet. Raises NoValidGridError: cells are folded.
     """
+    planes, coarse = _planes(row, first, growth)
+    gaps = row.hub_gap > 0.0, row.tip_gap > 0.0
+    begun = planned(planes, coarse, cells, _longest(planes), _wake(row, planes), gaps)
+    half = KEYS // 2
+
+    def chain(following: NextSections, others: Sequence[int]) -> list[KeySection]:
+        sections = [begun.middle]
+        for k in others:
+            section = _reached(following, sections[-1], planes[k], plane_at, _HALVINGS, begun.columns[k])
+            sections.append(section)
+        return sections[1:]
 
     def plane_at(height: float) -> SectionPlane:
         return SectionPlane.of(row, height, first, growth)
 
-    planes, whole = _planes(row, first, growth, cells)
-    gaps = row.hub_gap > 0.0, row.tip_gap > 0.0
-    return beginning(planes, plane_at, whole, _wake(row, planes), gaps)
-
-
-def key_tables(begun: Beginning) -> KeyTables:
-    """Return the key sections of a row. Raises NoValidGridError: cells are folded."""
-    try:
-        middle = placed(begun)
-    except NoValidGridError:  # layers are folded where nodes had to move far
-        begun = begun.without_limit()
-        middle = placed(begun)
-    half = KEYS // 2
-
-    def chain(problem: Problem, others: Sequence[int]) -> list[KeySection]:
-        following, sections = NextSections(begun.plan, problem), [middle]
-        for k in others:
-            plane, columns = begun.planes[k], begun.columns[k]
-            sections.append(_reached(following, sections[-1], plane, begun.plane_at, _HALVINGS, columns))
-        return sections[1:]
-
     ways = range(half - 1, -1, -1), range(half + 1, KEYS)
-    below, above = run_in_threads(list(map(partial, (chain, chain), begun.problems, ways)))
-    return KeyTables(begun, even_behind((*below[::-1], middle, *above), begun.plan.columns))
+    below, above = run_in_threads(list(map(partial, (chain, chain), begun.following, ways)))
+    sections = even_behind((*below[::-1], begun.middle, *above), begun.plan.columns)
+    return KeyTables(begun.plan, sections)
 
 
-def _planes(row: Row, first: float, growth: float, cells: int) -> tuple[list[SectionPlane], Layout]:
-    """Return the planes of the key sections, and the middle section with about `cells` cells.
+def _planes(row: Row, first: float, growth: float) -> tuple[list[SectionPlane], Layout | None]:
+    """Return the key sections, and the coarse blocks of the middle one, if known yet.
 
-    What the middle section needs to know of all sections is mostly the same for those at hub, casing and in
-    the middle. With several threads it is made for these three while the other planes are computed, and made
-    again if these need more.
+    The middle one, with the longest straight rows to inlet and outlet, is begun before the others are known.
     """
 
     def plane_at(height: float, share: float = 1.0) -> SectionPlane:
@@ -109,51 +82,30 @@ def _planes(row: Row, first: float, growth: float, cells: int) -> tuple[list[Sec
             _ = plane.cascade.reach, plane.across  # marches the layers
         return plane
 
-    def begun() -> tuple[SectionPlane, Layout | None]:
-        plane = _ending(plane_at(heights[half]), (NEAR, NEAR))
-        return plane, unless_refused(partial(coarse_section, plane))
+    def begun(height: float) -> tuple[SectionPlane, Layout | None]:
+        middle = plane_at(height)
+        plane = middle.ending((NEAR, NEAR), middle.thickest)
+        try:
+            return plane, coarse_section(plane)
+        except (InputError, NoValidGridError):  # once the others are known it is clear why
+            return plane, None
 
-    def ahead() -> tuple[
-        SectionPlane, SectionPlane, SectionPlane, Layout | None, Shared | None, Layout | None
-    ]:
-        ends = [partial(plane_at, heights[k]) for k in (0, -1)]
-        (plane, coarse), hub, casing = run_in_threads([begun, *ends])
-        known = unless_refused(partial(Shared.of, (hub, plane, casing)))
-        if alone or coarse is None or known is None or known.near != plane.cascade.near:
-            return plane, hub, casing, coarse, known, None
-        whole = unless_refused(partial(middle_section, plane, cells, known, coarse))
-        return plane, hub, casing, coarse, known, whole
-
-    alone, half, heights = thread_count() < 2, KEYS // 2, key_heights(KEYS).tolist()
-    others = [partial(plane_at, heights[k]) for k in range(1, KEYS - 1) if k != half]
-    (plane, hub, casing, coarse, known, whole), *made = run_in_threads([ahead, *others])
-    planes = [hub, *made[: half - 1], plane, *made[half - 1 :], casing]
+    half, heights = KEYS // 2, key_heights(KEYS).tolist()
+    others = [partial(plane_at, height) for k, height in enumerate(heights) if k != half]
+    (plane, coarse), *made = run_in_threads([partial(begun, heights[half]), *others])
+    planes = [*made[:half], plane, *made[half:]]
     thinner = _even_shares(planes)
     again = run_in_threads([partial(plane_at, planes[k].height, share) for k, share in thinner.items()])
     for k, own in zip(thinner, again, strict=True):
         planes[k] = own
     if half in thinner:
-        planes[half], coarse, whole = _ending(planes[half], (NEAR, NEAR)), None, None
+        plane, coarse = planes[half].ending((NEAR, NEAR), planes[half].thickest), None
+        planes[half] = plane
     _check_room(row, planes)
-    shared = Shared.of(planes)
-    if shared.near != planes[half].cascade.near:
-        planes[half], coarse = _ending(planes[half], shared.near), None
-    if whole is None or shared != known:
-        whole = middle_section(planes[half], cells, shared, coarse)
-    return planes, whole
-
-
-def _ending(plane: SectionPlane, near: tuple[float, float]) -> SectionPlane:
-    """Return the middle section with straight rows from `near` pitches before and behind the blade."""
-    return plane.ending(near, plane.thickest)
-
-
-def unless_refused(make: Callable[[], Made]) -> Made | None:
-    """Return the result of `make`, or None if it fails: once everything else is known, it is clear why."""
-    try:
-        return make()
-    except (InputError, NoValidGridError):
-        return None
+    near = tuple(min(NEAR, _PART * min(plane.room[k] for plane in planes)) for k in (0, 1))
+    if near != plane.cascade.near:
+        planes[half], coarse = plane.ending(near, plane.thickest), None
+    return planes, coarse
 
 
 def _even_shares(planes: Sequence[SectionPlane]) -> dict[int, float]:
@@ -195,6 +147,14 @@ def _of_section(height: float) -> Iterator[None]:
         if error.place:
             error.place = f"section at {100.0 * height:.3g} % of the span, in m' and theta: {error.place}"
         raise
+
+
+def _longest(planes: Sequence[SectionPlane]) -> dict[int, float]:
+    """Return the largest lengths of the rows to inlet and outlet, by loop."""
+    near = planes[len(planes) // 2].cascade.near
+    rows = [[max(room - part, 0.0) for room, part in zip(plane.room, near, strict=True)] for plane in planes]
+    pitch = planes[0].cascade.pitch[1]
+    return {number: pitch * max(row[k] for row in rows) for k, number in enumerate((INLET, OUTLET))}
 
 
 def _wake(row: Row, planes: Sequence[SectionPlane]) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.cascade.cascade import scaled
 from meshonet.solvers.cascade.cascade_layout import FIRST, WEIGHTS, attached_cells, counts_of
-from meshonet.solvers.cascade.passage import INLET, NEAR, OUTLET
 from meshonet.solvers.cascade.passage_template import template
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.layers.layer_law import layer_arcs
@@ -29,36 +28,8 @@ UPPER, TRAILING, LOWER, LEADING = range(8, 12)
 REMEDY = "use more {cells}, a larger {first_cell}, or profiles nearer to each other there"
 COARSE = 300
 """Number of iterations of the first optimisation."""
-TOLERANCE = 3e-4
-"""Of the minimisations of sections. With three times as much, rounding changes Jacobians by 1 %."""
+TOLERANCE = 1e-3
 _TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relative accuracy of the total
-_PART = 0.6  # of the least room before or behind the blade that is left to blocks
-
-
-@dataclass(frozen=True)
-class Shared:
-    """Properties of the middle section that follow from those of all sections.
-
-    Parameters
-    ----------
-    near : distances upstream and downstream of the blade, in pitches, at which straight rows begin.
-    rows : number of rows of the layers.
-    longest : largest lengths, in any section, of the rows to inlet and outlet, by the index of their loop.
-    """
-
-    near: tuple[float, float]
-    rows: int
-    longest: Mapping[int, float]
-
-    @classmethod
-    def of(cls, planes: Sequence[SectionPlane]) -> Shared:
-        """Return the properties for the sections `planes`."""
-        rooms = list(zip(*(plane.room for plane in planes), strict=True))
-        before, behind = (min(NEAR, _PART * min(each)) for each in rooms)
-        pitch = planes[0].cascade.pitch[1]
-        most = (max(max(each) - part, 0.0) for each, part in zip(rooms, (before, behind), strict=True))
-        longest = {number: pitch * length for number, length in zip((INLET, OUTLET), most, strict=True)}
-        return cls((before, behind), max(plane.cascade.rows_of_layers for plane in planes), longest)
 
 
 def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
@@ -69,21 +40,30 @@ def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
     return _sized(template(plane.cascade.passage, at_corners=early), FIRST, None)
 
 
-def middle_section(plane: SectionPlane, cells: int, shared: Shared, coarse: Layout | None = None) -> Layout:
-    """Return the middle section of a row with about `cells` cells, including its layers and rows.
+def middle_section(
+    planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], coarse: Layout | None = None
+) -> Layout:
+    """Return the middle section of `planes` with about `cells` cells, layers and rows.
 
-    `coarse` is the `coarse_section`, if it is known. Raises NoValidGridError: cells are folded.
+    Parameters
+    ----------
+    longest : largest lengths in any section of the rows to inlet and outlet, by loop.
+    coarse : `coarse_section`, if known.
+
+    Raises NoValidGridError: cells are folded.
     """
+    plane = planes[len(planes) // 2]
     try:
-        return _made(plane, cells, shared, coarse or coarse_section(plane))
+        return _made(planes, cells, longest, coarse or coarse_section(plane))
     except NoValidGridError:
-        return _made(plane, cells, shared, coarse_section(plane, early=False))
+        return _made(planes, cells, longest, coarse_section(plane, early=False))
 
 
-def _made(plane: SectionPlane, cells: int, shared: Shared, coarse: Layout) -> Layout:
-    """Return the middle section from its coarse blocks."""
-    cascade, rows, longest = plane.cascade, shared.rows, shared.longest
+def _made(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], coarse: Layout) -> Layout:
+    plane = planes[len(planes) // 2]
+    cascade = plane.cascade
     chords = Chords.of(coarse)
+    rows = max(each.cascade.rows_of_layers for each in planes)
     ends = [chords.chord[chords.sides[block, 0]] for block in (TRAILING, LEADING)]
     wanted = float(cells)
     for _ in range(_TRIES):  # more rows than those of this section, and counts that are rounded
@@ -96,9 +76,7 @@ def _made(plane: SectionPlane, cells: int, shared: Shared, coarse: Layout) -> La
         wanted *= cells / total
     scale = float((metric.along / cascade.metric.along).mean())
     metric = _joined(plane, scale, rows)
-    fine = _sized(refine(coarse, counts, chords), COARSE, metric)
-    if times > 1:
-        fine = multiplied(fine, times)
+    fine = multiplied(_sized(refine(coarse, counts, chords), COARSE, metric), times)
     return whole_section(plane, fine, rows, metric.largest, longest)
 
 

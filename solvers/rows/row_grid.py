@@ -30,10 +30,9 @@ from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import in_threads, run_in_threads
 from meshonet.kernels._native import stacked_block
 from meshonet.solvers.rows.gap_blocks import GapBlocks, GapEnds, gap_blocks, gap_ends
-from meshonet.solvers.rows.key_sections import Beginning
-from meshonet.solvers.rows.key_tables import begun_sections, key_tables, unless_refused
+from meshonet.solvers.rows.key_tables import key_tables
 from meshonet.solvers.rows.request import RowRequest
-from meshonet.solvers.rows.stacked import StackedRow, around_blade
+from meshonet.solvers.rows.stacked import StackedRow
 from meshonet.solvers.rows.zones import Zone, fewest_cells, section_cells, zones_of
 
 _OTHER = 0.15  # relative difference from the requested number of cells above which a note says so
@@ -46,19 +45,14 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     """
     first, growth = request.height() * row.chord, request.ratio
     zones = zones_of(row, first, growth, request.cells)
-    begun = begun_sections(row, first, growth, section_cells(zones, request.cells, growth))
+    keys = key_tables(row, first, growth, section_cells(zones, request.cells, growth))
+    stacked = StackedRow(row, keys, zones, first, growth)
     open_ = [k for k, zone in enumerate(zones) if zone.gap]
 
-    def ends_of(begun: Beginning, k: int) -> GapEnds:
-        around, ways = around_blade(begun.places), begun.columns[0 if zones[k].low == 0.0 else -1].ways
-        return gap_ends(row, around, ways, zones[k], first, growth)
+    def ends_of(k: int) -> GapEnds:
+        return gap_ends(row, stacked.beside, int(stacked.leading[min(k, 1)]), zones[k], first, growth)
 
-    early = [partial(unless_refused, partial(ends_of, begun, k)) for k in open_]
-    keys, *ends = run_in_threads([partial(key_tables, begun), *early])
-    if keys.begun is not begun or None in ends:
-        ends = run_in_threads([partial(ends_of, keys.begun, k) for k in open_])
-    stacked = StackedRow(row, keys, zones, first, growth)
-    made, rest = stacked.nodes()
+    *ends, (made, rest) = run_in_threads([*(partial(ends_of, k) for k in open_), stacked.nodes])
 
     def section(k: int) -> ZoneSection:
         if not zones[k].gap:

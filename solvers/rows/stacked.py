@@ -26,15 +26,6 @@ DEGREE = 5
 _AT_ONCE = 1 << 16  # number of nodes that are computed together, so that they fit into the cache
 
 
-def around_blade(places: Floats) -> SpanLines:
-    """Return places u around the blade as functions of the height, from those (9, k) of key sections.
-
-    Values may be below 0 or above 1.
-    """
-    steps = np.concatenate([np.zeros((1, places.shape[1])), wrapped(np.diff(places, axis=0))])
-    return SpanLines.through(places[0] + np.cumsum(steps, axis=0), DEGREE)
-
-
 class StackedRow:
     """The nodes of a row, stacked along the span.
 
@@ -47,13 +38,18 @@ class StackedRow:
     Attributes
     ----------
     columns : (k, rows + 1) nodes of the layers, clockwise, each column from the blade outwards.
+    leading : (2,) columns nearest to the leading edge, at the hub and at the casing.
     """
 
     def __init__(self, row: Row, keys: KeyTables, zones: Sequence[Zone], first: float, growth: float) -> None:
         self.row, self.zones, self.first, self.growth = row, zones, first, growth
         self.layout, self.plan, self.columns = keys.sections[0].layout, keys.plan, keys.plan.columns
-        self.around = around_blade(np.array([section.places for section in keys.sections]))
-        self.lines = SpanLines.through(np.stack([self._key(section) for section in keys.sections]), DEGREE)
+        u = np.array([section.places for section in keys.sections])
+        steps = wrapped(np.diff(u, axis=0))
+        around = u[0] + np.cumsum(np.concatenate([np.zeros((1, u.shape[1])), steps]), axis=0)
+        self.leading = np.abs(wrapped(around[[0, -1]])).argmin(axis=1)
+        self.around = SpanLines.through(around, DEGREE)
+        self.lines = SpanLines.through(np.stack(in_threads(self._key, keys.sections)), DEGREE)
 
     def _key(self, section: KeySection) -> Floats:
         """Return s, theta (n, 2) of a key section with exact layers in space."""
@@ -91,6 +87,12 @@ class StackedRow:
         partner = self.layout.mesh.places.partner
         second = np.flatnonzero(partner >= 0)
         return second, partner[second]
+
+    def beside(self, height: float) -> Floats:
+        """Return s, theta, h (k, 2, 3) of the blade's nodes and those next to them, at a bound of a zone."""
+        group = self._group(self.columns.ravel(), self.around)
+        values = group.at(np.full((1, self.columns.size), height))
+        return values.reshape(*self.columns.shape, 3)[:, :2]
 
     def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
         """Return the nodes, and tasks that store those of layers off the blade.

@@ -8,15 +8,17 @@ from collections.abc import Mapping
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.elementary import exp, log
+from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
-from meshonet.geometry.spacing.growth import growth_rates
 from meshonet.solvers.blocking.layers.attach import Rows
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
-from meshonet.solvers.cascade.cascade_layout import row_cells, straight_rows
+from meshonet.solvers.cascade.cascade_layout import row_steps, straight_rows
 from meshonet.solvers.cascade.passage import BLADE, extended
 from meshonet.solvers.cascade.passage_template import cut_of
 from meshonet.solvers.rows.section_plane import SectionPlane
+
+_BISECTIONS = 60
+_RATIO = 2.0
 
 
 def whole_section(
@@ -39,7 +41,7 @@ def whole_section(
     for number, length, way in straight_rows(cascade):
         start = mesh.nodes[mesh.places.along(number)]
         first = math.exp(log(heights_inside(beyond, number)).mean())
-        count = len(row_cells(first, max(length, longest[number]), largest))
+        count = len(row_steps(first, max(length, longest[number]), largest)) - 1
         steps = _grown(first, length, count)
         rows.append(
             Rows(
@@ -53,7 +55,11 @@ def whole_section(
 
 
 def _grown(first: float, length: float, cells: int) -> Floats:
-    """Return distances (cells + 1,) from 0 to a length of cells that follow one of size `first` evenly."""
-    rate = growth_rates(first, np.array([first + length]), cells + 1)
-    steps = np.append(0.0, np.cumsum(exp(rate * np.arange(1.0, cells + 1.0))))
+    """Return distances (cells + 1,) from 0 to a length, of cells that follow one of size `first`."""
+    low, high = 1.0 / _RATIO, _RATIO
+    for _ in range(_BISECTIONS):
+        ratio = 0.5 * (low + high)
+        total = first * sum(math.pow(ratio, k + 1) for k in range(cells))
+        low, high = (low, ratio) if total > length else (ratio, high)
+    steps = np.concatenate([[0.0], np.cumsum([math.pow(ratio, k + 1) for k in range(cells)])])
     return np.asarray(steps * (length / steps[-1]))

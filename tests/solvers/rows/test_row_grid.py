@@ -13,7 +13,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.pipeline.rows import make_row
-from meshonet.solvers.rows.key_tables import begun_sections, key_tables
+from meshonet.solvers.rows.key_tables import key_tables
 from meshonet.solvers.rows.request import RowRequest, row_request
 
 FIRST = 1e-3
@@ -134,7 +134,7 @@ def test_cells_grow_by_a_limited_ratio_along_lines_inside_blocks(gap: str) -> No
 def test_lines_behind_the_blade_bend_into_the_direction_of_its_mean_line() -> None:
     """Halfway up that is the stagger of 29 degrees, less 13 at the end of the arc."""
     row = blade_row.blade_row()
-    keys = key_tables(begun_sections(row, FIRST, 1.2, 1500))
+    keys = key_tables(row, FIRST, 1.2, 1500)
     section = keys.sections[len(keys.sections) // 2]
     edge, end = section.plane.edges[1, 0], section.plane.map.length
     m = np.linspace(0.0, end, 2001)
