@@ -3,7 +3,7 @@
     python benchmarks/bench_variational.py [--sizes 65,129,800] [--domains 60] [--page PAGE.md]
 
 Folded cells, included angles (largest of each cell), deviation from orthogonal at the walls, relative L2
-distance to the full solve, and processor time of one thread, beside that of copy of the grid in memory.
+distance to the full solve, and processor time of one thread; beside it, the time to copy the grid.
 """
 
 import os
@@ -234,6 +234,7 @@ page](quad-operator.md).
 - *worse than Winslow's*: number of domains for which the maximum or the mean angle is larger than in
   Winslow's grid.
 - *CPU ms*: CPU time of one thread, best of several runs, while other programs used the machine.
+- *copy of the grid in memory*: time to copy the finished grid once, for comparison.
 
 Around a notch the variational method on all nodes takes many iterations on fine grids; `--coarse auto`
 solves on fewer nodes if the grid is fine. The distance between a solution on 33 x 33 nodes and the

@@ -77,7 +77,7 @@ def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Gri
 def grids_of_file(
     blocks: Sequence[FileBlock], faces: Sequence[Face], pairs: Sequence[Pair], name: str
 ) -> Iterator[Grid]:
-    """Yield the grids of the blocks of a file `name` (`meshonet.formats.mesh.slices`).
+    """Yield the grids of a file `name`, made of its `blocks`; `lattices` decides whether they are planar.
 
     Blocks that touch form one grid, and so do all surface patches; other blocks are separate. Several grids
     are named after their blocks, or by `name` and a number. Unnamed edges of planar blocks get names

@@ -51,8 +51,9 @@ class Corner:
 class Lift:
     """The conformal map between the plane z around a body and a strip w = psi + i phi (`lift_body`).
 
-    `centre` and `quarter` have position, rotation and size of the body; `phase` puts the first wall node at
-    phi = 0. Attributes are numbers or torch tensors.
+    `centre` and `quarter` describe position, rotation and size of the body. `pole` is the centroid of the
+    wall after Joukowski's map and the `corners`. `phase` puts the first wall node at phi = 0. Attributes are
+    numbers or torch tensors.
     """
 
     centre: Any
@@ -80,13 +81,15 @@ def mirrored(nodes: Floats) -> Complexes:
 
 
 def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, tuple[int, ...]]:
-    """Return the lift of a body, its wall (n,) in the strip, and the indices of its trailing corners.
+    """Return the conformal map of a body, and where it takes the wall.
 
-    `wall` (n,) runs counter-clockwise from the trailing edge, without its repeated first node. With `swap`
-    the second corner of a blunt edge is removed first: the two removals do not commute, and a mirrored body
-    needs the other order.
+    `wall` (n,) runs counter-clockwise from the trailing edge, without its repeated first node. Each corner of
+    a blunt edge is straightened by a map (`Corner`). The order of the two maps changes the result. With
+    `swap` the second corner comes first, so that a mirrored body has the mirrored result.
 
-    Raises InputError: fewer than 8 nodes, or a wall that does not wind once around the pole.
+    Returns the map, the points (n,) of the wall in the strip, and the indices of its trailing corners.
+
+    Raises InputError: fewer than 8 nodes, or a wall that does not wind once around its middle.
     """
     if len(wall) < 8:
         raise InputError(f"the wall has {len(wall)} nodes", "use at least 8")

@@ -20,8 +20,8 @@ NONE = slice(0)  # slice of no metric
 class CellRun(NamedTuple):
     """Result of one pass over the cells of a block.
 
-    `table` (metrics, 3) has minimum, mean and maximum; `where` (metrics, 2, 2) the cells i, j of minimum and
-    maximum; `values` the values in all cells of the kept metrics.
+    `table` (metrics, 3) has minimum, mean and maximum of each metric, and `where` (metrics, 2, 2) the cells
+    i, j of minimum and maximum. `values` (n, ni-1, nj-1) has the values in all cells for n chosen metrics.
     """
 
     table: Floats
@@ -30,7 +30,7 @@ class CellRun(NamedTuple):
 
 
 def run_over(nodes: Floats, kept: slice = NONE, *, periodic: bool = False, wake: int = 0) -> CellRun:
-    """Return statistics of all metrics of `nodes` (ni, nj, 2), and values (n, ni-1, nj-1) of some.
+    """Return statistics of all metrics of `nodes` (ni, nj, 2), and the values of the metrics `kept`.
 
     In a `periodic` block i = ni-1 and i = 0 coincide. The first `wake` cells along the south side are
     neighbours of the last `wake` cells.

@@ -29,12 +29,12 @@ from meshonet.geometry.shapes.shape import Shape
 
 @dataclass(frozen=True)
 class PolygonRing:
-    """A closed polygon (n, 2): corners (None: detected), names (empty: default), places in the file."""
+    """A closed polygon (n, 2)."""
 
     points: Floats
-    corners: Sequence[int] | None = None
-    names: Sequence[str] = ()
-    places: Sequence[str] = ()
+    corners: Sequence[int] | None = None  # indices of points; None: detected by the turning angle
+    names: Sequence[str] = ()  # one name, or one for each part between corners; none: `default_name`
+    places: Sequence[str] = ()  # line of each point in the file, for messages
 
 
 def polygon_shape(

@@ -56,7 +56,9 @@ def convert(
         "--plot3d", metavar="WORDS",
         help="Variant of the Plot3D file to write, or to read if the output is in another format. WORDS are "
         "separated by commas and are any of ascii/binary/fortran, multi/single, 2d/3d, no-iblank/iblank, "
-        "little/big, float64/float32, whole/planes and span-k/span-i/span-j. For reading, give only "
+        "little/big, float64/float32, whole/planes (coordinates of whole blocks, or plane by plane; planes "
+        "are not written) and span-k/span-i/span-j (index of the file for the third direction of volumes, "
+        "only for writing). For reading, give only "
         "properties that the program cannot recognise from the file. All other commands accept the same "
         "words as --from plot3d:WORDS.",
     )] = None,

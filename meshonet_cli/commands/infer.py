@@ -40,9 +40,9 @@ def infer(
     )] = "auto",
     answer: Annotated[Literal["valid", "pasted", "raw"], _option(
         "--answer", metavar="valid|pasted|raw", show_default=True,
-        help="Treatment of grids of networks that do not match the boundary exactly. raw writes the output "
-        "of the network, pasted replaces its boundary nodes by the given nodes, and valid also repairs "
-        "folded cells.",
+        help="Treatment of the grid that a network predicts, whose boundary nodes can differ from the given "
+        "ones. raw writes this grid, pasted replaces its boundary nodes by the given nodes, and valid also "
+        "repairs folded cells.",
     )] = "valid",
     device: Annotated[Literal["cpu", "cuda"] | None, _option(
         "--device", metavar="cpu|cuda",

@@ -43,7 +43,8 @@ def layout(
     run: o.RunOptions,
     far_field: Annotated[float | None, _sampling(
         "--far-field", metavar="R",
-        help="Distance of the far field; the unit is the chord of all bodies together. [default: 15]",
+        help="Radius of the far field, in units of the larger side of the bounding box of all bodies. "
+        "[default: 15]",
     )] = None,
     first_cell: o.FirstCell = None, y_plus: o.YPlusAtWalls = None, reynolds: o.Reynolds = None,
     length: o.Length = None,

@@ -79,7 +79,7 @@ def plot(
     up: Annotated[str | None, _option(
         "--up", metavar="AXIS",
         help="Axis that points upwards in pictures of volumes and surfaces: x, y or z. Azimuths count from "
-        "the axis that follows it in the order x, y, z, x. [default: z]",
+        "x if z is up, from y if x is up, and from z if y is up. [default: z]",
     )] = None,
     every: Annotated[int | None, _option(
         "--every", metavar="K",

@@ -38,7 +38,8 @@ def quality(
         "--compare", metavar="OTHER",
         help="File with reference grids of the same size. The report then has the relative L2 distance from "
         "the reference, over all nodes and near walls, the largest distance of a node, the largest distance "
-        "of a boundary node, the numbers of folded cells and ratios of angles.",
+        "of a boundary node, the number of folded cells of the reference, and the largest and the mean angle "
+        "divided by those of the reference.",
     )] = None,
     pair: Annotated[Literal["auto", "name", "order"] | None, _check(
         "--pair", metavar="auto|name|order",

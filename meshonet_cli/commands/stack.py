@@ -35,8 +35,8 @@ def stack(
         help="File with at least two sections, or - for standard input. Each section of a wing or blade has "
         "an airfoil (a file or naca:2412), a chord, its position z and, where needed, x, y and twist, or "
         "sweep and dihedral. Sections of a duct have an outline instead: circle:RADIUS or a file with a "
-        "closed curve. The file of a blade row has profiles, hub and shroud instead, the file of an aircraft "
-        "a body and wings.",
+        "closed curve. The file of a blade row has profiles, hub and shroud instead. The file of an aircraft "
+        "has a body and wings, described by numbers or by surface files (Plot3D, CGNS or VTK).",
     )],
     files: VolumeFiles,
     run: o.RunOptions,
@@ -46,13 +46,13 @@ def stack(
     )] = None,
     span: Annotated[int | None, _sampling(
         "--span", metavar="N",
-        help="Number of nodes along z, from the first to the last section. [default: 49; in ducts and "
-        "blades as many more as unevenly spaced sections need]",
+        help="Number of nodes along z, from the first to the last section. [default: 49, and more in "
+        "ducts and blades with unevenly spaced sections]",
     )] = None,
     base: Annotated[float | None, _sampling(
         "--base", metavar="H",
         help="Smallest height of trailing edges, in chords of each section. Thinner trailing edges of wings "
-        "and blades are opened to this height. [default: 0.005, or 0.001 for wings from surface files]",
+        "and blades are opened to this height. [default: 0.005, or 0.001 for a wing given by a surface file]",
     )] = None,
     cells: Annotated[int | None, _sampling(
         "--cells", metavar="N",
@@ -89,7 +89,7 @@ def stack(
     first_cell: Annotated[float | None, _layer(
         "--first-cell", "--wall-spacing", metavar="H",
         help="Height of the first cell at every wall node, in units of the longest chord; in ducts "
-        "in the unit of the file. [default: 0.001; in ducts about that of cells in the middle]",
+        "in the unit of the file. [default: 0.001; in ducts about the height of the cells in the middle]",
     )] = None,
     y_plus: o.YPlus = None,
     reynolds: Annotated[float | None, _layer(

@@ -84,8 +84,10 @@ def sweep(
     walls: o.Walls = None,
     first_cell: Annotated[str | None, o.option_of(o.BOUNDARY_LAYER)(
         "--first-cell", "--wall-spacing", metavar="H|WALL=H,...",
-        help="Height of the first cell at walls, in the unit of the section. WALL=H,WALL=H gives each named "
-        "wall of a multi-block section its own height.",
+        help="Height of the first cell at walls, in the unit of the section. Walls are all sides of a "
+        "four-sided section, outer curves without corners, and holes; but sides called inlet, outlet, axis "
+        "or symmetry are no walls. In a section with corners and without holes, name the walls by --walls. "
+        "WALL=H,WALL=H gives each named wall of a multi-block section its own height.",
     )] = None,
     y_plus: o.YPlusAtWalls = None,
     reynolds: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(

@@ -121,7 +121,8 @@ def train(
     settings: Annotated[list[str] | None, _option(
         "--set", metavar="NAME=VALUE",
         help="Setting of the model, e.g. sensors=80, or a weight in the loss of the quad operator, e.g. "
-        "folds=3. The page about operators of the paper in the documentation lists all settings. Repeatable.",
+        "folds=3. All settings are listed in the documentation, on the page on operators of the MeshONet "
+        "paper. Repeatable.",
     )] = None,
     log_csv: Annotated[str | None, _output(
         "--log-csv", metavar="FILE",

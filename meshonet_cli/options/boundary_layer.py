@@ -23,10 +23,11 @@ Slide = Annotated[bool | None, _option(
 FirstCell = Annotated[str | None, _option(
     "--first-cell", "--wall-spacing", metavar="H|WALL=H,...",
     help="Height of the first cell at every wall node. Around a body the unit is the chord, otherwise that "
-    "of the input. The walls of a four-sided domain are south and north. The walls of a multi-block grid are "
-    "its holes. If a domain has no holes, and a side is called inlet, outlet, axis or symmetry, the other "
-    "sides are the walls. --walls selects other walls. WALL=H,WALL=H selects walls and gives each its own "
-    "height. Around a body, solve-pde and infer then march the grid from the wall.",
+    "of the input. Walls of a four-sided domain: south, north and sides that are called wall. Walls of a "
+    "multi-block grid: the holes; without holes all sides, if at least one of them is called inlet, outlet, "
+    "axis or symmetry, else none. Sides with one of these four names are no walls. --walls selects other "
+    "walls. WALL=H,WALL=H selects walls and gives each its own height. Around a body, solve-pde and infer "
+    "then march the grid from the wall.",
 )]
 YPlus = Annotated[float | None, _option(
     "--y-plus", metavar="Y",

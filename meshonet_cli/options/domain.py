@@ -18,8 +18,8 @@ BlocksName = Annotated[Literal["auto", "single"], _option(
 Walls = Annotated[str | None, _option(
     "--walls", metavar="NAME,NAME",
     help="Names of the walls that get the layers of --first-cell or --y-plus: holes, or named parts of a "
-    "boundary curve. At a corner of about 90 degrees, layers end or meet the layers of the next wall. "
-    "[default: as described at --first-cell]",
+    "boundary curve. Layers end only at corners of about 90 degrees. If both sides of such a corner are "
+    "walls, their layers meet. [default: the walls that --first-cell lists]",
 )]
 
 
@@ -44,12 +44,14 @@ class DomainOptions:
     layout: Annotated[str | None, _option(
         "--layout", metavar="LAYOUT.json",
         help="Use the blocks of this layout, written by meshonet layout for the same or a similar domain. "
-        "For a grid with layers, make the layout with a first cell too.",
+        "For a grid with layers, make the layout with a first cell too. The command layout itself fits the "
+        "blocks to its domain and writes them, with the number of cells that --cells gives.",
     )] = None
     pitch: Annotated[str | None, _option(
         "--pitch", metavar="DX,DY",
         help="Displacement from one blade of a cascade to the next. The input is one blade; the grid fills "
-        "the passage around this blade, and the nodes of the two periodic sides match.",
+        "the passage around this blade, and the nodes of the two periodic sides match. An error with "
+        "--layout and in the command layout: the blocks of a passage are always the same.",
     )] = None
     inlet: Annotated[float | None, _option(
         "--inlet", metavar="L",
@@ -64,7 +66,7 @@ class DomainOptions:
     periodic: Annotated[list[str] | None, _option(
         "--periodic", metavar="SIDE,SIDE",
         help="Names of two sides of the outer boundary that are periodic: a translation moves one onto the "
-        "other. The nodes of the two sides match. Formats that support periodic sides contain them. Repeat "
+        "other. The nodes of the two sides match. Output formats that know periodic sides mark them. Repeat "
         "the option for a second pair. In GeoJSON files the property periodic has the same meaning.",
     )] = None
 

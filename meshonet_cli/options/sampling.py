@@ -94,8 +94,9 @@ class SamplingOptions:
         "--smooth", metavar="TOL",
         help="Smooth an airfoil with noisy or rounded coordinates by splines, which deviate from the points "
         "by at most TOL chords. Choose about 3 times the standard deviation of the noise, or the unit of the "
-        "last digit: 6e-4 for noise of 2e-4, 1e-4 for four decimals. Corners higher than 2 TOL are kept; a "
-        "base lower than TOL is closed. The report gives the changes. Needs SciPy.",
+        "last digit: 6e-4 for noise of 2e-4, 1e-4 for four decimals. A corner is kept if it is more than 2 "
+        "TOL chords away from the straight line between the third point before it and the third point after "
+        "it. A base lower than TOL chords is closed. The report gives the changes. Needs SciPy.",
     )] = None
     corners: Annotated[str, _option(
         "--corners", metavar="auto|I,J,K,L", show_default=True,

@@ -19,12 +19,12 @@ class SideOptions:
         "of the input.",
     )] = None
     spacing_north: Annotated[float | None, _option(
-        "--spacing-north", metavar="H", help="Height of the first cell at every node of the north side.",
+        "--spacing-north", metavar="H", help="The same as --spacing-south for the north side.",
     )] = None
     spacing_west: Annotated[float | None, _option(
-        "--spacing-west", metavar="H", help="Height of the first cell at every node of the west side.",
+        "--spacing-west", metavar="H", help="The same as --spacing-south for the west side.",
     )] = None
     spacing_east: Annotated[float | None, _option(
-        "--spacing-east", metavar="H", help="Height of the first cell at every node of the east side.",
+        "--spacing-east", metavar="H", help="The same as --spacing-south for the east side.",
     )] = None
 # fmt: on

@@ -24,8 +24,8 @@ Revolve = Annotated[float | None, _option(
 )]
 Axis = Annotated[str | None, _option(
     "--axis", metavar="x|y|X,Y,DX,DY",
-    help="Axis of --revolve: x, y, or a point (X, Y) on a line in the plane and its direction (DX, DY). "
-    "[default: x]",
+    help="Axis of --revolve: x, y, or the line in the plane through the point (X, Y) in the direction (DX, "
+    "DY). [default: x]",
 )]
 
 

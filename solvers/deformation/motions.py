@@ -40,12 +40,12 @@ class Turning:
         return np.bincount(self.edges.ravel(), shares, n).astype(np.float64, copy=False)
 
     def angles_along(self, new: Floats, moves: Floats) -> Floats:
-        """Return derivatives (n,) of the angles, at nodes `new`, along their displacements `moves` (n, 2)."""
+        """Return the derivatives (n,) of `angles` in the direction `moves` (n, 2), at nodes `new` (n, 2)."""
         slope, way = self._slopes(new), moves[self.edges[:, 1]] - moves[self.edges[:, 0]]
         return self._at_nodes((slope * way).sum(axis=1), len(new))
 
     def angles_transposed(self, new: Floats, pull: Floats) -> Floats:
-        """Return the derivative (n, 2) of Σ pull · angles with respect to the nodes `new`; `pull` is (n,)."""
+        """Return the gradient (n, 2) of Σ pull · angles with respect to the nodes `new`; `pull` is (n,)."""
         onto = self._slopes(new) * (self.share * pull[self.edges]).sum(axis=1)[:, None]
         gathered = np.zeros_like(new)
         np.add.at(gathered, self.edges[:, 1], onto)

@@ -12,7 +12,10 @@ _MOST, _SMALL = 500, 1e-8  # largest number of iterations, and the relative resi
 
 
 def harmonic(mesh: HexMesh, moves: Bools) -> Floats:
-    """Return new nodes (n, 3) of a mesh; nodes outside the mask `moves` (n,) are unchanged."""
+    """Return the nodes (n, 3) of a mesh, those of the mask `moves` (n,) at the means of their neighbours.
+
+    Their coordinates satisfy Laplace's equation on the graph of edges; all other nodes stay where they are.
+    """
     edges = _edges(mesh)
     start = mesh.nodes.copy()
     start[moves] = mesh.nodes[~moves].mean(axis=0)

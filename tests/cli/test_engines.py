@@ -166,8 +166,8 @@ def test_a_cluster_that_is_there_is_used_until_its_scheduler_dies(
     *reports, last = running.communicate(timeout=60)[1].decode().splitlines()
     assert running.returncode == 2
     assert last == (
-        f"error: the Dask scheduler at {address} is gone; run it again with another one; --skip-existing "
-        "keeps what is done"
+        f"error: the Dask scheduler at {address} is gone; run the command again with another; "
+        "--skip-existing keeps what is done"
     )
     # the worker may join after the command has asked for it, which it says first
     assert " -> 0.h5: " in next(line for line in reports if not line.startswith("warning: "))

@@ -151,7 +151,8 @@ class _Dask(Workers):
     def lost(self) -> EngineLostError:
         """Return the error for a scheduler that does not respond."""
         problem = f"the Dask scheduler at {self._address} is gone"
-        return EngineLostError(problem, "run it again with another one; {skip_existing} keeps what is done")
+        remedy = "run the command again with another; {skip_existing} keeps what is done"
+        return EngineLostError(problem, remedy)
 
     def submit(self, function: Callable[[T], R], task: T) -> Future[R]:
         """Submit a task that runs in our working directory, with our command line."""

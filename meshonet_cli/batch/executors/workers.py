@@ -54,7 +54,7 @@ class Workers:
 
     def lost(self) -> EngineLostError:
         """Return the error for a lost executor."""
-        return EngineLostError("the workers are gone", "run it again, with {skip_existing}")
+        return EngineLostError("the workers are gone", "run the command again, with {skip_existing}")
 
     def result(self, future: Future[R]) -> R:
         """Return the result of a task, or raise its error."""
