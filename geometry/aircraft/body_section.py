@@ -32,7 +32,7 @@ class BodySection:
     x : float
         Position of the plane.
     y : float, optional
-        Height of the centre of a superellipse, or displacement of `points`.
+        Coordinate y of the centre of a superellipse, or displacement of `points` along y.
     width, height : float, optional
         Size of a superellipse.
     exponent : float, optional

@@ -25,9 +25,9 @@ class LoftedBody(Body):
     """A body given by cross-sections, with a spline surface through them.
 
     The points of the surface are (x, middle - up * shape * cos(theta), across * shape * sin(theta)), at the
-    arc length s of the meridian and the angle theta; for across, up and middle see `sizes`. ``meridian`` and
-    ``y`` are those of a similar body of revolution, whose radius is the mean of half the width and half the
-    height.
+    arc length s of the meridian and the angle theta. In a section, across is half the width, up half the
+    height, and middle the y half way between keel and crown. ``meridian`` and ``y`` are those of a similar
+    body of revolution, whose radius is the mean of across and up.
 
     Parameters
     ----------
@@ -39,8 +39,9 @@ class LoftedBody(Body):
     Raises
     ------
     InputError
-        Fewer than 4 sections; x that does not increase; ends that are not points, or other points; a very
-        flat section; sections so different and far apart that the surface bulges between them.
+        Fewer than 4 sections; x that does not increase; a first or last section that is not a single point,
+        or one between them that is; a very flat section; sections so different and far apart that the surface
+        bulges between them.
 
     Examples
     --------
@@ -183,7 +184,7 @@ class LoftedBody(Body):
         return np.asarray(np.hypot(y, z) - shape * np.hypot(up * cos(angles), across * sin(angles)))
 
     def beside(self, point: Floats) -> str:
-        """Return the size of the body's section at the x of a `point` (3,), as text."""
+        """Return the size of the section at the x of a `point` (3,), as text."""
         across, up, middle = (float(each[0]) for each in self.sizes(self.arc_at(point[:1])))
         low, high = middle - up, middle + up
         return f"where its section is from y={low:.4g} to {high:.4g} and {2.0 * across:.4g} wide"

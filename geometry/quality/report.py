@@ -95,7 +95,7 @@ class QualityReport:
 
     @cached_property
     def periods(self) -> tuple[Period, ...]:
-        """The different periods of the grid."""
+        """The different translations or rotations between periodic sides of the grid."""
         if all(connection.transform is None for connection in self.grid.connections):
             return ()
         from meshonet.geometry.quality.periodic import periods
@@ -112,7 +112,7 @@ class QualityReport:
         return f"<QualityReport: {', '.join(parts)}>"
 
     def under(self, gates: Gates) -> QualityReport:
-        """Return the report; limits of `gates` replace those of its profile."""
+        """Return the report with the limits of `gates` in place of those of its profile."""
         return replace(self, profile=self.profile.under(_parsed(gates))) if self.profile else self
 
     def broken(self, gates: Gates = ()) -> list[str]:

@@ -76,9 +76,9 @@ class Section:
 
     @property
     def frame(self) -> tuple[Floats, float]:
-        """Leading edge (2,) and chord of the given shape, which become 0 and 1.
+        """Leading edge (2,) and chord of the given shape, which is moved and scaled to (0, 0) and 1.
 
-        A shape that nearly has these is not scaled, as in most airfoil files.
+        A shape that nearly has this position and size is unchanged, as most airfoil files have them.
         """
         if isinstance(self.shape, Airfoil):
             nose, length = self.shape.leading_edge, self.shape.unit

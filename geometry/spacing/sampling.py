@@ -35,8 +35,9 @@ class Sampling:
     topology : {'auto', 'quad', 'o', 'c'}, optional
         Topology of the grid; ``auto``: the topology that suits the shape.
     spacing : str, optional
-        Distribution of nodes along a wall. ``auto`` is ``conformal`` around airfoils and smooth bodies
-        (``tanh`` if a cell size is given), and ``uniform`` elsewhere.
+        Distribution of nodes along a wall, as for the option ``--spacing``. ``auto`` is ``conformal`` around
+        airfoils and smooth bodies; ``tanh`` around airfoils if `le_spacing` or `te_spacing` is given;
+        ``curvature`` with a first-cell height; ``uniform`` elsewhere.
     le_spacing, te_spacing : float, optional
         Length of the wall cells at the leading and at the trailing edge, in chords.
     far_field : float, optional
@@ -57,12 +58,13 @@ class Sampling:
     base : float, optional
         Thickness in chords to which thinner trailing edges of airfoils are opened.
     smooth : float, optional
-        Largest deviation, in chords, of smoothing splines; three standard deviations of the noise are a good
-        choice. A base less than twice as high is closed. Needs SciPy.
+        Largest distance, in chords, of smoothing splines from the points of an airfoil; three standard
+        deviations of the noise are a good choice. A base that is not higher is closed. Needs SciPy.
     refined : int, optional
-        Corners are nodes with an index that is a multiple of this number, for coarsening by it.
+        The node indices of corners are multiples of this number, so that the grid can be coarsened by it.
     viscous : bool, optional
-        Whether cells at the wall will be thin; ``auto`` is then C around airfoils with a sharp trailing edge.
+        Whether cells at the wall will be thin. The topology ``auto`` is then ``c`` around airfoils with a
+        sharp trailing edge.
     normalise : bool, optional
         Move the leading edge to (0, 0) and the trailing edge to (1, 0).
 

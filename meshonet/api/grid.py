@@ -55,7 +55,8 @@ def grid(
     assemble : bool, optional
         Combine all shapes in the list into one domain.
     res : int or tuple of int, optional
-        Number of nodes along xi (around a body) and eta (away from it); one number for both.
+        Number of nodes along xi (around a body), eta (away from it) and, for volumes, zeta; one number for
+        all directions. For multi-block grids, number of cells along the longest extent.
     method : str, optional
         ``best`` for the default method of the kind of shape, ``auto`` for the default among elliptic methods
         and marching, a key of `meshonet.METHODS`, or ``operator:NAME`` for a neural operator.
@@ -241,9 +242,9 @@ def sample_family(
     count : int, optional
         Number of boundaries.
     res : int or tuple of int, optional
-        Node counts, as for `grid`; None is 101.
+        Numbers of nodes, as for `grid`; None: 101 along xi and eta.
     range : tuple of 2 float, optional
-        Interval of the family's parameter; None is the whole range.
+        Interval from which the family's parameter is drawn; None: its whole range.
     seed : int, optional
         Seed of the random numbers.
     split : str, optional

@@ -19,10 +19,9 @@ def layout(shape: AnyShape | Sequence[AnyShape], *, assemble: bool = False, **pa
     assemble : bool, optional
         Combine all shapes in the list into one domain.
     **parameters
-        The parameters ``cells``, ``cell_size``, ``far_field``, ``layout``, ``pitch``, ``inlet`` and
-        ``outlet`` of `meshonet.GridRequest` and `meshonet.Sampling`. With layers (``first_cell``, or
-        ``y_plus`` and ``reynolds``, and optionally ``walls``) the result contains only the blocks outside the
-        layers.
+        The parameters ``cells``, ``cell_size``, ``count``, ``periodic``, ``layout`` and ``far_field`` of
+        `meshonet.GridRequest` and `meshonet.Sampling`. With layers (``first_cell``, or ``y_plus`` and
+        ``reynolds``, and optionally ``walls``) the result contains only the blocks outside the layers.
 
     Returns
     -------

@@ -43,7 +43,8 @@ def plot(
         Slice of a volume: a grid surface such as ``i=10`` or ``k=-1``, or a plane such as ``x=.5``. None: the
         walls are drawn, or the whole boundary of a volume without walls.
     seen_from : tuple of 2 float, optional
-        Azimuth and elevation of the view of a grid in space, in degrees.
+        Direction from which a grid in space is seen: azimuth and elevation in degrees; None: -125, 25.
+        Azimuth 0 is x if z is `up`, y if x is, and z if y is.
     up : str, optional
         Axis that points upwards in the view of a grid in space: ``x``, ``y`` or ``z`` (default).
     span : float or sequence of float, optional

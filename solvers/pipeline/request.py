@@ -156,14 +156,14 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     sampling : Sampling, optional
         Numbers of nodes and spacing of the boundary.
     method : str, optional
-        A key of `METHODS`, ``best`` (the default for the topology) or ``auto`` (Winslow's equations). With a
-        first-cell height, both march around bodies.
+        A key of `METHODS`, ``best`` (the default for the topology) or ``auto`` (Winslow's equations). Both
+        march C grids, and grids around bodies with a first-cell height.
     settings : dict, optional
         Settings of the method by name.
     first_cell : float or mapping, optional
-        Height of the first cells, in chords around a body, otherwise in the unit of the domain. Walls of a
-        four-sided domain are south and north, unless sides have names such as ``inlet``. In four-sided and
-        multi-block domains, a mapping from names to heights selects the walls with layers.
+        Height of the first cells, in chords around a body, otherwise in the unit of the domain. For walls see
+        `walls`. In four-sided and multi-block domains, a mapping from names to heights selects the walls with
+        layers.
     y_plus : float or mapping, optional
         First-cell height as y+ of a turbulent flat plate, instead of `first_cell`.
     reynolds : float, optional
@@ -181,8 +181,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     spacing_south, spacing_north, spacing_west, spacing_east : float, optional
         First-cell heights at single sides of a four-sided domain.
     slide : bool, optional
-        Whether nodes slide along the walls south and north. None: only if a first-cell height is given and
-        the wall nodes were placed by the program.
+        Whether nodes move along the walls south and north, so that grid lines leave them at right angles.
+        None: only if a first-cell height is given and meshonet has placed the wall nodes.
     wall_angle : float, optional
         Angle between grid lines and walls in degrees, for ``steger-sorenson``.
     coarse : int or 'auto', optional
@@ -211,7 +211,9 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     cell_size : float, optional
         Edge length, instead of `cells`.
     walls : tuple of str, optional
-        Names of the walls with layers; empty for all holes, or the walls of a four-sided domain.
+        Names of the walls with layers. Empty: in a four-sided domain south, north and sides that are called
+        wall; in a multi-block domain all holes, or, without holes, all sides if one of them has a name such
+        as ``inlet``. Sides with such names have no layers.
     pitch : tuple of 2 float, optional
         Displacement vector from one blade of a cascade to the next.
     inlet, outlet : float, optional
@@ -229,7 +231,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
     poles : {'replace', 'refuse'}, optional
         Treatment of sides of surface patches that are points: a core patch replaces them, or they are errors.
     energy : {'angles', 'shape'}, optional
-        Functional that is minimised in a volume inside six faces; None: ``angles``.
+        Functional that is minimised in a volume inside six faces: ``angles`` favours right angles and gradual
+        changes of length, ``shape`` cells like cubes. None: ``angles``.
     threads : int, optional
         Number of threads; None: all cores.
 

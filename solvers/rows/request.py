@@ -26,7 +26,7 @@ class RowRequest(VolumeRequest):
     growth : float, optional
         Largest growth ratio of cells away from walls; None: 1.2.
     cells : int, optional
-        Approximate number of cells in one passage.
+        Approximate number of cells in one passage; by default 500,000.
     copies : int, optional
         Number of passages beside each other; the number of blades gives the whole annulus.
     threads : int, optional
