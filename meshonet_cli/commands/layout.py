@@ -39,7 +39,7 @@ def layout(
         "with an airfoil, a designation such as naca:2412, or - for standard input.",
     )],
     files: LayoutFiles,
-    blocks: o.DomainOptions,
+    blocks: o.BlockOptions,
     run: o.RunOptions,
     far_field: Annotated[float | None, _sampling(
         "--far-field", metavar="R",

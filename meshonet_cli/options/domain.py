@@ -24,7 +24,7 @@ Walls = Annotated[str | None, _option(
 
 
 @dataclass(frozen=True, kw_only=True)
-class DomainOptions:
+class BlockOptions:
     """Division of a domain into blocks. Each of these options except --assemble makes a multi-block grid."""
 
     assemble: Annotated[bool, _option(
@@ -47,22 +47,6 @@ class DomainOptions:
         "For a grid with layers, make the layout with a first cell too. The command layout itself fits the "
         "blocks to its domain and writes them, with the number of cells that --cells gives.",
     )] = None
-    pitch: Annotated[str | None, _option(
-        "--pitch", metavar="DX,DY",
-        help="Displacement from one blade of a cascade to the next. The input is one blade; the grid fills "
-        "the passage around this blade, and the nodes of the two periodic sides match. An error with "
-        "--layout and in the command layout: the blocks of a passage are always the same.",
-    )] = None
-    inlet: Annotated[float | None, _option(
-        "--inlet", metavar="L",
-        help="Length of the passage upstream of the blade, in axial chords; needs --pitch. [default: 1]",
-    )] = None
-    outlet: Annotated[float | None, _option(
-        "--outlet", metavar="L",
-        help="Length of the passage downstream of the blade, in axial chords; needs --pitch. [default: "
-        "1]",
-    )] = None
-
     periodic: Annotated[list[str] | None, _option(
         "--periodic", metavar="SIDE,SIDE",
         help="Names of two sides of the outer boundary that are periodic: a translation moves one onto the "
@@ -85,11 +69,36 @@ class DomainOptions:
             from meshonet.formats.layout.read import layout_of
 
             values["layout"] = layout_of(self.layout)
-        if self.pitch is not None:
-            values["pitch"] = numbers(self.pitch, (2,), "a vector", "use DX,DY, e.g. 0,0.8", "pitch")
         values["count"] = {} if self.count is None else by_name(self.count, int, _COUNTS, "count")
         if self.walls is not None:
             values["walls"] = tuple(map(str.strip, self.walls.split(",")))
+        return values
+
+
+@dataclass(frozen=True, kw_only=True)
+class DomainOptions(BlockOptions):
+    """Options of grids of domains: division into blocks, passage of a cascade."""
+
+    pitch: Annotated[str | None, _option(
+        "--pitch", metavar="DX,DY",
+        help="Displacement from one blade of a cascade to the next. The input is one blade; the grid fills "
+        "the passage around this blade, and the nodes of the two periodic sides match. An error with "
+        "--layout: the blocks of a passage are always the same.",
+    )] = None
+    inlet: Annotated[float | None, _option(
+        "--inlet", metavar="L",
+        help="Length of the passage upstream of the blade, in axial chords; needs --pitch. [default: 1]",
+    )] = None
+    outlet: Annotated[float | None, _option(
+        "--outlet", metavar="L",
+        help="Length of the passage downstream of the blade, in axial chords; needs --pitch. [default: 1]",
+    )] = None
+
+    def parameters(self) -> dict[str, Any]:
+        """Return the options as parameters of the library. Raises InputError: unreadable text."""
+        values = super().parameters()
+        if self.pitch is not None:
+            values["pitch"] = numbers(self.pitch, (2,), "a vector", "use DX,DY, e.g. 0,0.8", "pitch")
         return values
 # fmt: on
 
