@@ -10,7 +10,10 @@ from meshonet.geometry.blocks.grid import Grid
 
 @dataclass(frozen=True)
 class BadCell:
-    """A folded cell: indices of its first node, centre, block (None: only one); k None except in volumes."""
+    """A folded cell: block, indices i, j, k, and centre x, y, z.
+
+    `block` is None in a grid of one block, `k` except in volumes, and `z` in the plane.
+    """
 
     i: int
     j: int
@@ -39,7 +42,7 @@ class BadCell:
 def centre_of(grid: Grid, at: tuple[int, ...]) -> Floats:
     """Return the centre (2,) or (3,) of the cell `at`: (i, j), (block, i, j) or (block, i, j, k).
 
-    The index of a last node counts as that of the last cell.
+    An index of the last node along a direction stands for the last cell.
     """
     block, *place = at if len(at) > 2 else (0, *at)
     nodes = grid.blocks[block].nodes

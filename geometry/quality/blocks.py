@@ -19,8 +19,9 @@ from meshonet.geometry.summary import Quality
 class Deviation:
     """Deviation of corner angles from 90 degrees, in degrees: mean, 99th percentile and maximum.
 
-    The mean is over all corners, the percentile over cells (None: not computed); the maximum is in the cell
-    `at`, (block, i, j[, k]). At a corner of a volume the largest of three deviations counts.
+    The mean is over all corners. The percentile is over cells, each with its largest deviation; it is None if
+    not computed. `at` is the cell (block, i, j[, k]) of the maximum. A corner of a volume has three angles,
+    of which the largest deviation counts.
     """
 
     mean: float
@@ -33,8 +34,8 @@ class Deviation:
 class BlockCounts:
     """Blocks and irregular vertices of a grid.
 
-    `sizes` are the node counts of each block. `irregular` lists the inner nodes (block, i, j) at which other
-    than four cells meet, with the number of these; None for volumes.
+    `sizes` are the node counts of each block. `irregular` lists inner nodes (block, i, j) with more or fewer
+    than four cells, each with its number of cells; it is None for volumes.
     """
 
     sizes: tuple[tuple[int, ...], ...]
@@ -73,8 +74,8 @@ LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")  # fiel
 def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None = None) -> BlockFigures:
     """Return the figures of a multi-block grid.
 
-    The `quality` of volumes is measured unless given; percentiles are computed if it has them. `run` has
-    growth and bend without percentiles, if known.
+    `quality`, of volumes only, is measured if None. Percentiles of a volume are computed unless `quality` is
+    given without them. `run` holds growth and bend, if they are known already.
     """
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes
@@ -93,7 +94,7 @@ def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None 
 
 
 def block_counts(grid: Grid, nodes: Vertices | None = None) -> BlockCounts:
-    """Return blocks and irregular vertices of a grid, whose vertices may be given."""
+    """Return blocks and irregular vertices of a grid; `nodes` are the grid's vertices, if known."""
     sizes = tuple(block.counts for block in grid.blocks)
     if grid.form == "volume":
         return BlockCounts(sizes, None)
@@ -111,7 +112,7 @@ def extreme_dict(extreme: Extreme | None) -> dict[str, Any] | None:
 
 
 def deviation(grid: Grid) -> Deviation:
-    """Return the deviation of corner angles of planar blocks or surface patches, up to 270 degrees."""
+    """Return how far corner angles of planar blocks or patches deviate from 90 degrees, by up to 270."""
     every = [corner_deviations(block.nodes) for block in grid.blocks]
     worst = [corners.max(axis=0) for corners in every]
     block = int(np.argmax([cells.max() for cells in worst]))

@@ -32,8 +32,8 @@ class CellRun(NamedTuple):
 def run_over(nodes: Floats, kept: slice = NONE, *, periodic: bool = False, wake: int = 0) -> CellRun:
     """Return statistics of all metrics of `nodes` (ni, nj, 2), and the values of the metrics `kept`.
 
-    In a `periodic` block i = ni-1 and i = 0 coincide. The first `wake` cells along the south side are
-    neighbours of the last `wake` cells.
+    In a `periodic` block nodes i = ni-1 and i = 0 coincide. Along the south side the first `wake` cells touch
+    the last `wake` cells.
     """
     metrics, (x, y) = len(QUAD_METRICS), np.moveaxis(as_planar(nodes), -1, 0)
     table, where = np.empty((metrics, 3)), np.empty((metrics, 2, 2), dtype=np.int64)

@@ -28,7 +28,7 @@ Values: TypeAlias = tuple[tuple[int, ...], Floats | None, Floats]
 
 @dataclass(frozen=True)
 class FaceMeasures:
-    """Statistics of each measure of faces, with the cell of the largest value; None without such a face.
+    """Statistics of each measure of faces, with the cell of the largest value; None if there is no face.
 
     Cells are (i, j), in a multi-block grid (block, i, j), in volumes (block, i, j, k).
     """
@@ -58,7 +58,7 @@ def faces(grid: Grid) -> FaceMeasures:
 def worst_faces(grid: Grid, name: str) -> list[Floats]:
     """Return, for each block (ni-1, nj-1[, nk-1]), the largest measure `name` on each cell's faces.
 
-    A face between two cells belongs to the first, which `faces` reports. Raises InputError: a surface.
+    A face between two cells counts for the one with the lower index only. Raises InputError: a surface.
     """
     if name == "box_ratio":
         volume = grid.form == "volume"
@@ -82,7 +82,10 @@ def _of_volume(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
 
 
 def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:
-    """Return the cells (block, i, j) with a face beyond a non-orthogonality, in degrees, or a skewness."""
+    """Return the cells (block, i, j) with a face of more than `angle` degrees or more than `skew`.
+
+    The angle is non-orthogonality, the other limit is on face skewness.
+    """
     cells: list[tuple[int, int, int]] = []
     for (block, i, j), angles, skews in _of_blocks(grid):
         where = skews > skew if angles is None else (angles > angle) | (skews > skew)

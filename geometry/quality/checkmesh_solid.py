@@ -22,9 +22,10 @@ _TINY = 1e-300  # in place of 0 in divisors
 
 
 class SolidFaceMeasures(NamedTuple):
-    """Measures of an array of faces (n, m) normal to the direction `axis`.
+    """Measures (n, m) of a layer of faces, all normal to the direction `axis`.
 
-    `place` is the cell (block, i, j, k) of the first face; `angle` is in degrees, None at the boundary.
+    `place` is the cell (block, i, j, k) of the first face. `angle` is the non-orthogonality in degrees, None
+    at the boundary.
     """
 
     place: tuple[int, ...]
@@ -186,7 +187,7 @@ def _cross(u: Floats, v: Floats) -> Floats:
 
 
 def cell_at(grid: Grid, block: int, side: Side, first: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the cell (block, i, j, ...) at a side; `first` are its one or two indices along the side."""
+    """Return the cell (block, i, j[, k]) at a side; `first` are the one or two indices along the side."""
     axis, end = PLACES[side]
     return _place(block, axis, 0 if end == 0 else grid.blocks[block].counts[axis] - 2, first)
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Criteria:
-    """Gates and profiles by which grids are judged, at least one of them.
+    """Gates and profiles by which grids pass or fail, at least one gate or profile.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class Criteria:
 
     @property
     def percentiles(self) -> bool:
-        """Whether a gate needs a percentile of the quality that is judged."""
+        """Whether a gate has a limit on a percentile of a metric."""
         if not self.gates:
             return False
         from meshonet.geometry.quality.gates import need_percentiles
@@ -39,7 +39,7 @@ class Criteria:
         return need_percentiles(self.gates)
 
     def judge(self, grid: Grid, quality: Quality) -> Judgement:
-        """Return the judgement of a grid of this `quality`. Raises InputError: a figure that it lacks."""
+        """Return the judgement of `grid`. Raises InputError: a gate on a figure that it does not have."""
         from meshonet.geometry.quality.figures import Figures
         from meshonet.geometry.quality.profiles import profile_report
         from meshonet.geometry.quality.report import QualityReport

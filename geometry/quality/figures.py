@@ -38,7 +38,7 @@ FIGURES: Mapping[str, str] = MappingProxyType({
 
 @dataclass(frozen=True)
 class Figure:
-    """A value; its node or cell (i, j) or (block, i, j[, k]) and the direction of its line, if known."""
+    """A value; if known, its node or cell (i, j) or (block, i, j[, k]) and direction of the grid line."""
 
     value: float
     at: tuple[int, ...] | None = None

@@ -32,7 +32,7 @@ class Gate:
     limit: float  # limit, in the unit of the metric
 
     def figure(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> Figure:
-        """Return the limited figure, of `figures` or `more`. Raises InputError: there is none."""
+        """Return the figure that the gate limits, from `more` or `figures`. Raises InputError: in neither."""
         figure = more.get(self.metric) or figures(self.metric, self.statistic)
         if figure is None:
             known = [name for name in COUNTS if figures(name)]
@@ -41,7 +41,7 @@ class Gate:
         return figure
 
     def broken(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> str | None:
-        """Return a message if the grid meets the condition, and so fails; else None (see `figure`)."""
+        """Return a message if the grid fails by this gate, else None. Raises InputError: as `figure`."""
         figure = self.figure(figures, more)
         if not beyond(figure.value, self.compare, self.limit):
             return None
@@ -54,7 +54,7 @@ class Gate:
     def replaces(self, figure: str, compare: str) -> bool:
         """Return whether the gate replaces a profile's limit on `figure` with comparison `compare`.
 
-        It does if figure, direction, and in a metric maximum or minimum, are the same.
+        It does if both limit the same figure and statistic from the same side, above or below.
         """
         return (self.metric, self.compare[0], self.statistic) == (figure, compare[0], end_of(compare))
 
@@ -74,9 +74,9 @@ def end_of(compare: str) -> str:
 
 
 def in_short(name: str, figure: Figure, compare: str, limit: float) -> str:
-    """Return a figure and its limit as text, with place for growth and bend.
+    """Return a figure and its limit as text; growth and bend with direction and place.
 
-    Four digits or more tell the figure from the limit.
+    The figure has four digits, or as many as it takes to differ from the limit.
 
     >>> in_short("growth", Figure(1.417, (12, 0), "xi"), ">", 1.3)
     'growth 1.417 > 1.3 along xi at i=12, j=0'
@@ -96,7 +96,7 @@ class Judgement:
     problems : tuple of str
         A line for each failed gate or check of a profile.
     beyond : tuple of str
-        The same as short texts, with warnings of profiles: ``max_angle 178.2 > 170``.
+        A short text for each problem and each warning of a profile: ``max_angle 178.2 > 170``.
     replaced : tuple of str
         Limits of gates that override those of a profile, such as ``box_ratio > 4000``.
     profile : ProfileReport, optional

@@ -21,10 +21,10 @@ LARGE = 1e30  # growth that is reported at an edge of zero length
 
 @dataclass(frozen=True)
 class Extreme:
-    """Greatest and mean value of a quantity, the 99th percentile in blocks, and where the greatest occurs.
+    """Greatest value of a quantity, its mean, and its 99th percentile if computed.
 
-    `at` is the node or cell (i, j), in a multi-block grid (block, i, j[, k]); `along` is the direction of its
-    grid line, one of `DIRECTIONS`.
+    `at` is the node or cell of the greatest value: (i, j), in a multi-block grid (block, i, j[, k]). `along`
+    is the direction of the grid line there, one of `DIRECTIONS`.
     """
 
     max: float
@@ -48,7 +48,7 @@ class Growth:
 
 
 class Tally:
-    """Collects extreme and mean of values part by part; with `kept` a percentile too."""
+    """Maximum and mean of values that are added part by part; with `kept`, the 99th percentile too."""
 
     def __init__(self, *, kept: bool = False) -> None:
         self._max, self._total, self._count = -np.inf, 0.0, 0
@@ -74,7 +74,7 @@ class Tally:
         along: str | None,
         values: Sequence[Floats | Singles],
     ) -> None:
-        """Add `count` values by their sum and greatest value, the latter with its place."""
+        """Add `count` values with the sum `total`; the greatest is `high`, at the node or cell `at`."""
         if high > self._max:
             self._max, self._at, self._along = high, at, along
         self._total += total
@@ -90,7 +90,7 @@ class Tally:
 
     @property
     def extreme(self) -> Extreme | None:
-        """The extreme of all values so far, None if there were none."""
+        """Statistics of all values added so far; None without values."""
         if not self._count:
             return None
         p99 = None if self._values is None else percentiles_of(np.concatenate(self._values), (99,))[0]
@@ -109,7 +109,7 @@ def growth(grid: Grid) -> Growth:
 
 
 def growth_off_walls(growth: Growth, walls: Sequence[Patch]) -> Extreme | None:
-    """Return the growth along those lines of a one-block grid that start at `walls`."""
+    """Return the growth along the lines that start at `walls`, in a grid of one block."""
     sides = {patch.side for patch in walls}
     families = (growth.eta, {"south", "north"}), (growth.xi, {"west", "east"})
     return most_of(extreme for extreme, ends in families if extreme and sides & ends)
@@ -121,7 +121,7 @@ def most_of(extremes: Iterable[Extreme | None]) -> Extreme | None:
 
 
 def beyond_seam(grid: Grid) -> Floats:
-    """Return the nodes of a grid; those of an O grid (ni + 1, nj, 2) with column 1 repeated."""
+    """Return the nodes (ni, nj, 2) of a grid; in an O grid (ni + 1, nj, 2), column i = 1 again at the end."""
     return np.concatenate([grid.nodes, grid.nodes[1:2]]) if grid.periodic else grid.nodes
 
 
@@ -133,7 +133,7 @@ def across_wake(grid: Grid) -> Floats:
 
 
 def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
-    """Yield parts of `nodes` (ni, nj, 2) with their first column; parts share `more` columns."""
+    """Yield parts of `nodes` (ni, nj, 2), each after its first index i; neighbours share `more` columns."""
     for i in range(0, max(len(nodes) - more, 0), ROWS):
         yield i, nodes[i : i + ROWS + more]
 

@@ -25,10 +25,11 @@ from meshonet.kernels import _native
 
 @dataclass(frozen=True)
 class Lines:
-    """Largest growth and bend at nodes of grid lines, with their places; None without nodes.
+    """Largest growth and bend (turning angle in degrees) of grid lines, with their nodes; None without nodes.
 
-    `growth` is along each direction of the blocks, or across a side. `leaving` is along lines from walls
-    through all blocks, `by_wall` the same for each wall.
+    `growth` is along each direction of the blocks. Fields ``_inside`` are of nodes inside blocks, ``_across``
+    of nodes on sides between blocks. `leaving` is growth along lines from walls through all blocks, `by_wall`
+    the same for each wall.
     """
 
     growth: Growth
@@ -52,9 +53,9 @@ class BlockLines:
 
 
 def lines(grid: Grid, nodes: Vertices, *, all_measures: bool = True) -> Lines:
-    """Return growth and bend of lines of planar blocks or surface patches with these vertices.
+    """Return growth and bend of the lines of planar blocks or surface patches.
 
-    Without `all_measures`, there is neither a bend nor a percentile.
+    `nodes` are the vertices of the grid. Without `all_measures`, bend and percentiles are left out.
     """
     measures = (ratios, bends) if all_measures else (ratios,)
     parts = [*_inside(grid, measures), *_across(grid, nodes, measures)]
@@ -62,9 +63,9 @@ def lines(grid: Grid, nodes: Vertices, *, all_measures: bool = True) -> Lines:
 
 
 def lines_of(grid: Grid, parts: list[BlockLines], *, along: bool = True, places: bool = True) -> Lines:
-    """Return growth and bend of the lines of blocks in `parts`.
+    """Return growth and bend of all lines in `parts`.
 
-    Percentiles: `along` for each direction and wall, `places` inside blocks and on sides.
+    `along` requests percentiles for each direction and wall, `places` for nodes inside blocks and on sides.
     """
     family = {(m.block, m.axis): k for k, members in enumerate(families(grid)) for m in members}
     walls = [(patch.name, family[patch.block, patch.place[0]]) for patch in grid.walls()]
@@ -101,8 +102,8 @@ def part_of_values(
 ) -> BlockLines:
     """Return growth and bend of lines along `axis` through an array of nodes.
 
-    `values` are growth and perhaps bend (m, n[, l]), the first at `place`, (block, i, j[, k]), `inside` a
-    block or not; `kept` keeps them for percentiles.
+    `values` are growth and, if computed, bend, each (m, n[, l]). `place` is the first, (block, i, j[, k]).
+    `inside`: nodes are inside the block, not on a side. `kept`: values are stored for percentiles.
     """
     tallies = Tally(kept=kept), Tally(kept=kept)
     for tally, each in zip(tallies, values, strict=False):
@@ -145,7 +146,7 @@ def bends(nodes: Floats) -> Floats:
 
 
 def solid_lines(grid: Grid, *, percentiles: bool = True) -> Lines:
-    """Return growth and bend of the lines of volumes; `percentiles` are of single precision."""
+    """Return growth and bend of the lines of volumes; percentiles are computed in single precision."""
     numbers, nodes = range(len(grid.blocks)), [block.nodes[..., 0].size for block in grid.blocks]
     inside = over_blocks(lambda number: _solid_inside(grid, number, percentiles), numbers, nodes)
     nodes = [2 * math.prod(stop - start + 1 for start, stop in each.range) for each in grid.connections]

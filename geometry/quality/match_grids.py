@@ -11,10 +11,11 @@ Pairing: TypeAlias = Literal["auto", "name", "order"]
 
 
 class GridMatcher:
-    """Finds the partner of each grid in a reference set, which is read as far as needed.
+    """Finds, for each grid, the grid of a reference set with which it is compared.
 
-    Pairing is by ``name`` or ``order``. ``auto``: one reference is for all grids; several are paired by name
-    if their names differ and include that of the first grid, else by order.
+    Pairing is by ``name`` or ``order``. ``auto``: a single reference serves all grids. Several references are
+    paired by name if the first two have different names and one is called as the first grid, else by order.
+    References are read only as far as needed.
     """
 
     def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:
@@ -23,7 +24,7 @@ class GridMatcher:
         self._passed: list[Grid] = []
 
     def match(self, name: str) -> Grid:
-        """Return the partner of the next grid, called `name`. Raises InputError: there is none."""
+        """Return the reference for the next grid, called `name`. Raises InputError: there is none."""
         if self._pairing == "auto":
             self._pairing = self._decided(name)
         if self._pairing == "name":

@@ -91,9 +91,9 @@ def worst_cells_of(grid: Grid, limit: int = 10) -> list[BadCell]:
 
 
 def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
-    """Return the quality of `grid`, whose cells on both sides of connections are neighbours.
+    """Return the quality of `grid`; two cells on both sides of a connection count as neighbours.
 
-    `percentiles`, the 1st and 99th of every metric, take four times as long as the rest.
+    `percentiles` adds the 1st and the 99th of every metric, and takes four times as long as all else.
     """
     quality = _compiled(grid, percentiles)
     if not metrics.METRICS:

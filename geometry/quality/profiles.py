@@ -19,7 +19,7 @@ Verdict = Literal["pass", "warn", "fail", "none"]
 
 @dataclass(frozen=True)
 class Limit:
-    """A condition that a figure must not meet, and the outcome (warning or failure) if it does."""
+    """A condition that a figure must not meet; `level` is the outcome if it does, warning or failure."""
 
     level: Level
     compare: str  # one of `COMPARE`
@@ -36,10 +36,10 @@ class Check:
 
 @dataclass(frozen=True)
 class CheckResult:
-    """The outcome of a check on `figure`, None if the grid has none.
+    """The outcome of a check of a profile; `figure` is None if the grid has no such figure.
 
-    `profile` is the check's profile, `centre` (2,) or (3,) that of the cell with the figure; `gated` says
-    whether a user's gates replace the limits.
+    `profile` is the name of the profile, `centre` (2,) or (3,) the centre of the cell with the figure.
+    `gated`: a user's gates replace the limits.
     """
 
     check: Check
@@ -67,13 +67,13 @@ class CheckResult:
 
     @property
     def worst(self) -> Limit | None:
-        """The limit that the figure exceeds, one that fails before one that warns."""
+        """The limit that the figure exceeds; of several, one that fails rather than one that warns."""
         limits = self.check.limits if self.figure else ()
         broken = [x for x in limits if self.figure and beyond(self.figure.value, x.compare, x.value)]
         return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":
-        """Return the outcome with the limits of `gates` on the same figure, if any."""
+        """Return the outcome, with limits of `gates` in place of a profile's limits on the same figure."""
         compare = self.check.limits[0].compare
         own = [gate for gate in gates if gate.replaces(self.check.figure, compare)]
         limits = tuple(Limit("fail", gate.compare, gate.limit) for gate in own)
@@ -100,11 +100,11 @@ class ProfileReport:
         return all(result.verdict != "fail" for result in self.results)
 
     def under(self, gates: Sequence[Gate]) -> "ProfileReport":
-        """Return the report; limits of `gates` replace those on the same figures."""
+        """Return the report, with limits of `gates` in place of a profile's limits on the same figures."""
         return replace(self, results=_once(result.under(gates) for result in self.results))
 
     def replaced(self) -> list[str]:
-        """Return limits of gates that override those of the profile: ``box_ratio > 4000``."""
+        """Return each limit of a gate that replaces a limit of the profile: ``box_ratio > 4000``."""
         return [
             f"{result.check.figure} {limit.compare} {limit.value:g}"
             for result in self.results

@@ -34,7 +34,7 @@ Gates: TypeAlias = str | Sequence[str | Gate]  # gates, or their texts as in `pa
 
 @dataclass(frozen=True)
 class Comparison:
-    """Distances of a grid's nodes from those of a reference, and ratios of both grids' largest angles."""
+    """Distances of nodes from those of a reference grid, and ratios of largest angles, grid to reference."""
 
     difference: Difference
     folded: int  # number of folded cells of the reference
@@ -52,10 +52,10 @@ class Comparison:
 class QualityReport:
     """The quality of a grid, with verdicts of profiles and a comparison if requested.
 
-    ``report.quality["max_angle"]`` has ``min``, ``mean``, ``max``, ``p01``, ``p99`` and the worst cell of a
-    metric, ``report.quality.folded`` the number of folded cells; ``report.figures.wall_rows`` heights and
-    angles of first cells, ``report.figures.growth`` growth ratios; ``report.profile.passed`` a verdict.
-    ``report.as_dict()`` has all as ``meshonet quality --json`` prints it.
+    ``report.quality["max_angle"]`` has ``min``, ``mean``, ``max``, ``p01``, ``p99`` and ``worst``, the worst
+    cell, of a metric. ``report.quality.folded`` is the number of folded cells. ``report.figures.wall_rows``
+    has heights and angles of first cells, ``report.figures.growth`` growth ratios. ``report.profile.passed``
+    is the verdict of the profiles. ``report.as_dict()`` has all that ``meshonet quality --json`` prints.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ class QualityReport:
         return Judgement(tuple(self._broken(gates)), tuple(dict.fromkeys(beyond)), tuple(replaced), profile)
 
     def judged(self, gates: Gates) -> list[tuple[Gate, Figure, bool]]:
-        """Return each gate with the value of its metric, and whether the value is beyond the limit."""
+        """Return each gate, the figure that the gate limits, and whether the figure is beyond the limit."""
         more, gates = self._compared(), _parsed(gates)
         figures = [gate.figure(self.figures, more) for gate in gates]
         pairs = zip(gates, figures, strict=True)
@@ -284,14 +284,14 @@ _BEYOND = "beyond the limits of OpenFOAM's checkMesh"
 
 
 def with_checkmesh_notes(notes: tuple[str, ...], grid: object) -> tuple[str, ...]:
-    """Return `notes`, with those of `checkmesh_notes` on a grid unless they are there."""
+    """Return `notes`, followed by `checkmesh_notes` of a grid unless `notes` contain one."""
     if not isinstance(grid, Grid) or any(note.startswith(_BEYOND) for note in notes):
         return notes
     return (*notes, *checkmesh_notes(grid))
 
 
 def checkmesh_notes(grid: Grid, coarsened: int = 1) -> tuple[str, ...]:
-    """Return a note on exceeded limits of checkMesh, if any, of a grid `coarsened` by a factor."""
+    """Return a note on limits of checkMesh that a grid, coarsened by the factor `coarsened`, exceeds."""
     judged = quality_report(grid, "openfoam").profile
     exceeded = judged.beyond() if judged else []
     if not exceeded:

@@ -18,7 +18,7 @@ _TINY, _LARGE = 1e-300, 1e30  # in place of 0 in divisors; upper bound of ratios
 
 
 def quad_metrics(nodes: Floats) -> Floats:
-    """Return the metrics `NAMES` (metrics, ni-1, nj-1) of `nodes` (ni, nj, 3), areas within the patch."""
+    """Return the metrics `NAMES` (metrics, ni-1, nj-1) of one patch with `nodes` (ni, nj, 3)."""
     ring = ring_of(nodes)
     edges = np.roll(ring, -1, axis=0) - ring
     before = np.roll(edges, 1, axis=0)

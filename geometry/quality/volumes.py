@@ -125,9 +125,9 @@ def _metric(grid: Grid, volumes: Sequence[Floats], k: int) -> list[Floats]:
 
 
 def padded_volumes(grid: Grid) -> list[Floats]:
-    """Return, for each block, volumes (ni+1, nj+1, nk+1) of its cells and a layer around it.
+    """Return, for each block, the volumes (ni+1, nj+1, nk+1) of the cells and of a layer around them.
 
-    The layer has those of cells across connections, elsewhere those of the nearest cells.
+    Across a connection the layer has the volumes of the neighbour's cells, elsewhere of the nearest cells.
     """
     padded = over_blocks(_padded, grid.blocks, _nodes_of(grid))
 

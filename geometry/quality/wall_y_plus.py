@@ -16,7 +16,7 @@ from meshonet.geometry.spacing.y_plus import first_cell
 
 @dataclass(frozen=True)
 class Flow:
-    """The flow for which y+ is computed, by the shear stress of a turbulent flat plate at half its length.
+    """The flow for which y+ is computed, with the wall shear stress at the middle of a turbulent flat plate.
 
     Parameters
     ----------

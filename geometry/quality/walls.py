@@ -32,7 +32,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class WallRow:
-    """Figures of the cells at a named wall; in a multi-block grid, at all walls so named."""
+    """Figures of the cells at a wall; in a multi-block grid, at all walls of one name."""
 
     name: str
     side: str | None  # the side of the block; None if the name is on several sides
@@ -50,9 +50,9 @@ def wall_row(grid: Grid, patch: Patch) -> WallRow:
 def wall_rows(
     grid: Grid, walls: Sequence[Patch], growth: Mapping[str, Extreme] = NO_GROWTH
 ) -> tuple[WallRow, ...]:
-    """Return the figures of the cells at `walls`, in a multi-block grid one for each name.
+    """Return the figures of the cells at `walls`: for each wall, in a multi-block grid for each name.
 
-    `growth` has, by name of the wall, the growth along its lines.
+    `growth` is the growth along the lines from each wall, by the name of the wall.
     """
     if grid.topology != "blocks":
         return tuple(wall_row(grid, wall) for wall in walls)
