@@ -37,10 +37,10 @@ class ChannelLines:
         return cls(upper, upper, squares)
 
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
-        """Return how much more lines lean with places `u` (k,) than with `start` (k,).
+        """Return how much more lines lean with nodes at places `u` (k,) than with nodes at `start` (k,).
 
-        That is the increase of tangents of angles to the normal, linearised at `u`, times `weight`. `pairs`
-        (p, 2) are the indices of the places that lines join.
+        Lean is the tangent of a line's angle to the normal. The increase is linearised at `u` and multiplied
+        by `weight`. Each line joins two nodes, with indices `pairs` (p, 2).
         """
         one = u[pairs[:, 0]]
         slope = np.interp(one, self.upper, np.gradient(self.lower, self.upper))
@@ -50,7 +50,7 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square of tan(angle to the normal) of lines between `pairs` (p, 2) of `u` (k,)."""
+        """Return the mean square of the lean of lines between nodes `pairs` (p, 2) at places `u` (k,)."""
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
@@ -58,6 +58,6 @@ class ChannelLines:
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:
-        """Return how far (p,), in u, lower places of `pairs` (p, 2) are from those opposite the upper."""
+        """Return by how much (p,), in u, lines between places `pairs` (p, 2) miss the opposite place."""
         upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))

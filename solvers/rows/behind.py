@@ -25,10 +25,10 @@ _KEPT = 0.4  # smallest accepted ratio of a cell's smallest Jacobian after the m
 
 
 def even_behind(sections: Sequence[KeySection], columns: Indices) -> tuple[KeySection, ...]:
-    """Return the sections, at `key_heights`, with nodes behind the blade on polynomials of the height.
+    """Return the sections, at `key_heights`, with nodes behind the blade on smooth lines along the span.
 
-    The polynomials are those of the nodes' `SectionPlane.shares`, and of theta minus that of the trailing
-    edge. The nodes `columns` (k, m) of layers are fixed; nodes near them move by a fraction, and all move
+    On these lines `SectionPlane.shares` and theta minus theta of the trailing edge are polynomials of the
+    height. The nodes `columns` (k, m) of layers stay, and nodes near them move by a fraction. All nodes move
     less if cells would get too small.
     """
     mesh = sections[0].layout.mesh

@@ -24,9 +24,9 @@ def layer_columns(layout: Layout) -> Indices:
 
 
 def straight_near(lines: Floats, away: Floats) -> Floats:
-    """Return the columns `lines` (k, m, 2), straightened close to a corner, where marched ones are curved.
+    """Return the columns `lines` (k, m, 2), straightened close to a corner, where marched columns are curved.
 
-    `away` (k,) are the distances of columns from the nearest corner.
+    `away` (k,) is the distance of each column from the nearest corner.
     """
     thickness = norms(np.diff(lines, axis=1)).sum(axis=1).max()
     t = np.clip((_MARCHED - away / thickness) / (_MARCHED - _STRAIGHT), 0.0, 1.0)
@@ -36,18 +36,18 @@ def straight_near(lines: Floats, away: Floats) -> Floats:
 
 
 def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
-    """Return coordinates `values` (k, m, 2) moved along columns, with first cells `first` high in space.
+    """Return nodes `values` (k, m, 2), moved along k columns so that first cells are `first` high in space.
 
-    `space` (k, m, 3) are the nodes in space. Moves fade to zero at the outer ends.
+    `space` (k, m, 3) are x, y, z of the nodes. The displacements fade to zero at the outer ends.
     """
     steps = norms(np.diff(space, axis=1))
     return resampled(values, steps, with_first(steps, np.full(len(steps), first)))
 
 
 def resampled(values: Floats, steps: Floats, new: Floats) -> Floats:
-    """Return `values` (k, m, 2), known at the nodes of k lines, at new nodes.
+    """Return `values` (k, m, 2) at the nodes of k lines, interpolated to new nodes.
 
-    `steps` and `new` (k, m - 1) are the distances of given and of new nodes, with equal sums.
+    `steps` and `new` (k, m - 1) are the cell lengths between given and between new nodes, with equal sums.
     """
     arcs = arcs_of(steps)
     return sampled(values, arcs, arcs_of(new))
@@ -59,7 +59,7 @@ def arcs_of(steps: Floats) -> Floats:
 
 
 def with_first(steps: Floats, first: Floats) -> Floats:
-    """Return `steps` (k, m) scaled to begin with `first` (k,); factors change gradually, and sums stay."""
+    """Return `steps` (k, m) scaled gradually, so that the first is `first` (k,) and sums are kept."""
     t = np.linspace(0.0, 1.0, steps.shape[1])
     begin = steps * exp(log(first[:, None] / steps[:, :1]) * (1.0 - t) ** 2)
     total = steps.sum(axis=1)

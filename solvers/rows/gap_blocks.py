@@ -50,7 +50,7 @@ def gap_ends(
         those next to them.
     lead : index of the node at the leading edge.
     zone : the gap.
-    first, growth : height of the cells inside the outline, and largest ratio of neighbours.
+    first, growth : height of the cells inside the outline, and largest ratio of neighbouring cells.
 
     Raises NoValidGridError: cells stay folded.
     """

@@ -52,8 +52,8 @@ class GapFill:
 def outline_sides(count: int, lead: int, aside: int) -> list[Indices]:
     """Return the indices of the nodes of each of four sides, in an outline of `count` nodes.
 
-    Side 1 is at the trailing edge, side 3 at the leading edge with node `lead`; both reach `aside` nodes from
-    the edge.
+    Side 1 is around the trailing edge, side 3 around the leading edge, which is node `lead`. Both reach
+    `aside` nodes from the edge, in both directions.
     """
     m, half = aside, count // 2
     cuts = [m, half - m, half + m, count - m, count + m]

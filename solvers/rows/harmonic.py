@@ -12,8 +12,8 @@ from meshonet.solvers.sparse import SparsePattern
 class HarmonicMoves:
     """Displacements of nodes that are harmonic except where prescribed.
 
-    A free node moves by the mean of its neighbours' moves, weighted by inverse square distances. Periodic
-    partners move alike. One object serves all meshes with the same quads and prescribed nodes.
+    A free node moves by the mean displacement of its neighbours, weighted by inverse square distances. Both
+    nodes of a periodic pair move alike. One object serves all meshes of the same quads and prescribed nodes.
 
     Parameters
     ----------

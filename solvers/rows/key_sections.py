@@ -70,7 +70,7 @@ class LayerColumns:
 
     @classmethod
     def of(cls, plane: SectionPlane, places: Floats) -> LayerColumns:
-        """Return the columns that begin at places u (k,) on the blade."""
+        """Return the columns that begin at `places` u (k,) on the blade."""
         front = plane.front_arcs(places)
         lines, walls = plane.cascade.ring.columns(front)
         lines = straight_near(lines, plane.from_corners(walls))
@@ -150,9 +150,9 @@ class NextSections:
         self._problem = _problem(plan, section.plane, section.layout.mesh)
 
     def of(self, before: KeySection, plane: SectionPlane, columns: LayerColumns | None = None) -> KeySection:
-        """Return the section in `plane` from the section `before`; `columns` are computed unless given.
+        """Return the section in `plane`, from the section `before`; `columns` are its layers, if known.
 
-        Raises NoValidGridError: its cells stay folded.
+        Raises NoValidGridError: cells stay folded.
         """
         plan = self.plan
         columns = columns or LayerColumns.of(plane, plan.places.at(plane.height))

@@ -33,7 +33,7 @@ _TRIES, _NEAR = 4, 0.03  # largest number of choices of counts; sufficient relat
 
 
 def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
-    """Return the coarse blocks of a section; if `early`, corners of the blade are nodes from the start.
+    """Return the coarse blocks of a section; `early` puts nodes at the corners of the blade from the start.
 
     Raises InputError: no room for inlet or outlet. Raises NoValidGridError: cells are folded.
     """

@@ -38,7 +38,7 @@ class NodeGroup:
         return self.around.coefficients.shape[1] if self.around else 0
 
     def arcs(self) -> list[LineArcs]:
-        """Return the arc lengths of the lines along the span, for each zone."""
+        """Return, for each zone, the arc lengths of the lines along the span."""
         out = []
         for zone in self.zones:
             at = zone.low + (zone.high - zone.low) * key_heights(_IN_GAP if zone.gap else SAMPLES)
@@ -56,7 +56,7 @@ class NodeGroup:
         return values
 
     def at(self, heights: Floats) -> Floats:
-        """Return s, theta, h (levels, m, 3) at heights (levels, m), with exact first cells at the blade."""
+        """Return s, theta, h (levels, m, 3) at `heights` (levels, m); first cells at the blade are exact."""
         values = np.empty((*heights.shape, 3))
         values[..., :2], values[..., 2] = self.lines.at(heights), heights
         np.clip(values[..., 0], 0.0, 1.0, out=values[..., 0])
@@ -107,7 +107,7 @@ class NodeGroup:
     def store(self, values: Floats, rises: Sequence[Rise], space: Floats) -> None:
         """Store x, y, z of the group's nodes in `space` (levels, n, 3) of all nodes.
 
-        `values` (levels, m, 3) are their s, theta, h; `rises` move those of layers.
+        `values` (levels, m, 3) are s, theta, h of the group's nodes; `rises` displace nodes of layers.
         """
         self.row.channel.store(values, self.ids, space)
         if rises:

@@ -11,11 +11,11 @@ from meshonet.solvers.rows.across import ChannelLines
 
 
 def opposite_places(places: Floats, pairs: Indices, lines: ChannelLines) -> Floats:
-    """Return places u (k,) of nodes clockwise around a blade, with a node at 1 - u for each at u.
+    """Return places u (k,) of nodes clockwise around a blade; for each node at u there is one at 1 - u.
 
-    k is even, and both edges have a node, so that blocks in a gap are not skewed. `pairs` (p, 2) are nodes on
-    the upper and the lower side that lines across the channel join, from the leading edge. The node at the
-    leading edge is the one with which `lines` lean least.
+    k is even, and both edges have a node, so that blocks in a gap are not skewed. Each line across the
+    channel joins two nodes `pairs` (p, 2), of the upper and of the lower side, in order from the leading
+    edge. The node put at the leading edge is the one with which these lines lean least from `lines`.
     """
     both = _both_sides(places)
     k, half = len(places), len(places) // 2

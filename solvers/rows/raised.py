@@ -44,7 +44,7 @@ class Rise:
         ----------
         row, blade : the row, and the zone of the blade.
         around : places u of the k columns as functions of the height.
-        lines : s and theta of the k (rows + 1) nodes of these columns as functions of the height.
+        lines : s and theta of all k * (rows + 1) nodes of the columns as functions of the height.
         """
         end, up, width = (blade.high, 1.0, row.tip_gap)
         if zone.low == 0.0:
@@ -87,7 +87,7 @@ def raise_layers(
     rises : the displacements.
     space : (levels, k, rows, 3) x, y, z of the nodes.
     heights : (levels, k) heights of the nodes on the blade.
-    ends : levels that bound zones, levels next to them, and heights of the cells between.
+    ends : levels that bound zones, levels next to the bounds, and heights of the cells in between.
     first : height of first cells at the blade.
     """
     rows = space.shape[2]

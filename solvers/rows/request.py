@@ -15,7 +15,7 @@ _LEAST_HEIGHT, _MOST_HEIGHT = 1e-8, 0.05  # chords
 
 @dataclass(frozen=True, kw_only=True)
 class RowRequest(VolumeRequest):
-    """Options of the grid of a blade row, checked on construction. The unit of lengths is the longest chord.
+    """Options of the grid of a blade row, checked on construction. Lengths are in units of the longest chord.
 
     Parameters
     ----------

@@ -38,8 +38,8 @@ _NEAR_EDGE = 0.06  # places before and behind the trailing edge by which the mea
 class SectionPlane:
     """A section of a blade row, mapped to a plane cascade.
 
-    A place u around the blade is 0 at the leading edge, 0.5 at the trailing edge after the upper side, and 1
-    after the lower side.
+    Places around the blade are values of a coordinate u: 0 at the leading edge, up to 0.5 at the trailing
+    edge along the upper side, then up to 1 along the lower side.
     """
 
     height: float  # height h in the channel, 0 at the hub to 1 at the casing
@@ -84,7 +84,7 @@ class SectionPlane:
 
     @property
     def thickest(self) -> float:
-        """Place u, 0 to 0.5, whose distance from 1 - u is largest."""
+        """Place u, 0 to 0.5, at which the blade is thickest, measured from u to 1 - u."""
         u = np.linspace(0.1, 0.4, 61)
         return float(u[int(modulus(self._opposite(u) - self._opposite(1.0 - u)).argmax())])
 
@@ -98,9 +98,9 @@ class SectionPlane:
 
     @property
     def wake(self) -> float:
-        """Theta at the outlet minus theta at the trailing edge, along the straight mean line.
+        """Theta at the outlet minus theta at the trailing edge, on a straight line.
 
-        It is inclined by at most `STEEPEST` degrees.
+        The line continues the mean line of the blade, with an angle of at most `STEEPEST` degrees.
         """
         one, other = self._opposite(np.array([0.5 - _NEAR_EDGE, 0.5 + _NEAR_EDGE]))
         way = complex(*self.edges[1]) - complex(0.5 * (one + other))
@@ -111,7 +111,7 @@ class SectionPlane:
     def ending(self, near: tuple[float, float], thickest: float) -> SectionPlane:
         """Return the section with straight rows of cells from `near` pitches before and behind the blade.
 
-        The conformal map is centred between the places `thickest` and 1 - `thickest`.
+        The conformal map has its centre midway between the places u = `thickest` and u = 1 - `thickest`.
         """
         one, other = self._opposite(np.array([thickest, 1.0 - thickest]))
         centre = complex(0.5 * (one + other))
@@ -123,7 +123,7 @@ class SectionPlane:
         return self.places[list(self.cascade.blade.corners)]
 
     def from_corners(self, arcs: Floats) -> Floats:
-        """Return the distances (n,) to the nearest corner from arc lengths on the blade, or infinity."""
+        """Return distances (n,) along the blade from `arcs` (n,) to the nearest corner, or infinity."""
         off = wrapped((arcs - self.wall_arcs(self.corners)[:, None]) / self._walls[-1])
         return np.asarray(self._walls[-1] * np.abs(off).min(axis=0, initial=np.inf))
 
@@ -140,7 +140,7 @@ class SectionPlane:
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:
-        """Return the arc lengths (n,) on the outer edge of the layers of columns from places u (n,)."""
+        """Return arc lengths (n,), on the outer edge of the layers, of columns from places u (n,)."""
         ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)
@@ -150,7 +150,7 @@ class SectionPlane:
 
     @cached_property
     def across(self) -> tuple[Floats, Floats]:
-        """1 - u (n,) of the places opposite `ON_SIDE` (n,), and the slant (n,); see `ChannelLines`."""
+        """Fields `lower` and `slant` of `ChannelLines` for this section; `upper` is `ON_SIDE`."""
         front, pitch = self.cascade.ring.front, np.array([0.0, self.cascade.pitch[1]])
         one, other = (front.at(self.front_arcs(u)) for u in (ON_SIDE, 1.0 - ON_SIDE))
         off = ((other + pitch).T[:, None] - one.T[:, :, None]) ** 2
@@ -164,7 +164,7 @@ class SectionPlane:
         return lower, np.where(inside, self.cascade.blade.length / np.sqrt(here), 0.0)
 
     def place(self, point: Floats) -> str:
-        """Return where a point (2,) is along the span and the blade, as text."""
+        """Return, as text for users, where a point (2,) is along the span and along the blade."""
         share = float(self.shares(point[None])[0])
         along = f"between the blades, {100.0 * share:.0f} % of the way along them"
         if share < _AT_EDGE:
@@ -174,7 +174,7 @@ class SectionPlane:
         return f"section at {100.0 * self.height:.3g} % of the span, {along}"
 
     def shares(self, points: Floats) -> Floats:
-        """Return how far points (n, 2) are along the passage.
+        """Return shares (n,) of points (n, 2): how far along the passage they are.
 
         A share is -1 at the inlet, 0 at the leading edge, 1 at the trailing edge, 2 at the outlet.
         """

@@ -42,7 +42,7 @@ class SpanPlaces:
         ----------
         planes : all sections.
         pairs : (p, 2) nodes on the upper and the lower side that lines across the channel join.
-        gaps : as in the class.
+        gaps : whether there is a gap at the hub, and at the casing.
         """
         corners, half = planes[0].corners, len(planes) // 2
         if any(gaps):
@@ -66,7 +66,7 @@ class SpanPlaces:
         return np.asarray(np.mod(start + height * wrapped(end - start), 1.0))
 
     def evened(self, planes: Sequence[SectionPlane], growth: float, pairs: Indices) -> SpanPlaces:
-        """Return places with steps that grow by about `growth` at most in all sections."""
+        """Return places moved so that steps between nodes grow by about `growth` at most in all sections."""
         lines, corners = ChannelLines.of(planes), planes[0].corners
 
         def even(k: int) -> Floats:
@@ -78,7 +78,7 @@ class SpanPlaces:
 
 
 def at_corners(places: Floats, corners: Floats) -> Floats:
-    """Return `places` u (k,), the nearest ones moved to `corners` u (c,)."""
+    """Return `places` u (k,), with the place nearest to each of the `corners` u (c,) moved there."""
     out = places.copy()
     out[corner_nodes(places, corners)] = corners
     return out

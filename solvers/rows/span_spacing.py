@@ -29,7 +29,7 @@ Ends: TypeAlias = tuple[Floats | float, Floats | float]
 def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least: int) -> int:
     """Return the number of cells, at least `least`, that fill a length.
 
-    They grow by `growth` from both `ends` up to the length `largest`.
+    Cells grow by `growth` from both `ends` up to the length `largest`.
     """
 
     def reach(cells: int) -> float:
@@ -58,8 +58,8 @@ def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
 def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | None], cells: int) -> Floats:
     """Return arc lengths (n, cells + 1) on lines of `lengths` (n,), with evenly changing cells.
 
-    The logarithm of cells is quadratic in their index, with the first and the last of `ends`. None as the
-    last: linear.
+    The logarithm of a cell's length is quadratic in its index, linear if the last of `ends` is None. `ends`
+    are the first and the last cell length.
     """
     t = np.linspace(0.0, 1.0, cells)
     first, last = (None if end is None else np.broadcast_to(end, lengths.shape)[:, None] for end in ends)
@@ -118,7 +118,7 @@ def _fourth(values: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Spacing:
-    """Results of `two_sided` in lengths of the line, tabulated for a range of lengths."""
+    """Relative arc lengths on lines, as `two_sided`, tabulated for a range of line lengths."""
 
     lengths: tuple[float, float]  # shortest and longest line
     table: Floats  # (cells + 1, m) relative arc lengths at m equally spaced lengths
@@ -143,7 +143,7 @@ class Spacing:
 
 @dataclass(frozen=True, eq=False)
 class LineArcs:
-    """Arc lengths along n lines, by their parameter from 0 to 1."""
+    """Relation of arc length and parameter, 0 to 1, on each of n lines."""
 
     lengths: Floats  # (n,) lengths of the lines
     ahead: SpanLines  # parameter minus relative arc length, by relative arc length

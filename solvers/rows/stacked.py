@@ -83,7 +83,7 @@ class StackedRow:
 
     @property
     def twins(self) -> tuple[Indices, Indices]:
-        """Nodes (k,) of the second periodic side, and their partners (k,) on the first."""
+        """Indices (k,) of nodes on the second periodic side, and of their partners (k,) on the first side."""
         partner = self.layout.mesh.places.partner
         second = np.flatnonzero(partner >= 0)
         return second, partner[second]
@@ -95,7 +95,7 @@ class StackedRow:
         return values.reshape(*self.columns.shape, 3)[:, :2]
 
     def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
-        """Return the nodes, and tasks that store those of layers off the blade.
+        """Return the nodes, and tasks that store nodes of the layers off the blade among them.
 
         The nodes of the second periodic side are not computed.
         """

@@ -30,13 +30,14 @@ def upright(
 ) -> tuple[Floats, Floats]:  # fmt: skip
     """Return places u (k,) at hub and casing with which lines across the channel lean less.
 
-    No node moves beyond an edge of the blade, and none if no line in the half of the span at a free end leans
-    by more than `LEAN`.
+    No node moves beyond an edge of the blade. No node moves at all if, in the half of the span at a free end,
+    no line leans by more than `LEAN`.
 
     Parameters
     ----------
-    ends, free : given places at hub and casing, and which of them move.
-    pairs : (p, 2) nodes on the upper side, and on the lower side of the next blade, that lines join.
+    ends : given places (k,) at hub and casing.
+    free : whether the places at the hub may move, and at the casing.
+    pairs : (p, 2) the two nodes that each line joins, on the upper side and on the next blade's lower side.
     fixed : (k,) mask of nodes that do not move.
     """
     heights = np.array([plane.height for plane in planes])

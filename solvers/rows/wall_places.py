@@ -24,13 +24,14 @@ def even_wall_places(
     planes: Sequence[SectionPlane], places: Floats, corners: Floats, growth: float, pairs: Indices,
     lines: ChannelLines, *, opposite: bool,
 ) -> Floats:  # fmt: skip
-    """Return `places` u (k,) clockwise around the blade, moved until steps are even.
+    """Return `places` u (k,) clockwise around the blade, moved until steps grow by about `growth` at most.
 
     Parameters
     ----------
     corners : (c,) places of nodes that stay.
-    pairs, lines : (p, 2) nodes on both sides that lines join, which should not lean more than before.
-    opposite : whether each node at u keeps one at 1 - u; `lines` then have no effect.
+    pairs : (p, 2) nodes on both sides that lines across the channel join.
+    lines : mean lines, from which the lines should not lean more than before.
+    opposite : whether each node at u keeps a node at 1 - u opposite; `lines` then have no effect.
     """
     limit = MARGIN * math.log(growth)
     lead = int(np.abs(wrapped(places)).argmin())

@@ -32,7 +32,7 @@ class Zone:
 
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
-    """Return the cells of a section for about `cells` cells of the row, more if `growth` needs them."""
+    """Return the number of cells of a section for about `cells` in the row, or more for `growth`."""
     return max(_needed(growth), int(cells / _sections(zones)))
 
 
@@ -53,7 +53,7 @@ def _sections(zones: Sequence[Zone]) -> float:
 def zones_of(row: Row, first: float, growth: float, cells: int) -> list[Zone]:
     """Return the zones of a row with about `cells` cells, from hub to casing.
 
-    First cells in gaps are `first` high, or less for `GAP_ROWS` cells.
+    First cells in a gap are `first` high, or smaller so that `GAP_ROWS` cells fit into the gap.
     """
     channel = row.channel
     parts = PARTS * math.cbrt(cells / PARTS_CELLS)
