@@ -6,6 +6,7 @@ The linter refuses functions by their names (`banned-api` in pyproject.toml); he
 
 import ast
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -75,15 +76,33 @@ def python_files(room: str) -> Iterator[str]:
             yield name
 
 
+KINDS = (is_a_matrix_product, is_a_power_of_arrays, is_an_unstable_order)
+
+
 def places(name: str, source: str, is_one: Callable[[ast.AST], bool]) -> list[str]:
-    found = [node for node in ast.walk(ast.parse(source)) if is_one(node)]
-    return [f"{name}:{node.lineno}: {ast.unparse(node)}" for node in found]
+    return places_of_each_kind(name, source)[is_one]
+
+
+def places_of_each_kind(name: str, source: str) -> dict[Callable[[ast.AST], bool], list[str]]:
+    found: dict[Callable[[ast.AST], bool], list[str]] = {kind: [] for kind in KINDS}
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.BinOp | ast.AugAssign | ast.Call):
+            for kind in KINDS:
+                if kind(node):
+                    found[kind].append(f"{name}:{node.lineno}: {ast.unparse(node)}")
+    return found
+
+
+@cache
+def read(room: str) -> dict[str, dict[Callable[[ast.AST], bool], list[str]]]:
+    """Return the places in each file: sources are parsed once for all kinds."""
+    return {name: places_of_each_kind(name, (ROOT / name).read_text()) for name in python_files(room)}
 
 
 def places_in(room: str, is_one: Callable[[ast.AST], bool], besides: tuple[str, ...] = ()) -> list[str]:
-    names = [name for name in python_files(room) if name not in besides]
-    assert names
-    return [place for name in names for place in places(name, (ROOT / name).read_text(), is_one)]
+    files = {name: kinds[is_one] for name, kinds in read(room).items() if name not in besides}
+    assert files
+    return [place for places in files.values() for place in places]
 
 
 @pytest.mark.parametrize("room", ROOMS)

@@ -266,7 +266,7 @@ def test_threads_are_those_of_torch(meshonet: Meshonet, arches_h5: str) -> None:
     import torch
 
     for count in (2, 1):
-        words = ("train", arches_h5, *BRIEF, "--threads", count, "-o", "m.safetensors")
+        words = ("train", arches_h5, *BRIEF, "--epochs", "1", "--threads", count, "-o", "m.safetensors")
         assert meshonet(*words, "--quiet").code == 0
         assert torch.get_num_threads() == count
 

@@ -276,7 +276,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--surface": (f"{WING} {MADE}", "OPTION", "nodes"),
         "--layers": (f"{WING} {MADE}", "OPTION 20", "nodes"),
         "--first-cell": (f"{WING} {MADE}", "OPTION .002", "nodes"),
-        "--growth": (f"wing.toml --around 49 --span 9 {MADE}", "OPTION 1.3", "nodes"),
+        "--growth": (f"short.toml --around 33 --span 7 {MADE}", "OPTION 1.3", "nodes"),
         "--revolve": (f"short.toml {WING} {MADE}", "OPTION 90", "code"),
         "--axis": (f"short.toml {WING} {MADE}", "OPTION y", "code"),
     },

@@ -84,7 +84,7 @@ def winglet(cant=0.0, **values) -> Stack:
     "stack", [winglet(), winglet("panel"), winglet(between="smooth"), winglet("panel", between="smooth")]
 )
 def test_cells_at_the_edge_of_the_tip_of_a_winglet_differ_by_3_at_most(stack):
-    grid = make_stack(stack, StackRequest(around=97, span=41)).grid
+    grid = make_stack(stack, StackRequest(around=49, span=21)).grid
     (edge,) = (each for each in grid.connections if (each.block, each.donor) == (0, 1))
     own, donor = across(grid, edge, 2)
     assert ratios(np.stack([own[1], own[0], donor[1]])).max() <= 3.0
