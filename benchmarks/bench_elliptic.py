@@ -247,8 +247,8 @@ def controls(sizes: list[int]) -> Iterator[str]:
     """Yield the table of Thomas and Middlecoff's control functions."""
     yield "\n## Control functions of Thomas and Middlecoff\n"
     yield (
-        "*H*: length of the cells of the sides west and east next to the south side. "
-        "*median first cell*: median height of the\ncells at the south side.\n"
+        "*H*: prescribed first-cell height at the south side, which the given nodes of the sides west and "
+        "east have. *median\nfirst cell*: median height of the cells at the south side.\n"
     )
     yield "| shape | nodes per side | H | to 1e-8, s | cycles | rate | folded | median first cell |"
     yield "| --- |" + " --- |" * 7

@@ -253,9 +253,9 @@ four-sided domains. For the method see [neural operators](../theory/operators.md
   is larger than in Winslow's grid.
 - *angle*: largest included angle of each cell, in degrees. The tables give the maximum and the mean over
   the cells, averaged over the domains.
-- *gain*: by how much the angle is smaller than in Winslow's grid, in percent of the reduction that the
-  full variational grid reaches. *all*: both reductions are summed over the domains before the division.
-  *median*: median over the domains of the ratio for each domain.
+- *gain*: by how much the angle is smaller than in Winslow's grid, divided by how much it is smaller in the
+  full variational grid, in percent. *all*: ratio of the sums over all domains. *median*: median of the
+  ratios of the single domains.
 - *CPU ms*: CPU time of one thread, while other programs used the machine.
 """
 TAIL = """

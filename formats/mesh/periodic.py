@@ -126,7 +126,7 @@ def _parts(
 
 
 def cells_beside(connection: Connection, cells: Sequence[Indices]) -> tuple[Indices, Indices]:
-    """Return the cells on both sides of a connection, in one order, from the cell numbers of all blocks."""
+    """Return the numbers of the cells on both sides of a connection; those at one index adjoin."""
     own, donor = cells_at(connection, lambda block, side: face_of(cells[block][..., None], side))
     return own[..., 0], donor[..., 0]
 

@@ -133,7 +133,7 @@ def across_wake(grid: Grid) -> Floats:
 
 
 def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
-    """Yield parts of `nodes` (ni, nj, 2), each after its first index i; neighbours share `more` columns."""
+    """Yield i and the part of `nodes` (ni, nj, 2) from i on; neighbouring parts share `more` indices i."""
     for i in range(0, max(len(nodes) - more, 0), ROWS):
         yield i, nodes[i : i + ROWS + more]
 

@@ -17,8 +17,8 @@ _STILL = 1e-13  # change of the logarithm of the growth ratio below which the it
 def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
     """Return arc lengths (n, cells + 1) of nodes on lines of `lengths` (n,) from the tip on.
 
-    First cells are `first` (n,). Cells are (h^4 + c)^(1/4) with sizes h of constant growth from the least
-    first cell; c is the constant that gives the prescribed first cell.
+    Sizes of cells are (h^4 + c)^(1/4), where h grows by a constant ratio from the least of `first` (n,). The
+    constant c of a line makes its first cell equal to `first`.
     """
     least = float(first.min())
     more = (np.square(np.square(first / least)) - 1.0)[:, None]
