@@ -122,8 +122,11 @@ FAMILIES_HEAD = """# The six test families
 
 Use these families of shapes to train and compare neural operators. They are the test cases of the MeshONet
 paper ([results](../benchmarks/paper/index.md)). The shapes of a family depend on one parameter.
-`sample-boundary --family NAME --count N` makes N shapes with parameters from the range below, or from
-another range with `--range A:B`; `solve-pde` makes their grids.
+*arch*, *hexagon* and *wrench* change the edges of a square of side 1. *semicircle* is a channel, 2 long and 1
+high, with a semicircle on its floor. *hole* is a plate, 2 by 2 with the origin at its centre, with a round hole.
+
+`sample-boundary --family NAME --count N` makes N shapes. Their parameters lie in the range given below, or in
+the range A to B with `--range A:B`. `solve-pde` makes the grids.
 """
 
 
