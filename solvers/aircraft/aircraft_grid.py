@@ -39,7 +39,7 @@ _FINE = 129  # number of levels of the table by which lines beyond the tip are m
 
 
 def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, float, tuple[str, ...]]:
-    """Return the grid of an aircraft or of its half, the planned growth ratio, and notes.
+    """Return the grid of an aircraft or of half an aircraft, the planned growth ratio, and notes.
 
     Raises InputError: a wing does not begin inside the body or does not leave it; wings are too close to each
     other.

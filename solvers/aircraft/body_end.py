@@ -18,7 +18,7 @@ _POLE_CELL = 0.5  # ratio of the cells at nose and tail to the cells beside the 
 
 @dataclass(frozen=True, eq=False)
 class BodyEnd:
-    """The part of the grid at the nose or the tail, with equal s and theta on all levels."""
+    """The part of the grid at the nose or the tail; s and theta of the nodes are equal on all levels."""
 
     theta: Floats  # (n,) angles of the lines from the pole, the tip of nose or tail
     core: PoleCore  # block that covers the pole, in a plane with polar coordinates s, theta
@@ -28,9 +28,10 @@ class BodyEnd:
 
     @classmethod
     def of(cls, points: Points, sides: Sequence[Side]) -> Self:
-        """Return the end beside the first or last column; `sides` are its nodes on some levels.
+        """Return the end beside the first or last column of wings.
 
-        The first level is the body; s is measured from the pole.
+        `sides` are the nodes on the side of the column, on some levels, the first on the body. s is measured
+        from the pole.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))
@@ -56,10 +57,10 @@ class BodyEnd:
         return begin, side, np.full(len(side), self.step), last
 
     def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
-        """Return two patches, rows and core (., ., 3), between the `side` (n, 3) of a column and the pole.
+        """Return two patches (., ., 3), rows and core, between the `side` (n, 3) of a column and the pole.
 
-        `last` (n,) are the cells at the side. Nodes are s, theta, zeta, with s from the pole; `points` maps
-        them to space.
+        `last` (n,) are the lengths in s of the cells at the side. Nodes are s, theta, zeta, with s from the
+        pole; `points` maps nodes to space.
         """
         begin, end, *sizes = self._lines(side, last)
         lines = lines_between(points, begin, end, (sizes[0], sizes[1]), self.cells)

@@ -54,7 +54,7 @@ class BodyMap:
         self._arcs = monotone_cubic(turns, body.arcs_near(table[:, 0]), even)[:, None, None]
 
     def points(self, places: Floats) -> Floats:
-        """Return the points (..., 3) in space at `places` (..., 3) of s, theta, zeta."""
+        """Return points (..., 3) in space, given as s, theta, zeta in `places` (..., 3)."""
         s, theta, zeta = np.moveaxis(places, -1, 0)
         x, r = np.moveaxis(self.meridional(s.ravel(), zeta.ravel()).reshape(*s.shape, 2), -1, 0)
         r = np.maximum(r, 0.0)
@@ -73,18 +73,18 @@ class BodyMap:
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
     def around(self, places: Floats) -> Floats:
-        """Return the length in space (...) of one radian of theta at places (..., 3)."""
+        """Return the length in space (...) of one radian of theta at s, theta, zeta (..., 3)."""
         points = self.points(places)
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angle (...) in radians from the z axis to the cross-section at places (..., 3)."""
+        """Return the angle (...) in radians from the z axis to the cross-section at `places` (..., 3)."""
         return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
         """Return s, theta, zeta (..., 3) of points (..., 3), by Newton's method.
 
-        It starts from the places `near` (..., 3); None: from the nearest nodes of the table.
+        The iteration starts from `near` (..., 3); None: from the nearest nodes of the table.
         """
         y, z = points[..., 1] - self.body.y, points[..., 2]
         theta = arctan2(z, -y)

@@ -55,7 +55,7 @@ class LevelPlan:
 
     @property
     def collar_patches(self) -> tuple[int, ...]:
-        """Index of the patch that is the collar of each wing and fin."""
+        """For each wing and fin, the index of the patch that is the collar."""
         out, begin = [], 0
         for column in self.columns:
             out += [begin, begin + column.patches - 1][: len(column.collars)]
@@ -66,13 +66,13 @@ class LevelPlan:
 def planned(
     space: BodyMap, holes: Sequence[Sequence[Sequence[Hole]]], first: float, growth: float
 ) -> LevelPlan:
-    """Return numbers of cells that suit the sections of wings on some levels.
+    """Return numbers of cells that suit the sections of wings on all given levels.
 
     Parameters
     ----------
     space : map around the body.
-    holes : sections by column from nose to tail, by wing of the column, and by level; the first level is the
-        body.
+    holes : sections of wings, by column from nose to tail, by wing in the column, and by level; the first
+        level is the body.
     first, growth : height of first cells, and largest growth ratio.
     """
     plans, levels = zip(*(planned_column(each, first, growth) for each in holes), strict=True)
@@ -131,10 +131,10 @@ def _level_with_fin(columns: Sequence[ColumnPlan], plans: Sequence[ColumnPlan]) 
 
 
 def level_patches(space: BodyMap, plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floats]:
-    """Return the patches (ni, nj, 3) of s, theta, zeta of one level around its `holes`.
+    """Return the patches (ni, nj, 3), in s, theta, zeta, of one level around the sections `holes`.
 
-    Their order: those of the columns from nose to tail; between columns; rows and core of the nose, then of
-    the tail.
+    In order: patches of the columns from nose to tail; patches between columns; rows and core of the nose;
+    rows and core of the tail.
     """
     levels = _beside_fins([ColumnLevel.of(*each) for each in zip(plan.columns, holes, strict=True)])
     patches = [patch for level in levels for patch in level.patches()]

@@ -49,8 +49,8 @@ class Rectangle:
 def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
     """Return the rectangle, in lengths in space, around a `section` (n, 2) of s and theta.
 
-    It covers at most half of the distance to the limits `within`. `scale` (2,) is the length of a unit of s
-    and theta.
+    On each side the rectangle covers at most half of the distance from the section to the limits `within`.
+    `scale` (2,) are the lengths in space of a unit of s and of theta.
     """
     (front, low), (back, high) = (section * scale).min(axis=0), (section * scale).max(axis=0)
     (begin, end), (bottom, top) = (
@@ -64,11 +64,11 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return the numbers of steps along a `root` to the nodes whose lines lead to the corners of `box`.
+    """Return after how many nodes of a `root` lines lead to the corners of the rectangle `box`.
 
-    The first is counted from the middle of the trailing edge, the second from the nose, both upwards and
-    downwards. They are at least `fewest`, and cells beside a corner have similar lengths. Normals point most
-    directly to the corners.
+    The first number is counted from the middle of the trailing edge, the second from the nose, both upwards
+    and downwards. Numbers are at least `fewest`. They are chosen so that cells beside a corner have similar
+    lengths, and normals of the root point most directly to the corners.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -142,12 +142,12 @@ def collar(
 ) -> tuple[Floats, float]:
     """Return nodes (n, rows + 1, 2) between the closed loops `root` and `outer` (n, 2), and a sine.
 
-    The sine is the smallest between lines across and around, before nodes are placed.
+    The sine is of the smallest angle between lines across and lines around, before nodes are distributed.
 
     Parameters
     ----------
-    first, last : cells at the root, and at the outer loop (n,).
-    straight : from 0, lines of an elliptic grid, to 1, parabolas along the normals of the root.
+    first, last : lengths of cells at the root, and (n,) at the outer loop.
+    straight : 0 for the lines of an elliptic grid, 1 for parabolas along the normals of the root, or between.
     """
     arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)

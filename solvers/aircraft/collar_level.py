@@ -59,7 +59,7 @@ class Hole:
 
     @property
     def bands(self) -> tuple[float, float]:
-        """Lengths in space from the rectangle to keel and crown, or to the next wing."""
+        """Lengths in space from the rectangle down and up, to keel and crown or to the next wing."""
         bottom, top = (theta * float(self.scale[1]) for theta in (self.below, self.within[1][1]))
         if self.fin:
             top = self.box.high + self.box.low - bottom
@@ -93,7 +93,7 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> tuple[CollarPlan, list[CollarLevel]]:
-    """Return the plan for the collars around `holes` from the root on, and the collars.
+    """Return the plan for the collars around `holes`, sections of a wing from the root on, and the collars.
 
     The plan has the fewest cells above and below the collars.
     """
@@ -192,7 +192,7 @@ class CollarLevel:
 
     @cached_property
     def low_and_top(self) -> tuple[Floats, Floats]:
-        """Theta of the nodes from the keel to the rectangle, and from there to the crown."""
+        """Theta of the nodes from the keel up to the rectangle, and from the rectangle up to the crown."""
         out = []
         for cells, way, step in zip(
             (self.plan.low, self.plan.top), self.hole.bands, self.beside, strict=True
@@ -225,7 +225,7 @@ class CollarLevel:
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]
 
     def collar(self) -> Floats:
-        """Return the nodes (n, rows + 1, 2) of the collar; of a fin, the half from nose to trailing edge."""
+        """Return the nodes (n, rows + 1, 2) of the collar; of a fin, only from nose to trailing edge."""
         ring = self.ring / self.hole.scale
         if not self.hole.fin:
             return ring

@@ -73,7 +73,7 @@ class ColumnPlan:
     def with_bands(self, cells: int, low: int | None = None) -> ColumnPlan:
         """Return the plan with `cells` cells above and below the collars, `low` of them below.
 
-        None keeps the ratio of cells above and below.
+        If `low` is None, the ratio of cells above and below is kept.
         """
         first, *others = self.collars
         if self.fin_alone:
@@ -91,7 +91,7 @@ class ColumnPlan:
 def planned_column(
     holes: Sequence[Sequence[Hole]], first: float, growth: float
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
-    """Return the plan for the column around `holes`, by wing and level, and its levels."""
+    """Return the plan for the column around `holes`, by wing and level, and the column on each level."""
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)
     plan = ColumnPlan(collars, holes[-1][0].fin)
@@ -121,17 +121,17 @@ class ColumnLevel:
         return cls(plan, tuple(levels))
 
     def with_counts(self, plan: ColumnPlan) -> ColumnLevel:
-        """Return the column with the numbers of cells of another `plan`, except inside its collars."""
+        """Return the column with the numbers of cells of another `plan`; the collars keep their nodes."""
         levels = (replace(each, plan=counts) for each, counts in zip(self.levels, plan.collars, strict=True))
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return this column of a wing with zeta at the crown between its own and that of a `fin`."""
+        """Return this column of a wing, with zeta at the crown halfway between zeta of wing and `fin`."""
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
-        """Return this column of a fin, with nodes below it at nearly the theta of a wing's `side`."""
+        """Return this column of a fin; nodes below it get nearly the theta of nodes on a wing's `side`."""
         own, others = self.low, side[0][: len(self.low), 1]
         keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
         return replace(self, below=_followed(own, others), keel=keel)
@@ -147,7 +147,7 @@ class ColumnLevel:
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return the length in space from the wing's collar to the fin's, and of its first and last cell."""
+        """Return the length in space between the collars of wing and fin, and of the end cells there."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])
@@ -208,7 +208,7 @@ class ColumnLevel:
         return self.zeta if self.crown is None else self.crown
 
     def patches(self) -> list[Floats]:
-        """Return the patches (ni, nj, 3): collar, above it, below it, collar of a fin above a wing."""
+        """Return the patches (ni, nj, 3): collar, above it, below it, and collar of a fin above a wing."""
         below, above = self.levels[0].long_sides
         zeta = self.zeta
         patches = [_on(self.levels[0].collar(), zeta)]

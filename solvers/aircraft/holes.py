@@ -27,8 +27,8 @@ def columns_of(
 ) -> tuple[tuple[int, ...], ...]:
     """Return the indices of the wings of each column, from nose to tail.
 
-    A fin above a wing, or close to it along the body, shares its column. `sections` (k, n, 3) are those on
-    key levels.
+    A fin above a wing, or close to the wing along the body, is in the column of the wing. `sections` are the
+    sections (k, n, 3) of each wing on k key levels.
 
     Raises InputError: a fin above two wings.
     """

@@ -23,7 +23,7 @@ def lines_between(
 ) -> Floats:
     """Return nodes (n, cells + 1, 3) of s, theta, zeta on lines from `begin` to `end` (n, 3).
 
-    Cell lengths in space change evenly; the first and the last in s are `sizes` (n,).
+    Cell lengths in space change smoothly along a line. `sizes` (n,) are lengths in s of first and last cells.
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
     nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))
@@ -34,7 +34,7 @@ def lines_between(
 def ways_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats]
 ) -> tuple[Floats, tuple[Floats, Floats]]:
-    """Return the lengths (n,) in space of the lines of `lines_between`, and of their end cells."""
+    """Return lengths (n,) in space of the lines of `lines_between`, and of the first and last cells."""
     _, arcs, ends = _measured(points, begin, end, sizes)
     return arcs[:, -1], ends
 

@@ -36,7 +36,7 @@ class LoftedMap(BodyMap):
         self._fading = min(1.0, _FADING / more) if more > 0.0 else 1.0
 
     def points(self, places: Floats) -> Floats:
-        """Return the points (..., 3) in space at `places` (..., 3) of s, theta, zeta."""
+        """Return points (..., 3) in space, given as s, theta, zeta in `places` (..., 3)."""
         s, theta, zeta = np.moveaxis(places, -1, 0).reshape(3, -1)
         x, r = self.meridional(s, zeta).T
         r = np.maximum(r, 0.0)
@@ -74,11 +74,11 @@ class LoftedMap(BodyMap):
         return super().places(lowered)
 
     def around(self, places: Floats) -> Floats:
-        """Return the length in space (...) of one radian of theta at places (..., 3)."""
+        """Return the length in space (...) of one radian of theta at s, theta, zeta (..., 3)."""
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angle (...) in radians from the z axis to the cross-section at places (..., 3)."""
+        """Return the angle (...) in radians from the z axis to the cross-section at `places` (..., 3)."""
         around = np.abs(self._around(places))
         return np.asarray(arctan2(around[..., 1], around[..., 2]))
 
@@ -87,7 +87,7 @@ class LoftedMap(BodyMap):
         return (self.points(places + step) - self.points(places - step)) / (2.0 * _STEP)
 
     def normals(self, foot: Floats) -> Floats:
-        """Return unit normals (n, 3) of the body at places `foot` (n, 3) on it; at poles, mean normals."""
+        """Return unit normals (n, 3) of the body at s, theta, zeta `foot` (n, 3); at poles, mean normals."""
         length, normals = self.body.length, self._normals(_off_poles(foot, self.body.length))
         theta = np.linspace(0.0, np.pi, _AROUND)
         for end in (0.0, length):
@@ -123,9 +123,10 @@ def map_around(body: Body, far: float) -> BodyMap:
 
 
 def points_above(space: BodyMap, foot: Floats, first: float) -> Floats:
-    """Return the points (n, 3) at the distance `first` on normals of the body.
+    """Return the points (n, 3) on normals of the body, at the distance `first` from it.
 
-    `foot` (n, 3) are their places on the body. Lines of a body of revolution are normal to it.
+    `foot` (n, 3) are s, theta, zeta of the feet of the normals. Around a body of revolution, lines of
+    constant s and theta are normal to the body.
     """
     if isinstance(space, LoftedMap):
         return np.asarray(space.points(foot) + first * space.normals(foot))

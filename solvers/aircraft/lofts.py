@@ -39,7 +39,7 @@ def section_loft(stack: Stack, unit: Floats) -> Loft:
 
 
 def fin_loft(fin: Fin, unit: Floats) -> Loft:
-    """Return the lines of the half z >= 0 of a fin from nose to trailing edge, with heights along y.
+    """Return the lines of the half z >= 0 of a fin, from nose to trailing edge; heights are along y.
 
     `unit` (sections, n, 2) are nodes around its sections.
     """
@@ -56,7 +56,7 @@ def fin_loft(fin: Fin, unit: Floats) -> Loft:
 
 
 def surface_loft(wing: SurfaceWing, body: Body, plan: Around) -> Loft:
-    """Return the lines on the surface of a wing, distributed as in `plan`, with two cells on its base.
+    """Return lines on the surface of a wing, distributed as in `plan`, with two cells on the blunt base.
 
     The first and the last line are in the middle of the base. Lines that end on the body go on into it.
     """

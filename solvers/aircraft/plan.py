@@ -50,7 +50,7 @@ class AircraftPlan:
 
     @classmethod
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> Self:
-        """Return the plan for `around` nodes around each wing; the default growth is the first of `GROWTHS`.
+        """Return the plan with `around` nodes around each wing; growth is by default the first of `GROWTHS`.
 
         Raises InputError: a wing does not begin inside the body or does not leave it; wings are too close to
         each other; a root is too close to keel or crown.

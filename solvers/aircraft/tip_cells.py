@@ -40,8 +40,8 @@ def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
 def last_cells(points: Floats, section: Indices, even: Floats, first: float, growth: float) -> Floats:
     """Return the heights (p,) of cells at the level of the tip, on lines through `points` (p, 3).
 
-    They are `first` on the wing, which the lines `section` reach, and between `first` and `even` (p,) far
-    away.
+    Heights are `first` on the wing, which lines `section` reach. Far away heights are between `first` and
+    `even` (p,).
     """
     wing = points[section]
     away = np.array([norms(wing - point).min() for point in points])

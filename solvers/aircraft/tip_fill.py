@@ -15,7 +15,7 @@ _MOST_ROWS = 200
 def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
     """Return the ring (n, rows + 1, 3) and the core (m, k, 3) that fill a closed `loop` (n, 3).
 
-    The loop starts at the trailing edge, along the upper side. Outermost cells are `first` long, or shorter
+    The loop starts at the trailing edge along the upper side. Outermost cells are `first` long, or shorter
     where the section is too thin.
     """
     ring, core = Cap(bulge=0.0).patches(loop)

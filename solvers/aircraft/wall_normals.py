@@ -20,11 +20,11 @@ _OBLIQUE = 0.4  # largest cosine between the level and the mean direction of lin
 
 
 def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: float) -> Floats:
-    """Return `points` (k, p, 3) of p lines, moved to leave the body, at k = 0, along its normals.
+    """Return `points` (k, p, 3) of p lines, moved so that lines leave the body, at k = 0, along normals.
 
     Parameters
     ----------
-    normal : (p, 3) points on the normals at the distance `first`, the height of first cells.
+    normal : (p, 3) points on normals of the body at the distance `first`, the height of first cells.
     rings : indices (n, m) of the lines of each collar, from the wing outwards.
     """
     turned = (normal - points[1]) / first
@@ -44,7 +44,7 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
     """Return `points` (k, p, 3), moved so that the lines of a collar are normal to the span.
 
-    `ring` (n, m) are the indices of these lines; first cells are `first` high.
+    `ring` (n, m) are the indices of the lines of the collar; first cells are `first` high.
     """
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first
@@ -71,10 +71,10 @@ def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Fl
 def across_tip(
     low: Floats, high: Floats, ring: Indices, wing: WingLines, first: float
 ) -> tuple[Floats, Floats]:
-    """Return the nodes `low` below and `high` beyond a tip, moved so that cells at its edge are less oblique.
+    """Return the nodes `low` below and `high` beyond a tip, moved so that cells at the tip are less oblique.
 
-    In the collar `ring` (n, m) the level is turned towards a right angle to the lines there, with
-    displacements that fade to 0 at the ends of the lines. First cells stay `first` high.
+    In the collar `ring` (n, m) the level of the tip is turned towards a right angle to the lines through it.
+    Displacements fade to 0 at the ends of the lines. First cells stay `first` high.
     """
     level = high[0, ring]
     along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]
@@ -109,10 +109,10 @@ def _chord(edge: Floats, wing: WingLines) -> float:
 
 
 def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
-    """Return `points` (k, p, 3) of lines beyond a tip, moved to leave it, at k = 0, along its normals.
+    """Return `points` (k, p, 3) of lines beyond a tip, moved so that lines leave the tip along normals.
 
-    `cap` (c,) are the indices of the lines that fill the tip, `ring` (n, m) those of its collar, which turn
-    less.
+    The tip is at k = 0. `cap` (c,) are indices of lines on the tip. `ring` (n, m) are indices of lines in the
+    collar around the tip, which turn less.
     """
     apart = arc_lengths(points[0, ring])
     fade = 1.0 - apart / apart[:, -1:]

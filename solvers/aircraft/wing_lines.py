@@ -32,9 +32,9 @@ class EvenAround(Around):
     follows_nose = False  # cells at the nose are a fraction of the mean cell
 
     def law(self, height: float, length: float, nose: float | None = None) -> Callable[[Floats], Floats]:
-        """Return the node distribution on a side from the base to the nose.
+        """Return the node distribution on a side of a section, from the base to the nose.
 
-        The `height` of the base, the `length` of the side and the cell at the `nose` are in chords.
+        The `height` of the base, the `length` of the side and the cell length at the `nose` are in chords.
         """
         ends = self.ends(height, length, nose)
         for growth in _TRIED:
@@ -60,7 +60,7 @@ class WingLines:
     def of(
         cls, wing: Stack | SurfaceWing, name: str, body: Body, nodes: int, base: float | None = None
     ) -> Self:
-        """Return `nodes` lines of a wing, with trailing edges opened to `base` chords.
+        """Return `nodes` lines of a wing; sharp trailing edges are opened to a base of `base` chords.
 
         Raises InputError: too few nodes; a wing that does not begin inside the body or does not leave it.
         """
@@ -77,12 +77,12 @@ class WingLines:
         return cls(loft, name, roots, notes, fin)
 
     def points(self, parts: Floats) -> Floats:
-        """Return points (k, n, 3) on the lines at `parts` (k, n) of the height from root to tip."""
+        """Return points (k, n, 3) on the lines at fractions `parts` (k, n) of the height from root to tip."""
         z = self.roots + parts * (self.loft.tip - self.roots)
         return np.stack([self.loft.line(k, z[:, k]) for k in range(z.shape[1])], axis=1)
 
     def with_first(self, parts: Floats, first: float) -> Floats:
-        """Return `parts` (k, n), the second row changed to be `first` away from the root."""
+        """Return `parts` (k, n); the second row is changed to points at distance `first` from the root."""
         parts = parts.copy()
         for _ in range(_ROUNDS):
             root, second = self.points(parts[:2])
