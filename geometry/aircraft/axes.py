@@ -34,7 +34,7 @@ class AircraftAxes:
         return np.stack([points[..., 0], points[..., self.up], self.sign * points[..., self.span]], axis=-1)
 
     def to_file(self, grid: Grid) -> Grid:
-        """Return the `grid` of an aircraft in the axes of the file, with i reversed if that mirrors it."""
+        """Return the `grid` of an aircraft in the axes of the file; i is reversed if they mirror the grid."""
         if self == AircraftAxes():
             return grid
         if (self.sign > 0) != (self.up == 1):  # the other handedness
@@ -53,7 +53,7 @@ FILE_AXES = AircraftAxes()
 
 
 def axes_of(points: Floats) -> AircraftAxes | None:
-    """Return the axes of a file with `points` (n, 3) on one half of an aircraft; None: on both."""
+    """Return the axes of a file with `points` (n, 3) on half of an aircraft; None if on both halves."""
     flat = FLAT * float(np.ptp(points, axis=0).max())
     for span in (2, 1):
         for sign in (1, -1):

@@ -140,7 +140,7 @@ class Body:
         return np.asarray(s)
 
     def arcs_near(self, points: Floats) -> Floats:
-        """Return the arc lengths (n,) nearest to `points` (n, 2) of x and radius, from nose to tail."""
+        """Return arc lengths (n,) on the meridian nearest to x and radius `points` (n, 2), nose to tail."""
         s = arc_lengths(points)
         s *= self.length / s[-1]
         for _ in range(_STEPS):  # Newton's method for the foot of each point
@@ -150,12 +150,12 @@ class Body:
         return s
 
     def outside(self, points: Floats) -> Floats:
-        """Return the distances (n,) of points (n, 3) from the surface along the radius; negative inside."""
+        """Return the radial distances (n,) of points (n, 3) from the surface; negative inside."""
         r = self._spline(self.arc_at(points[:, 0]))[:, 1]
         return np.asarray(np.hypot(points[:, 1] - self.y, points[:, 2]) - r)
 
     def beside(self, point: Floats) -> str:
-        """Return the distance of a `point` (3,) from the axis, and the radius at its x, as text."""
+        """Return, as text, how far a `point` (3,) is from the axis, and the body's radius at that x."""
         away, radius = np.hypot(point[1] - self.y, point[2]), float(np.interp(point[0], *self.meridian.T))
         return f"{away:.4g} from its axis, where its radius is {radius:.4g}"
 

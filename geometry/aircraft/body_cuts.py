@@ -37,7 +37,7 @@ class BodyCuts:
 
     @property
     def meridian(self) -> Floats | None:
-        """(n + 2, 2) x and radius from nose to tail, None if this is no body of revolution about x."""
+        """X and radius (n + 2, 2) from nose to tail; None if the body is not one of revolution about x."""
         y, size = self.nose[1], _ROUND * (self.tail[0] - self.nose[0])
         radii = [np.hypot(cut[:, 0] - y, cut[:, 1]) for cut in self.points]
         if abs(self.tail[1] - y) > size or max(float(np.ptp(each)) for each in radii) > size:
@@ -47,9 +47,9 @@ class BodyCuts:
 
 
 def body_cuts(patches: Sequence[Floats], name: str) -> BodyCuts:
-    """Return cuts through the half z >= 0 of a body with the surface patches `patches` (ni, nj, 3).
+    """Return cuts through the half z >= 0 of a body with the surface `patches` (ni, nj, 3).
 
-    Cuts are at the x of nodes in the plane of symmetry, and beside corners of keel and crown. An end that is
+    Cuts are at x of nodes in the plane of symmetry, and close to corners of keel and crown. An end that is
     not a point gets a cap: half an ellipsoid, half as long as the end is high.
 
     Raises InputError: a surface with holes, or with fewer than 4 nodes in the plane of symmetry.

@@ -103,9 +103,9 @@ class BodySection:
 
     @property
     def shape(self) -> Floats:
-        """Distances (ANGLES,) from the middle at equal angles from keel to crown; 1 if elliptic.
+        """Distances (ANGLES,) of the curve from the middle, at equal angles from keel to crown.
 
-        Half the width and half the height are scaled to 1.
+        Lengths are divided by half the width and half the height, so that an ellipse has distances 1.
         """
         even = np.linspace(0.0, math.pi, ANGLES)
         if self.points is not None:

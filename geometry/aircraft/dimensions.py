@@ -40,7 +40,7 @@ class AircraftDimensions:
 
 
 def aircraft_dimensions(aircraft: Aircraft, first_cell: float, far_field: float) -> AircraftDimensions:
-    """Return the dimensions of an aircraft; first cell and far field are in chords of its first wing."""
+    """Return the dimensions of an aircraft; `first_cell` and `far_field` are in chords of the first wing."""
     chord, body = aircraft.wing.chord, aircraft.body
     wings = [(name, wing) for (name, _), wing in zip(aircraft.patches, aircraft.wings, strict=True)]
     return AircraftDimensions(

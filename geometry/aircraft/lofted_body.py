@@ -39,9 +39,9 @@ class LoftedBody(Body):
     Raises
     ------
     InputError
-        Fewer than 4 sections; x that does not increase; a first or last section that is not a single point,
-        or one between them that is; a very flat section; sections so different and far apart that the surface
-        bulges between them.
+        Fewer than 4 sections; x that does not increase; a first or last section that is not a single point;
+        another section that is a single point; a very flat section; sections so different and far apart that
+        the surface bulges between them.
 
     Examples
     --------

@@ -57,7 +57,7 @@ class SurfaceWing:
 
     @classmethod
     def ending(cls, strips: tuple[Floats, ...], name: str = "wing") -> SurfaceWing:
-        """Return the wing of `strips` up to its last station, or, with a note, to where its tip closes."""
+        """Return the wing of `strips` up to the last station, or up to a tip that closes, with a note."""
         strips = tuple(map(_rising, strips))
         end = min(float(strip[-1, :, 2].min()) for strip in strips)
         wing = cls(strips, end, name)
@@ -78,7 +78,7 @@ class SurfaceWing:
 
     @property
     def z(self) -> Floats:
-        """(n,) heights z from the lowest that all lines reach to the tip."""
+        """Heights z (n,), from the lowest height that all lines reach up to the tip."""
         begin = max(float(strip[0, :, 2].max()) for strip in self.strips)
         return np.linspace(begin, self.height, _LEVELS)
 
@@ -100,7 +100,7 @@ class SurfaceWing:
 
     @cached_property
     def arcs(self) -> Floats:
-        """(strips,) width of each strip around the section at half span, in chords."""
+        """Width (strips,) of each strip, along the section at half span, in chords."""
         z = self.z[[_LEVELS // 2]]
         lengths = [float(norms(np.diff(at_heights(strip, z)[0], axis=0)).sum()) for strip in self.strips]
         return np.array(lengths) / self.sizes(z)[0]
@@ -123,7 +123,7 @@ class SurfaceWing:
     def line(self, place: float) -> Floats:
         """Return the line (stations, 3) along the span at a `place` around the section.
 
-        Its integer part is the index of a strip, its fraction the position across it.
+        The integer part of `place` is the index of a strip, the fraction is the position across the strip.
         """
         return self.lines(np.array([place]))[0]
 
@@ -161,7 +161,7 @@ class SurfaceWing:
         return on_line(self.line(0.0), z), on_line(self.line(float(len(self.strips))), z)
 
     def opened(self, least: float) -> SurfaceWing:
-        """Return the wing with a base at least `least` chords thick, with a note if that changes it.
+        """Return the wing with a base at least `least` chords thick, and a note if the wing is changed.
 
         The added thickness is proportional to the distance from the nose.
         """

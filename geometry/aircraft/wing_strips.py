@@ -35,7 +35,7 @@ class _Strip:
 def wing_strips(patches: Sequence[Floats], name: str) -> tuple[tuple[Floats, ...], tuple[int, ...]]:
     """Return the strips (stations, n, 3) of a `SurfaceWing`, and the indices of patches that close the tip.
 
-    `patches` (ni, nj, 3) form the surface of a wing in the half z >= 0. Those on the base are left out.
+    `patches` (ni, nj, 3) form the surface of a wing in the half z >= 0. Patches on a blunt base are left out.
 
     Raises InputError: patches are not next to each other around the wing or along the span.
     """

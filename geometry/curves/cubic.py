@@ -43,7 +43,7 @@ class CubicTable:
         return np.concatenate([np.zeros_like(self.values[:1]), np.cumsum(pieces, axis=0)])
 
     def unit_cubics(self) -> Floats:
-        """Return coefficients (4, n - 1, ...) of the pieces as cubics in t (0 to 1), lowest power first."""
+        """Return coefficients (4, n - 1, ...), constant first, of each piece as a cubic in t (0 to 1)."""
         h = np.diff(self.knots).reshape(-1, *(1,) * (self.values.ndim - 1))
         begin, end = self.bends[:-1] * h**2, self.bends[1:] * h**2
         rise = np.diff(self.values, axis=0)
@@ -60,7 +60,7 @@ class CubicTable:
 
 
 def cubic_spline(values: Floats, knots: Floats, places: Floats) -> Floats:
-    """Return the spline (p, ...) of `CubicTable` at `places` (p,), of `values` (n, ...) at `knots` (n,).
+    """Return values (p, ...), at `places` (p,), of the `CubicTable` of `values` (n, ...) at `knots` (n,).
 
     >>> knots = np.array([0.0, 1.0, 3.0, 4.0, 6.0])
     >>> float(cubic_spline(knots**3, knots, np.array([2.0]))[0])
@@ -123,9 +123,10 @@ class LimitedSpline:
 
 
 def sampled(lines: Floats, arc: Floats, at: Floats) -> Floats:
-    """Return points (k, n, ...) at arc lengths `at` (k, n), clipped, of cubic `lines` (k, m, ...).
+    """Return points (k, n, ...) on k cubic `lines` (k, m, ...) at arc lengths `at` (k, n), clipped.
 
-    Tangents at nodes are those of parabolas through three nodes; `arc` (k, m) are the nodes' arc lengths.
+    `arc` (k, m) are the arc lengths of the m nodes. The tangent at a node is that of a parabola through three
+    nodes.
     """
     points = np.empty((*at.shape, lines.shape[2]))
     lines, arc, at = (np.ascontiguousarray(each) for each in (lines, arc, np.minimum(at, arc[:, -1:])))

@@ -107,7 +107,7 @@ class Curve:
 
     @property
     def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:
-        """Cubics (4, n, 2), arc lengths, slopes of their inverse, parts per interval (``curve.h``)."""
+        """Cubics (4, n, 2), arc lengths, slopes of the inverse, parts of an interval (``curve.h``)."""
         return self._cubic, self._table, self._rate_start, self._rate_stop, _STEPS
 
     def _locate(self, s: Floats) -> tuple[Indices, Floats]:
@@ -118,23 +118,23 @@ class Curve:
         return i, t
 
     def at(self, s: Floats) -> Floats:
-        """Return points (m, 2) at arc lengths, clipped if open; at `knots`, bitwise the given points."""
+        """Return points (m, 2) at arc lengths `s` (m,), clipped if open; at `knots`, bitwise as given."""
         i, t = self._locate(s)
         points = np.empty((len(t), 2))
         curve_points(self._cubic, i, t, self.points[0 if self.closed else -1], points)
         return points
 
     def tangent(self, s: Floats) -> Floats:
-        """Return unit tangents (m, 2) at arc lengths `s` (m,); at a corner, those after it."""
+        """Return unit tangents (m, 2) at arc lengths `s` (m,); at a corner, the tangent after it."""
         i, t = self._locate(s)
         d = np.empty((len(t), 2))
         curve_slopes(self._cubic, i, t, d)
         return np.asarray(d / np.hypot(d[:, 0], d[:, 1])[:, None])
 
     def polyline(self, places: Floats) -> Floats:
-        """Return points of every interval at its parameters `places` (k,) in [0, 1).
+        """Return points at the parameters `places` (k,), in [0, 1), of every interval.
 
-        The result is (intervals * k, 2), with the end point of an open curve as one more row.
+        The result is (intervals * k, 2); an open curve has one more row, the end point.
         """
         i = np.arange(self._cubic.shape[1])[:, None]
         t = places[None, :, None]

@@ -154,7 +154,7 @@ class PiecedPath:
         self._start, self._tangent, self._normal = np.array(starts), np.array(tangents), np.array(normals)
 
     def at(self, s: Floats) -> PathPoints:
-        """Return points, tangents and curvature at arc lengths `s` (n,); at a joint, those after it."""
+        """Return points, tangents and curvature at arc lengths `s` (n,); at a joint, of the next piece."""
         s = np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length)
         k = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._radius) - 1)
         places = [np.empty((len(s), 3)) for _ in range(3)]

@@ -27,7 +27,7 @@ _HALF_TURN = np.pi
 
 
 class BladeSurface:
-    """Surface of a blade: maps (u, h), the place around the blade and the height, to (s, theta).
+    """Surface of a blade: the map from a place u around the blade and a height h to (s, theta).
 
     u is 0 at the leading edge, 0.5 at the trailing edge, 1 at the leading edge again (`BladeProfile`); for s
     and h see `Channel`. Lines of equal u are splines through the profiles, and straight beyond them.
@@ -148,7 +148,7 @@ class BladeSurface:
         return np.asarray(turned - mean - away * self.pitch)
 
     def lines(self, u: Floats) -> CubicTable:
-        """Return the splines s, theta, h along the span at places u (m,), by mean height of profiles."""
+        """Return splines of s, theta, h along the span at places u (m,), by mean height of a profile."""
         values = np.stack([profile.at(u) for profile in self.profiles])
         values[..., 1] += self._turns[:, None]
         return CubicTable(values, self.knots)
@@ -160,7 +160,7 @@ class BladeSurface:
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
         """Return s and theta (..., 2) where `lines` along the span reach heights `h` (...).
 
-        The heights of all lines on the first of `levels` come first.
+        `h` is ordered by level: heights of all lines on the first of `levels`, then on the second, and so on.
         """
         out = np.empty((*h.shape, 2))
         spline_crossings(

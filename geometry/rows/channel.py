@@ -54,10 +54,10 @@ class Channel:
     Parameters
     ----------
     hub, casing : points (n, 2) of x and r, from inlet to outlet.
-    hub_gap, tip_gap : distances of the blade from hub and casing, in their unit.
+    hub_gap, tip_gap : distances of the blade from hub and casing, in the unit of the curves.
 
-    Raises InputError: points that are no curve; a curve that touches the axis or the other one; gaps that
-    leave no span.
+    Raises InputError: points that are no curve; a curve that touches the axis; hub and casing that touch;
+    gaps that leave no span.
     """
 
     def __init__(self, hub: Floats, casing: Floats, hub_gap: float = 0.0, tip_gap: float = 0.0) -> None:
@@ -120,9 +120,9 @@ class Channel:
         return out
 
     def store(self, values: Floats, ids: Indices, space: Floats) -> None:
-        """Write x, y, z of points `values` (levels, m, 3) of s, theta, h into `space` (levels, n, 3).
+        """Write x, y, z of points into `space` (levels, n, 3), at the indices `ids` (m,) along n.
 
-        `ids` (m,) are their indices among the n nodes.
+        `values` (levels, m, 3) are s, theta, h of the points.
         """
         channel_nodes(self._tables, values, ids, space)
 
@@ -136,14 +136,14 @@ class Channel:
     def put_on_blade(self, columns: Floats, wall: Floats, first: float) -> None:
         """Move columns of nodes, in place, to begin on the blade with first cells of height `first`.
 
-        `columns` (..., rows, 3) are s, theta, h; `wall` (..., 2) are s, theta on the blade. Moves fade to 0
-        at the last node.
+        `columns` (..., rows, 3) are s, theta, h; `wall` (..., 2) are s, theta on the blade.
+        Displacements fade to 0 at the last node.
         """
         flat = columns.reshape(-1, *columns.shape[-2:])
         columns_on_blade(self._tables, wall.reshape(-1, 2), first, flat)
 
     def places(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return s and h (...) of points x, r (..., 2), beyond 0 and 1 outside the channel."""
+        """Return s and h (...) of points x, r (..., 2); below 0 or above 1 outside the channel."""
         p = points.reshape(-1, 2)
         s = self._nearest_line(p)
         part = np.zeros(len(p))

@@ -15,7 +15,8 @@ BASE_TURN = 0.7
 def alike(profiles: Sequence[BladeProfile]) -> list[BladeProfile]:
     """Return the profiles with equal numbers of corners at equal places u.
 
-    Points near a turn decide whether it is a corner; lines of equal u would otherwise jump along the span.
+    Whether a turn is a corner depends on points near it, and so differs from profile to profile. Lines of
+    equal u would then jump along the span.
     """
     counts = np.array([profile.corner_counts for profile in profiles])
     if not (counts == counts[0]).all():

@@ -71,9 +71,9 @@ class BladeProfile:
         self._stops = _ENDS, np.array([0.0, self._sides[0], curve.length])
 
     def cornered(self, counts: Sequence[int]) -> Self:
-        """Return the profile with 0, 1 or 2 corners at its leading and at its trailing edge, by `counts`.
+        """Return the profile with `counts` (0, 1 or 2) corners at leading and trailing edge.
 
-        They are the points with the largest turns there; a single corner becomes the edge itself.
+        Corners are the points of the edge with the largest turns; a single corner becomes the edge itself.
         """
         edges, curve = (self.leading, self.trailing), self.curve
         bend = np.abs(turning(curve.points, closed=True))
@@ -90,7 +90,7 @@ class BladeProfile:
         return made
 
     def aligned(self, places: Floats) -> Self:
-        """Return the profile with its corners at `places` u (c,), near their former places."""
+        """Return the profile with places u counted anew, so that the corners are at `places` (c,)."""
         made, own = copy(self), self.corner_places()
         u = np.concatenate([_ENDS, places])
         way = np.concatenate([self._stops[1], np.interp(own, *self._stops)])
@@ -109,7 +109,7 @@ class BladeProfile:
         return shortest_ways(arcs - edge, length)
 
     def reshaped(self, plane: Floats, heights: Floats) -> Self:
-        """Return the profile through other m' and theta `plane` (n, 2), and `heights` (n,)."""
+        """Return the profile through new points: m' and theta `plane` (n, 2), and `heights` (n,)."""
         made = copy(self)
         made.__dict__ = {k: v for k, v in vars(self).items() if k not in ("thickness", "_heights")}
         made.heights = heights
@@ -138,7 +138,7 @@ class BladeProfile:
         )
 
     def sharpness(self, trailing: bool) -> tuple[float, float]:
-        """Return the largest turn at an edge in radians, and the part of all turns in the two largest."""
+        """Return the largest turn at an edge, in radians, and the two largest as a fraction of all turns."""
         bend = np.abs(turning(self.curve.points, closed=True))
         edge = self.trailing if trailing else self.leading
         own = np.sort(bend[np.abs(self._off(self.curve.knots, edge)) < self._reach])

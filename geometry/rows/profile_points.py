@@ -29,7 +29,7 @@ def as_points(values: ArrayLike, columns: int) -> Floats:
 
 
 def apart(points: Floats, *, closed: bool) -> Floats:
-    """Return points (n, d) without those equal to the next one, in a `closed` curve cyclically."""
+    """Return points (n, d) without any that equals the next; if `closed`, the last precedes the first."""
     steps = norms(points - np.roll(points, -1, axis=0))
     kept = steps > _SAME * np.ptp(points, axis=0).max(initial=0.0)
     kept[-1:] |= not closed

@@ -39,7 +39,7 @@ class Row:
     notes : tuple of str, optional
         Notes on changes of the profiles.
     frame : Motion, optional
-        Rotation from the coordinates of the grid to those of the row; None: they are the same.
+        Rotation from the coordinates of the grid to the coordinates of the row; None: no rotation.
     unit : {'m', 'cm', 'mm', 'in', 'ft'}, optional
         Unit of lengths in reports; lengths of row and grid are then metres. Empty: no conversion.
 

@@ -8,9 +8,10 @@ _WHOLE = 0.2  # largest deviation of a displacement from whole pitches; beyond i
 
 
 def whole_pitches(angles: Floats, heights: Floats, pitch: float) -> Floats:
-    """Return the number of pitches (p,) between each profile and the blade of most profiles.
+    """Return by how many pitches (p,) each profile is away from the blade to which most profiles belong.
 
-    A step of theta counts only if it exceeds the lean between other profiles by whole pitches.
+    A step of theta between two profiles counts only if whole pitches remain after subtraction of the lean
+    between other profiles.
 
     Parameters
     ----------

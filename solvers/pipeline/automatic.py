@@ -38,7 +38,7 @@ class Fewer(Wrapper):
     """Solves large grids by `method` on fewer nodes; if cells are then folded, on twice as many."""
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary; all nodes are used if there is an initial grid."""
+        """Return the solution of a boundary; with an initial grid `start`, all nodes are solved for."""
         above, n = FEWER_NODES.get(self.name, (0, 0))
         if not n or start is not None or max(boundary.ni, boundary.nj) <= above:
             return self.inner(boundary, start)
@@ -62,7 +62,7 @@ class Anew(Wrapper):
 
 @dataclass(frozen=True)
 class AroundWake(OneByOne):
-    """C grids: marched with a default first-cell height, or variational if marching does not suit."""
+    """Makes C grids by marching with a default first-cell height, else by the variational method."""
 
     note: str = ""  # begins the notes, before the method's name
     name: str = "auto"
@@ -77,7 +77,7 @@ class AroundWake(OneByOne):
 
 
 def elliptic() -> Auto:
-    """Return the method ``auto`` for elliptic grids: Winslow's equations, and marching for C grids."""
+    """Return the method ``auto``: Winslow's equations, but marching for C grids."""
     winslow = method_named("winslow")
     return Auto(Fewer(winslow), winslow, AroundWake())
 

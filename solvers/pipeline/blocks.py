@@ -50,7 +50,7 @@ def smooths(shape: DomainShape, request: GridRequest) -> bool:
 
 
 def smoothed(grid: Grid, request: GridRequest) -> Solution:
-    """Return a multi-block grid after smoothing; `request.refine` refinements and smoothings follow.
+    """Return a multi-block grid, smoothed; then it is refined and smoothed `request.refine` times.
 
     Raises InputError: see `smooth`; with refinement, also a connection that covers only a part of a side.
     """

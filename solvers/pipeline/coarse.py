@@ -16,7 +16,7 @@ from meshonet.solvers.solution import Solution
 
 @dataclass(frozen=True)
 class Coarse(Wrapper):
-    """`method` on at most n x n nodes, evaluated at the node counts of the boundary (`solve_coarse`)."""
+    """Solves by `method` on at most n x n nodes, and interpolates to all nodes (`solve_coarse`)."""
 
     n: int
 
@@ -31,8 +31,9 @@ def solve_coarse(
 ) -> Solution:
     """Solve by `solve` on at most n x n nodes; return the grid interpolated to the nodes of `boundary`.
 
-    Residual and cycles are those of the coarse solution. With `smooth`, Winslow's equations are relaxed near
-    kinks of the boundary: always for their own solutions and folded grids, otherwise only if angles improve.
+    Residual and cycles are those of the coarse solution. With `smooth`, nodes near kinks of the boundary are
+    relaxed by Winslow's equations. The result is kept if the method is ``winslow``, if the interpolated grid
+    is folded, or if angles improve.
     Raises InputError: `n` is below 9.
     """
     check_coarse(n)
@@ -59,7 +60,7 @@ class Sequenced(Wrapper):
     levels: int
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary; an initial grid must have the coarsest node counts."""
+        """Return the solution of a boundary; an initial grid `start` must have the coarsest node counts."""
         return solve_refined(boundary, self.inner, self.levels, start)
 
 
@@ -68,7 +69,7 @@ def solve_refined(
 ) -> Solution:
     """Solve on every 2^levels-th node of `boundary`, then with half the step, and so on up to all nodes.
 
-    `solve` has a parameter ``initial``, an initial grid; on the coarsest level it is the given `initial`.
+    `solve` has a parameter ``initial``, the initial grid of a level; on the coarsest level it is `initial`.
     Raises InputError: the counts cannot be halved so often.
     """
     solution = solve(coarser_boundary(boundary, 2**levels), initial=initial)

@@ -36,9 +36,9 @@ def section_grid(
 ) -> tuple[Grid, tuple[str, ...]]:
     """Return the planar grid inside a closed curve or domain, and notes; a given grid is returned unchanged.
 
-    A circle gets five blocks, with `around` cells along it; a four-sided outline gets one block. Walls with a
-    first-cell height are all sides, or those that the request names. Raises InputError: parameters that do
-    not suit the shape; see also `make_grid`.
+    A circle gets five blocks, with `around` cells along the circle; a four-sided outline gets one block. A
+    first-cell height applies at all sides, or at the sides that the request names. Raises InputError:
+    parameters that do not suit the shape; see also `make_grid`.
     """
     five_blocks = isinstance(shape, Circle) and not (
         request.cell_size or request.layout or request.walls or request.by_wall

@@ -28,9 +28,10 @@ def guard(
     """Return `solution` if its grid is valid, otherwise the first valid grid from the following stages.
 
     First, regions of `margin` cells around folded cells are repaired. Then each method of `ORDER` makes a
-    grid, which is repaired too. `boundary` is that of the grid unless `solution` has one. The path of the
-    result ends with the stages that made it, such as ``("winslow", "repair")``. Raises NoValidGridError, with
-    the ten worst cells of the best attempt: all stages leave folded cells, and `allow_invalid` is not set.
+    grid, which is repaired too. `boundary` is used if `solution` has no boundary. The field `path` of the
+    result ends with the stages that made the grid, such as ``("winslow", "repair")``. Raises
+    NoValidGridError, with the ten worst cells of the best attempt: all stages leave folded cells, and
+    `allow_invalid` is not set.
     """
     grid, boundary = solution.grid, solution.boundary or boundary
     if count_folded(grid.nodes) == 0:

@@ -32,11 +32,11 @@ class FirstCells:
     multiple: int = 1  # of which the number of rows is one then
 
     def in_chords(self) -> float:
-        """Return the height at a body. Raises InputError: the request gives no height, or one per wall."""
+        """Return the height at a body, in chords. Raises InputError: no height is given, or one per wall."""
         return self.prescribed.height() or 0.0
 
     def heights(self, boundary: Boundary) -> Heights:
-        """Return the heights in the unit of `boundary`. Raises InputError: no side has the name of a wall."""
+        """Return the heights in the unit of `boundary`. Raises InputError: a wall whose name no side has."""
         off: dict[str, float] = {}
         if self.prescribed.at_walls and boundary.around_body:
             off = {"south": self.in_chords() * boundary.chord}
@@ -61,16 +61,16 @@ class FirstCells:
 
 
 def sides_called(boundary: Boundary, name: str) -> list[Side]:
-    """Return the sides of a four-sided boundary on which there is a patch of this name."""
+    """Return the sides of a four-sided boundary on which there is a patch called `name`."""
     return [side for side in SIDES if any(p.name == name for p in boundary.patches if p.side == side)]
 
 
 def wall_sides(boundary: Boundary) -> list[Side]:
     """Return the sides of a four-sided boundary that get layers if the request names no walls.
 
-    These are south and north, unless all their names, such as ``inlet``, say that they are no walls, and
-    sides that are walls by name along their whole length. If there are none, west and east may be walls.
-    Raises InputError: no side may be a wall.
+    South and north get layers unless the names of all patches on the side, such as ``inlet``, exclude walls.
+    West and east get layers if all patches on the side are walls. If no side is left, all sides with a patch
+    that may be a wall get layers. Raises InputError: no side may be a wall.
     """
     patches = {side: [p for p in boundary.patches if p.side == side] for side in SIDES}
     possible = [side for side in SIDES if any(patch.may_be_wall for patch in patches[side])]
@@ -86,7 +86,7 @@ def wall_sides(boundary: Boundary) -> list[Side]:
 
 
 def along_walls(boundary: Boundary, request: OneBlock) -> bool:
-    """Return whether south or north of a four-sided boundary has layers; xi then runs along a wall."""
+    """Return whether south or north of a four-sided boundary has layers, so that xi runs along a wall."""
     names = request.by_wall or request.walls
     sides = [side for name in names for side in sides_called(boundary, name)] or wall_sides(boundary)
     return not {"south", "north"}.isdisjoint(sides)
@@ -95,9 +95,9 @@ def along_walls(boundary: Boundary, request: OneBlock) -> bool:
 def has_walls_on_sides(shape: Shape, request: GridRequest) -> bool:
     """Return whether the walls named by a request are whole sides of a four-sided domain of one block.
 
-    Unless the request asks for one block or gives both node counts, these walls must also be opposite, and
-    the request must not refine. Raises InputError: the domain has no wall of such a name, or only along a
-    part of a side of the block.
+    If the request neither asks for one block nor gives both node counts, these walls must also be opposite
+    each other, and the request must not refine. Raises InputError: no wall has a requested name; in one
+    block, the walls on a side have different heights.
     """
     heights = request.first_cell if request.y_plus is None else request.y_plus
     off = heights if isinstance(heights, Mapping) else dict.fromkeys(request.walls, 0.0)
@@ -119,7 +119,7 @@ def has_walls_on_sides(shape: Shape, request: GridRequest) -> bool:
 
 
 def names_of_sides(shape: Shape) -> list[list[str]]:
-    """Return the names along each of the four sides, if the shape is one block by default; else no names."""
+    """Return the names along each of four sides; no names if the shape is not one block by default."""
     if isinstance(shape, Boundary):
         return [] if shape.around_body else [[p.name for p in shape.patches if p.side == s] for s in SIDES]
     from meshonet.geometry.shapes.domain_shape import DomainShape, convex_corners, four_sided

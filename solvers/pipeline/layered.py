@@ -29,7 +29,7 @@ OBLIQUE_DEGREES = 20.0  # beyond which layers that lean are worth a note
 
 @dataclass(frozen=True)
 class Layered(Wrapper):
-    """`method`, followed by a redistribution of nodes to the prescribed first-cell heights."""
+    """Solves by `method`, then redistributes nodes to the prescribed first-cell heights."""
 
     cells: FirstCells  # heights and layers
     # settings of ``steger-sorenson``, whose sources turn lines at walls

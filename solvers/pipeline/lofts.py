@@ -31,9 +31,10 @@ GROWTH = 1.2  # of layers where none is given, as of volumes that are marched
 
 
 def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
-    """Return the volume between the first and the last section of a blade, ``hub`` and ``shroud``, and notes.
+    """Return the volume from the first section of a blade, ``hub``, to the last, ``shroud``, and notes.
 
-    The planar grids are marched O grids. Far from the blade they are equal: the far field is a cylinder.
+    Planar O grids around the sections are marched. Far from the blade they are equal, so that the far field
+    is a cylinder.
     Raises InputError: node counts that are too small. Raises NoValidGridError: the grid of a section has
     folded cells.
     """
@@ -87,7 +88,7 @@ def _alike_far_away(grids: Floats, weight: Floats) -> Floats:
 
 
 def duct_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
-    """Return the volume inside a duct from ``inlet`` to ``outlet``, its first and last section, and notes.
+    """Return the volume inside a duct, and notes; ``inlet`` and ``outlet`` are the end sections.
 
     It has one block if all sections have four sides, else five. Raises InputError: a section that is an
     airfoil; node counts that are too small.

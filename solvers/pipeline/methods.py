@@ -39,7 +39,7 @@ class OneByOne:
     together: ClassVar[Topology | None] = None
 
     def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
-        """Return a solution for each of the boundaries; `start` has an optional initial grid for each."""
+        """Return a solution for each of the boundaries `problems`; `start` has an initial grid for each."""
         starts: Sequence[Grid | None] = start or [None] * len(problems)
         return list(map(self.solve_one, problems, starts))
 
@@ -49,7 +49,7 @@ class OneByOne:
 
 
 class MethodEntry(NamedTuple):
-    """A row of the table: a method that is not loaded yet."""
+    """A row of the table `METHODS`: a method whose module is not imported yet."""
 
     target: str  # ``module:name`` of the function of a boundary, or of the class of the method
     summary: str  # for help and documentation, behind the name

@@ -61,7 +61,7 @@ class Each(OneByOne):
 
 @dataclass(frozen=True)
 class Wrapper(OneByOne):
-    """Base class of methods that solve by another method and have the name of this method."""
+    """Base class of methods that solve by another `method` and take over its name."""
 
     method: Method
 

@@ -32,7 +32,7 @@ class Request(FirstCell):
 
     @property
     def chosen(self) -> tuple[str, ...]:
-        """Names of the options that differ from their defaults, followed by settings."""
+        """Names of options, then of settings, whose values differ from the default."""
         names: list[str] = []
         plain = vars(Sampling())
         for name, value in vars(self.sampling).items():
@@ -69,7 +69,7 @@ class OneBlock(Request):
 
     @property
     def sides(self) -> dict[str, float]:
-        """First-cell heights by side, only of sides that have their own height."""
+        """First-cell heights by side; sides without a height of their own are left out."""
         heights = self.spacing_south, self.spacing_east, self.spacing_north, self.spacing_west
         if heights == (None,) * 4:
             return {}
@@ -82,11 +82,11 @@ class OneBlock(Request):
 
     @property
     def by_network(self) -> bool:
-        """Whether the name of the method is that of a neural operator."""
+        """Whether the method is a neural operator."""
         return self.method.partition(":")[0] == "operator"
 
     def shape_sampling(self) -> Sampling:
-        """Return the sampling of shapes; with first cells the spacing of wall nodes changes slowly."""
+        """Return the sampling of shapes; with a first-cell height ``auto`` spacing is by curvature."""
         if not self.at_walls or self.algebraic:
             return self.sampling
         spacing = "curvature" if self.sampling.spacing == "auto" else self.sampling.spacing
@@ -124,7 +124,7 @@ class ManyBlocks(Request):
 
     @property
     def names_walls(self) -> tuple[str, ...]:
-        """Name of the option that selects walls with layers by name, if one is given."""
+        """Name of the given option, if any, that selects walls with layers by name."""
         if self.by_wall:
             return ("first_cell" if self.y_plus is None else "y_plus",)
         return ("walls",) if self.walls else ()

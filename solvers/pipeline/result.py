@@ -78,7 +78,7 @@ def judged(
     remedy: str,
     history: tuple[HistoryRow, ...] = (),
 ) -> Result:
-    """Return a solution with its quality; the time of the measurement is added to `seconds`.
+    """Return a solution with the quality of its grid; the time of the measurement is added to `seconds`.
 
     Notes say where cells grow by more than a prescribed growth ratio, or along walls by more than `JUMP`.
     Raises NoValidGridError, with the given `remedy`: cells are folded, and the request does not allow that.

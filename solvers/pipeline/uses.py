@@ -68,7 +68,7 @@ IN_SPACE = OF_SURFACE | _row("energy")  # options that do not apply to planar gr
 def counted(res: Counts | None, options: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields of `Sampling` for counts `res`.
 
-    A single number is the count along xi and eta, or along xi only if `options` have a growth ratio.
+    A single number is the count along xi and eta; along xi only if `options` contain a growth ratio.
     """
     if isinstance(res, int):
         by_growth = options.get("growth") and any(map(options.get, _OFF_WALLS))

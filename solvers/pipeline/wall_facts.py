@@ -27,8 +27,8 @@ def wall_facts(grid: Grid) -> tuple[str, ...]:
 def growth_note(grid: Grid, limit: float, run: Lines | None = None) -> tuple[str, ...]:
     """Return a note with the largest growth ratio along all grid lines and its node, if it exceeds `limit`.
 
-    If it is on a line that does not leave a wall, the note also has the largest ratio of those that do. `run`
-    has the measures of the lines of a multi-block grid; None: they are computed.
+    If that line does not start at a wall, the note also has the largest ratio along lines that do. `run` are
+    the growth ratios of a multi-block grid; None: they are computed.
     """
     ratios, leaving = _growth(grid, run)
     largest = most_of(ratios.families().values())
@@ -77,5 +77,5 @@ def _growth(grid: Grid, run: Lines | None) -> tuple[Growth, Extreme | None]:
 
 
 def lines_without_percentiles(grid: Grid) -> Lines:
-    """Return the growth and bend of the lines of a multi-block grid; those of volumes have no percentiles."""
+    """Return growth and bend of the lines of a multi-block grid; for volumes without percentiles."""
     return solid_lines(grid, percentiles=False) if grid.form == "volume" else lines(grid, vertices(grid))
