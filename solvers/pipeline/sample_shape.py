@@ -99,8 +99,8 @@ def _check_refined(ni: int, nj: int, halvings: int) -> None:
 def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
     """Return whether the request is a marched C grid that keeps the blunt base of an airfoil.
 
-    With a first-cell height, or `te` ``exact``, every base is kept. Otherwise a base is kept if it is not thin,
-    and if no option, such as `refine`, excludes such grids.
+    With a first-cell height, or `te` ``exact``, every base is kept. Otherwise a base is kept if it is not
+    thin, and if no option, such as `refine`, excludes such grids.
     """
     sampling = request.sampling
     if request.method not in MARCHING or sampling.te not in ("auto", "exact"):
