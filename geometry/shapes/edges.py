@@ -46,11 +46,11 @@ class DrawnEdge(NamedTuple):
 
 
 def channel(walls: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()) -> DomainShape | Outline:
-    """Return the domain between two walls, the first of them south, whose ends straight lines join.
+    """Return the domain between two walls and the straight lines that join their ends; the first is south.
 
-    Walls have the kind ``wall`` unless named otherwise, and this name by default. The line between first
-    points is ``inlet``, that between last points ``outlet``. Raises InputError: walls that cross; equal
-    neighbours.
+    Walls have the name ``wall`` by default, and the kind ``wall`` unless the name implies another. The line
+    between first points is ``inlet``, that between last points ``outlet``. Raises InputError: walls that
+    cross; equal neighbours.
     """
     south, north = (_checked(wall)._replace(name=wall.name or "wall") for wall in walls)
     a, b, c, d = south.points[0], south.points[-1], north.points[0], north.points[-1]
@@ -67,7 +67,7 @@ def four_edges(
 ) -> Boundary | DomainShape | Outline:
     """Return the domain of four edges, chained end to end from the first, which is south.
 
-    Points are the nodes if opposite edges have equally many, at least three.
+    Points become the nodes if opposite edges have equal numbers of points, at least three.
     Raises InputError: edges that do not meet, or that cross; equal neighbours.
     """
     chain = _directed(_chained([_checked(edge) for edge in edges]))

@@ -57,12 +57,12 @@ def o_boundary(
     turned: bool = True,
     notes: tuple[str, ...] = (),
 ) -> Boundary:
-    """Return the O boundary of a closed, clockwise `wall` (ni, 2) within a circle, clockwise by equal angles.
+    """Return the O boundary of a closed, clockwise `wall` (ni, 2); far-field nodes are evenly on a circle.
 
     If `turned`, the first far-field node is the image of `wall[0]` under the body's conformal map, so that
-    the grid is not sheared; a large turn is noted. Else it is in the direction of `wall[0]`, as suffices for
-    marching. West and east are the straight cut between both. `curve`, `name`, `chord` and `notes` are those
-    of `Boundary`.
+    the grid is not sheared; a large turn is noted. Else it is in the direction of `wall[0]` from the centre,
+    as suffices for marching. West and east are the straight cut from `wall[0]` to the far field. `curve`,
+    `name`, `chord` and `notes` are those of `Boundary`.
     """
     middle = np.asarray(centre, dtype=np.float64)
     start, note = math.atan2(wall[0, 1] - middle[1], wall[0, 0] - middle[0]), ""

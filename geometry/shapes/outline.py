@@ -29,8 +29,9 @@ _DEPARTURE = 5e-3  # largest distance of a smooth side from lines between points
 class Outline:
     """A closed curve through `points` (n, 2), at least 3, of any unit and orientation.
 
-    `corners` are the indices of those of a quad domain, south-west first; `places` (n,) are positions in the
-    input. Raises InputError: too few points; equal neighbours; an outline that crosses itself or has no area.
+    `corners` are the indices of the points that are corners of a quad domain, south-west first. `places` (n,)
+    are positions of points in the input. Raises InputError: too few points; equal neighbours; an outline that
+    crosses itself or has no area.
     """
 
     far_field_unit = "extents of the body"  # unit of the far-field distance

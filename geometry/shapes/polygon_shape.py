@@ -67,7 +67,7 @@ def polygon_shape(
 
 
 def domain_or_body(shape: Outline | Airfoil) -> Shape:
-    """Return a closed curve, or the domain inside it if it has corners, but not four."""
+    """Return the closed curve `shape`, or the domain inside if the curve has corners, but not four."""
     if isinstance(shape, Airfoil) or shape.topology != "quad":
         return shape
     points = shape.curve.points

@@ -42,10 +42,10 @@ def cells_of_wake(
 ) -> int:
     """Return the number of cells along the wake of a C grid.
 
-    The grid has `ni` nodes along xi, and on the wake `nodes_wanted` if that is given. By default, cells grow
-    by 13 % from `first` over `length`. Their number is limited to 20 to 23 % of all cells, and rounded to a
-    multiple of a step: the first of `steps` that is at most a quarter of it. Raises InputError: too few nodes
-    left for the wall.
+    The grid has `ni` nodes along xi, and `nodes_wanted` on the wake if that is given. By default, cells grow
+    by 13 % from `first` over `length`. The number of cells is limited to 20 to 23 % of all cells along xi,
+    and rounded to a multiple of the first of `steps` that is at most a quarter of the number. Raises
+    InputError: too few nodes left for the wall.
     """
     if nodes_wanted is not None:
         cells = nodes_wanted - 1
@@ -63,7 +63,7 @@ def cells_of_wake(
 
 
 def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
-    """Return the unit vector (2,) along which a wake ends: x, or that of a steep chord."""
+    """Return the unit vector (2,) along which a wake ends: the x axis, or the direction of a steep chord."""
     chord = np.asarray(trailing_edge - leading_edge)
     if abs(chord[1]) <= abs(chord[0]):
         return np.array([math.copysign(1.0, chord[0]), 0.0])
@@ -126,9 +126,9 @@ def growing(first: float, length: float, cells: int) -> Floats:
 
 
 def rise(behind: Floats, begin: float = _FROM) -> Floats:
-    """Return the rise (n,) of first-cell heights at distances `behind` (n,) the trailing edge, in chords.
+    """Return by what (n,) first-cell heights rise at distances `behind` (n,) a trailing edge, in chords.
 
-    It sets in at about the distance `begin`, which is `BEHIND_BASE` behind a base.
+    The rise begins at about the distance `begin` (`BEHIND_BASE` for a base).
     """
     return np.asarray(_RISE * behind**2 / ((behind + begin) * (1.0 + behind / _UP_TO)))
 
@@ -159,7 +159,7 @@ def c_boundary(
 
 
 def c_far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, outlet: Floats) -> Floats:
-    """Return far-field nodes (body + 2 wake + 1, 2), in front in equal steps, for a wake to `outlet` (2,).
+    """Return far-field nodes (body + 2 wake + 1, 2) for a wake to `outlet` (2,); in front steps are equal.
 
     Raises InputError: the outlet is outside of the far field.
     """

@@ -18,7 +18,7 @@ def limited_sizes(sizes: Floats, arcs: Floats, slope: float) -> Floats:
 def graded(sizes: Floats, arcs: Floats, length: float, slope: float) -> Floats:
     """Return the largest sizes (n,), at most `sizes` (n,), that change by at most `slope` per arc length.
 
-    They are at ascending `arcs` (n,) along a closed curve of this `length`.
+    Sizes are given at ascending `arcs` (n,) along a closed curve of this `length`.
 
     >>> graded(np.array([1.0, 9.0, 9.0, 9.0]), np.array([0.0, 1.0, 2.0, 3.0]), 4.0, 1.0).tolist()
     [1.0, 2.0, 3.0, 2.0]

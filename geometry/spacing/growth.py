@@ -61,7 +61,7 @@ def cells_for_growth(first: float, length: float, ratio: float) -> int:
 
 
 def growing_steps(first: float, length: float, cells: int, constant: int = 1) -> Floats:
-    """Return sizes (cells,) that add up to `length`: `constant` equal ones of `first`, then growing.
+    """Return cell sizes (cells,) with the sum `length`: `constant` cells of size `first`, then growing ones.
 
     >>> growing_steps(1.0, 9.0, 5, 3).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]

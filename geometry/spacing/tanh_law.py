@@ -51,7 +51,7 @@ class TanhLaw:
     def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> Self:
         """Return the law of `cells` cells from step `first` to `last`, met to a relative 1e-6.
 
-        Of the last cell the part `last_part` (1 or 0.5) is before 1; with 0.5, `cells` is no integer.
+        The fraction `last_part` (1 or 0.5) of the last cell lies before 1; with 0.5, `cells` is no integer.
         Raises InputError: the steps are too large together, or too few cells are between them.
         """
         start, end = first * cells, last * cells

@@ -47,7 +47,7 @@ def first_cell_note(
     where: str = "wall node",
     chord: float = 1.0,
 ) -> str:
-    """Return a sentence that compares the first-cell heights, from `low` to `high`, with `target`.
+    """Return a sentence that compares first-cell heights, which range from `low` to `high`, with `target`.
 
     `growth` is the mean growth ratio off the wall, `where` the word for nodes. Unless `chord` is 1, `target`
     is also in chords.

@@ -14,7 +14,7 @@ _SIDES = ("west", "east", "south", "north")
 
 
 def place_of(nodes: Floats, lattices: tuple[Indices, ...], node: int) -> str:
-    """Return the position of a node as text: its first patch, i, j, x, y, z."""
+    """Return the position of a node as text: the first patch that has it, i, j, x, y, z."""
     for number, lattice in enumerate(lattices):
         at = np.argwhere(lattice == node)
         if len(at):
@@ -44,7 +44,7 @@ def check_quads(nodes: Floats, lattices: tuple[Indices, ...], quads: Indices) ->
 
 
 def check_manifold(nodes: Floats, lattices: tuple[Indices, ...], crowded: Indices) -> None:
-    """Raise InputError if an edge, with `crowded` nodes, belongs to three faces or more."""
+    """Raise InputError if there are `crowded` nodes: nodes of an edge of three faces or more."""
     if len(crowded):
         owners = [str(n) for n, k in enumerate(lattices) if (k == crowded[0]).any()]
         problem = f"an edge belongs to three faces or more (patches {', '.join(owners)})"
@@ -74,7 +74,7 @@ def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> 
 
 
 def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError if nodes of open `edges` (k, 2) lie inside others: sides meet with different nodes."""
+    """Raise InputError if nodes of open `edges` (k, 2) lie inside other open edges: sides do not match."""
     ends = nodes[edges]
     along = ends[:, 1] - ends[:, 0]
     length = norms(along)

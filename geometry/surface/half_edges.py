@@ -14,16 +14,16 @@ def ends_of(quads: Indices) -> tuple[Indices, Indices]:
 
 
 def open_sides(quads: Indices, twin: Indices) -> Indices:
-    """Return the corners (k, 4) of the quadrilaterals at open edges, from both ends of the edge on."""
+    """Return the corners (k, 4) of the quadrilaterals at open edges; the ends of the edge come first."""
     opened = np.flatnonzero(twin < 0)
     around = (opened[:, None] % 4 + np.arange(4)) % 4
     return np.asarray(quads[opened[:, None] // 4, around])
 
 
 def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
-    """Return the twin (4 m,) of each half-edge, -1 at open edges, and half-edges beyond two of an edge.
+    """Return the twin (4 m,) of each half-edge, -1 at open edges, and surplus half-edges.
 
-    `nodes` is the number of nodes.
+    Half-edges are surplus from the third on an edge. `nodes` is the number of nodes.
     """
     first, last = ends_of(quads)
     key = np.minimum(first, last) * nodes + np.maximum(first, last)
@@ -40,8 +40,8 @@ def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
 def rings(quads: Indices, twin: Indices, nodes: int) -> tuple[Indices, Indices]:
     """Return the neighbours (n, w) of each node in order around it, padded with -1, and their number (n,).
 
-    Quadrilaterals have one orientation. Neighbours of a node on an open edge begin and end along open edges,
-    one more than there are quadrilaterals.
+    All quadrilaterals must have one orientation. A node on an open edge has one neighbour more than
+    quadrilaterals; its first and last neighbours are along open edges.
     """
     first, last = ends_of(quads)
     edges = np.arange(len(first))

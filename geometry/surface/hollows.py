@@ -22,9 +22,8 @@ class Hollows:
     ----------
     edges : (k, 2) the two nodes of each edge.
     angles : (k,) angle of the space between the two faces, in degrees, at most 150.
-    distance : (n,) distance of each node from a concave edge along edges, plus the width of cells there;
-    infinite
-        without concave edges.
+    distance : (n,) distance of each node from a concave edge, along edges of cells, plus the width of the
+        cells there; infinite without concave edges.
     """
 
     edges: Indices
@@ -32,11 +31,11 @@ class Hollows:
     distance: Floats
 
     def sharpest(self) -> tuple[float, int] | None:
-        """Return the smallest angle in degrees and a node of its edge, if any."""
+        """Return the smallest angle of a concave edge, in degrees, and a node of this edge, if any."""
         return self._at(int(self.angles.argmin())) if len(self.edges) else None
 
     def nearest(self, surface: Surface, numbers: Indices) -> tuple[float, int] | None:
-        """Return angle in degrees and a node of the concave edge nearest to `numbers` (n,), if it is near."""
+        """Return angle, in degrees, and a node of a concave edge near the nodes `numbers` (n,), if any."""
         if not len(self.edges):
             return None
         edges = surface.nodes[self.edges[:, 0]]

@@ -33,7 +33,7 @@ def near_pairs(points: Floats, distance: float) -> Indices:
 def merged(patches: Sequence[Floats]) -> tuple[Floats, tuple[Indices, ...]]:
     """Return all nodes (n, 3) of `patches` (ni, nj, 3), and the node numbers (ni, nj) of each patch.
 
-    Edge nodes within `TOLERANCE` of the size of the surface are one node, the first; numbers ascend.
+    Edge nodes closer than `TOLERANCE` times the size of the surface become one node, the first of them.
     """
     points = np.concatenate([np.ascontiguousarray(patch).reshape(-1, 3) for patch in patches])
     edges = [

@@ -15,10 +15,11 @@ _HOLE = 0.1  # largest extent of open edges that are the rim of a hole, divided 
 def turned_alike(
     patch: Indices, half_edges: tuple[Indices, Indices], twin: Indices, count: int
 ) -> tuple[list[int], list[int], tuple[int, int] | None]:
-    """Return, for `count` patches, component and sign (1 or -1) of each, and a pair of patches or None.
+    """Return component and sign (1 or -1) of each of `count` patches, and a contradicting pair or None.
 
-    `patch` (4 m,) is that of each half-edge, from the first to the last node in `half_edges`. Reversing
-    patches of sign -1 makes a component consistent, unless a pair contradicts: the surface is not orientable.
+    `patch` (4 m,) is the patch of each half-edge, `half_edges` the first and last nodes. Reversing the
+    patches of sign -1 makes the orientation of a component consistent. If a pair of patches contradicts that,
+    the surface is not orientable.
     """
     first, _ = half_edges
     edges = np.flatnonzero(twin > np.arange(len(twin)))
@@ -51,8 +52,8 @@ def turned_alike(
 def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list[int]:
     """Return the axes of the planes of symmetry that close a surface.
 
-    `sides` are those of `open_sides`. If all open edges outside one plane are the rim of a small hole, as at
-    the end of half a fuselage, only this plane closes it.
+    `sides` is the result of `open_sides`. If all open edges outside one plane are the rim of a small hole, as
+    at the end of half a fuselage, only the axis of this plane is returned.
     """
     axes = sorted({plane.axis for plane in planes})
     slack = FLAT * extent_of(nodes)
@@ -67,8 +68,8 @@ def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list
 def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | None:
     """Return 1 if consistently oriented `quads` (m, 4) face outwards, -1 if inwards; None if undefined.
 
-    Planes normal to the axes `flat` close open edges in them. It is undefined without an enclosed volume, by
-    the vector sum of area, and with planes of two axes, as at the corner of a box.
+    Planes normal to the axes `flat` close the surface. The sign is undefined if the vector sum of areas shows
+    that no volume is enclosed, and with planes of two axes, as at the corner of a box.
     """
     if len(flat) > 1:
         return None

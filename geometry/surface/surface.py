@@ -34,8 +34,8 @@ class Surface:
     nodes : (n, 3) the table of nodes, in any unit of length.
     lattices : for each patch, the indices (ni, nj) of its nodes; the normal i x j points outwards.
     names : names of the patches, ``wall`` if the file has no names.
-    twin : (4 m,) for each half-edge of `quads`, that on the other side; -1 at open edges (`half_edges`).
-    ring, valence : (n, w) neighbours in order around each node, (n,) their number (`half_edges.rings`).
+    twin : (4 m,) for each half-edge of `quads`, the opposite half-edge; -1 at open edges (`half_edges`).
+    ring, valence : (n, w) neighbours in order around each node, (n,) number of these (`half_edges.rings`).
     planes : planes normal to an axis that contain open edges, with the surface on one side of them.
     notes : sentences on what was changed or assumed.
     """

@@ -50,8 +50,8 @@ class Airfoil:
                   lower  ---->
 
     The `points` (n, 2), of any unit and orientation, are cleaned (`clean_section`) unless they are a clean
-    section. `places` (n,) are their positions in the input, such as ``line 12``; `notes` say how they were
-    changed before. Raises InputError, with the place: the points are no airfoil.
+    section. `places` (n,) are the positions of points in the input, such as ``line 12``; `notes` say how
+    points were changed before. Raises InputError, with the place: the points are no airfoil.
     """
 
     chord: float  # distance from the leading to the trailing edge
@@ -108,7 +108,7 @@ class Airfoil:
     def unit(self) -> float:
         """Unit of wall cell sizes: the chord, or 1 if the chord is within 1 % of that.
 
-        In cambered sections the farthest point is beyond the nominal chord, of NACA 2412 by 8e-5.
+        The chord of a cambered section exceeds the nominal chord, that of NACA 2412 by 8e-5.
         """
         return 1.0 if abs(self.chord - 1.0) < 0.01 else self.chord
 
@@ -123,7 +123,7 @@ class Airfoil:
 
     @property
     def outline_notes(self) -> tuple[str, ...]:
-        """Notes on the outline, an oblique base, and a curve that deviates from its polygon."""
+        """Notes on the outline: an oblique base, ripples, and a curve that deviates from its polygon."""
         return self.notes + shape_notes(self._section, self.curve, self.chord)
 
     @cached_property
@@ -170,7 +170,7 @@ class Airfoil:
         return body
 
     def moved_apart(self) -> Airfoil:
-        """Return the airfoil with its surfaces moved apart to 9e-5 chords where they are closer."""
+        """Return the airfoil; surfaces closer than 9e-5 chords are moved apart to that distance."""
         section = self._section.moved_apart()
         return Airfoil(section.points, self.name, notes=(*self.notes, moved_note(self._section, section)))
 
@@ -204,7 +204,7 @@ class Airfoil:
         return nodes
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return this wall with a far field: a circle (O grid), or a half circle and a wake (C grid).
+        """Return the boundary: the wall, and a circle (O grid) or a half circle and a wake (C grid).
 
         Topology ``auto`` is ``c`` if cells at the wall will be thin and the trailing edge, after
         `Sampling.te`, is sharp, of at most 50 degrees. Raises InputError: topology ``quad``, or ``c`` with a

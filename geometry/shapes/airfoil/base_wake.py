@@ -57,9 +57,9 @@ _LEAST_WALL = 24  # fewest cells on a wall
 class BaseWake:
     """Lines of nodes around and behind a section with a base (a blunt trailing edge).
 
-    The `wall` (n, 2) runs clockwise from the lower to the upper corner of the base, the `base` (m, 2)
-    straight. The wakes `lower` and `upper` (k, 2) run from these corners to the outlet. Corners are bitwise
-    shared.
+    The `wall` (n, 2) runs clockwise from the lower to the upper corner of the base, and the `base` (m, 2)
+    along the straight line between the corners. The wakes `lower` and `upper` (k, 2) run from these corners
+    to the outlet. Corners are bitwise shared.
     """
 
     wall: Floats
@@ -185,7 +185,7 @@ def _fewest(width: float, first: float, ratio: float) -> int:
 
 
 def end_fractions(ends: Floats, cells: int) -> Floats:
-    """Return rows (m, cells + 1) from 0 to 1 with these first and last steps (m,), at most 1/cells."""
+    """Return rows (m, cells + 1) from 0 to 1; first and last steps are `ends` (m,), at most 1/cells."""
     out = np.zeros((len(ends), cells + 1))
     steps = np.empty(cells)
     for row, end in zip(out, ends.tolist(), strict=True):

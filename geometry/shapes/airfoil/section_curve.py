@@ -156,7 +156,7 @@ def base_note(wall: Floats, corner: Floats, base: float, chord: float, *, fixed:
     """Return a note if a base uses most nodes, or if cell sizes jump at its lower corner.
 
     `wall` (n, 2) runs from the middle of the base, which has length `base` and ends at `corner` (2,). The
-    number of its nodes may be `fixed`.
+    user may have `fixed` the number of nodes on the base.
     """
     steps = norms(np.diff(wall, axis=0))
     arcs = np.cumsum(steps)
@@ -190,7 +190,7 @@ def opened_note(height: float, thickness: float) -> str:
 
 
 def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, option: TrailingEdge) -> tuple[str, ...]:
-    """Return a note on how `te` changed the base, or that `option` changes nothing."""
+    """Return a note on how `te` changed the base; or, if nothing changed, that `option` has no effect."""
     base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"
     if before.blunt and te == "wedge":
         length = float(np.hypot(*(after.trailing_edge - before.trailing_edge))) / before.chord
@@ -218,7 +218,7 @@ def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -
 def farthest_arc(curve: Curve, point: Floats) -> float:
     """Return the arc length of the point of the curve that is farthest from `point`.
 
-    Of several (a flat nose) it is the middle, so that a symmetric section stays symmetric.
+    If several points are equally far (a flat nose), the middle one counts, so that symmetry is kept.
     """
     s = np.concatenate([curve.knots, 0.5 * (curve.knots + np.append(curve.knots[1:], curve.length))])
     s = np.sort(s)

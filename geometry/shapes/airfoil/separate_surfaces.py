@@ -11,9 +11,10 @@ _WEDGE = 0.02  # near an edge the least thickness is this fraction of the distan
 
 
 def moved_apart(ring: Floats, nose: int) -> Floats:
-    """Return a closed polygon (n, 2) whose surfaces are 2 `MOST` chords apart, moved by at most `MOST`.
+    """Return a closed polygon (n, 2) with surfaces at least 2 `MOST` chords apart, moved by up to `MOST`.
 
-    It runs clockwise from the trailing edge, which does not move, nor does the leading edge, index `nose`.
+    The polygon runs clockwise from the trailing edge. The trailing edge and the leading edge, index `nose`,
+    do not move.
     """
     chord = float(np.hypot(*(ring[nose] - ring[0])))
 

@@ -39,8 +39,8 @@ _WEDGE_POINTS = 9  # on each side of a wedge
 def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
     """Return the curve of a blunt section with rounded corners of the base, and where the rounding ends.
 
-    Both closed curves begin at the middle of the base; second and last points of the given one are its
-    corners.
+    Both closed curves begin at the middle of the base. The second and the last point of `curve` are the
+    corners of the base.
     """
     length, half = curve.length, float(curve.knots[1])
     across = min(_ACROSS * half, _CAP * chord)
@@ -60,11 +60,10 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
 
 
 def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
-    """Return the distances (n + 1,) from the middle of the nodes on each half of a rounded base, lower first.
+    """Return distances (n + 1,) of nodes from the middle, on each half of a rounded base, lower first.
 
-    Density follows length and the turn over four cells; cells at the largest turns are the most skewed of a
-    grid. `curve` and `end` are those of `rounded_base`; `cells`, at least 3, is the number on a half of 90
-    degrees.
+    Cells are smaller where the curve turns more over four cells. `curve` and `end` are the results of
+    `rounded_base`. `cells`, at least 3, is the number of cells on a half that turns by 90 degrees.
     """
     per_cell = 64
     n = per_cell * cells  # on either half; index n is the middle
@@ -103,7 +102,7 @@ def wedged_base(section: CleanSection, tangents: tuple[Floats, Floats]) -> Clean
     """Return a blunt section with a wedge added; the result starts at the tip of the wedge.
 
     `tangents` are unit directions (2,) of the lower and the upper surface at the base. Points of the wedge
-    may be closer than those of a file, and are not cleaned.
+    may be closer than points of a file, and are not cleaned.
     """
     points, (lower, upper) = section.points, tangents
     gap = float(np.hypot(*(points[0] - points[-1])))

@@ -43,7 +43,7 @@ _SMALLER = 64.0  # largest factor by which cells beside a base are smaller for t
 
 @dataclass(frozen=True)
 class WallCells:
-    """Numbers of cells on half the base and on a side; sizes of the cells at trailing and leading edge."""
+    """Numbers of cells on half the base and on a side, and lengths of cells at trailing and leading edge."""
 
     half: int
     cells: float
@@ -85,8 +85,8 @@ def planned_arcs(body: Airfoil, ni: int, sampling: Sampling) -> Floats:
 def arcs_to_corners(body: Airfoil, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
     """Return arc lengths (cells + 1,) of nodes from the lower to the upper corner of a base, by curvature.
 
-    Cells there have the length `first`, unless `te_spacing` is given, and grow by at most `ratio`. Corners
-    are nodes.
+    Cells at the corners have the length `first`, unless `te_spacing` is given, and grow by at most `ratio`.
+    Corners are nodes.
     """
     from meshonet.geometry.spacing.size_field import arcs_by_curvature
 
