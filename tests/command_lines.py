@@ -33,7 +33,7 @@ def _in_shell(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
-SIZES, FEW = {"--cells": 3000, "--around": 65, "--span": 17}, "--around 65 --span 17"
+SIZES, FEW = {"--cells": 3000, "--around": 49, "--span": 13}, "--around 49 --span 13"
 """The most that a command that makes layers or volumes gets here; tutorials are run with their own sizes."""
 
 

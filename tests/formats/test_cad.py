@@ -266,7 +266,7 @@ def test_damaged_files_and_a_missing_package_are_named(
 def test_a_cut_file_of_which_open_cascade_never_returns_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(read, "SECONDS", 4.0)
+    monkeypatch.setattr(read, "SECONDS", 2.0)
     path = tmp_path / "box.brep"
     BRepTools.Write_s(BRepPrimAPI_MakeBox(1.0, 2.0, 3.0).Shape(), str(path))
     path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 5])

@@ -21,7 +21,7 @@ from meshonet.solvers.neural.models.operator import PaperOperator
 from meshonet.solvers.neural.registry import load
 from meshonet.solvers.neural.samples import Samples
 
-PLAN = Plan(epochs=300, points=(60, 40), rate=5e-3, schedule="cosine", device="cpu", log_every=50)
+PLAN = Plan(epochs=200, points=(60, 40), rate=5e-3, schedule="cosine", device="cpu", log_every=50)
 ALONE = Team(torch.device("cpu"))
 SMALL = {"width": 12, "depth": 2}
 
