@@ -221,12 +221,13 @@ are, and how long it takes.
 - Each domain is a GeoJSON file. A process of its own makes each grid: `solve-pde FILE --cells 2500
   -o F.vtm`, with one thread, while other programs used the machine. Times are those of the whole process.
 - *valid*: all corner Jacobians are positive, the nodes of adjacent blocks match, wall nodes lie on the
-  outline within 1e-8 of the domain size, and the area is correct within 1e-3. The benchmark tests this
-  independently of meshonet.
+  outline within 1e-8 of the domain size, and the relative error of the area is at most 1e-3. The benchmark
+  tests this independently of meshonet.
 - *refused*: exit code 2 or 3 with a message. *silent*: exit code 0, but the grid is not valid.
 - *blocks*, *irregular*: number of blocks, and of interior vertices at which more or fewer than four cells
   meet. *mean*: mean deviation of cell corner angles from 90 degrees. *99 %*: 99th percentile of the largest
-  deviation in each cell. These four columns are medians over the valid grids. *90 %*: 90th percentile.
+  deviation in each cell. These four columns are medians over the valid grids. *90 %* in the columns of times:
+  90th percentile.
 """
 VALID = """
 | domains | number | valid | refused | silent | CPU s: median / 90 % / max | elapsed s: median / 90 % \
@@ -235,12 +236,12 @@ VALID = """
 BESIDE = """
 ## Gmsh at equal cell count
 
-Gmsh gets the same domains, with a spline through the points between two corners. It uses one thread and the
-options for quadrilaterals only. The time of Gmsh is the time of `generate(2)`; the time of meshonet is the
-time of the whole process. Gmsh's algorithm 11 generates quasi-structured quadrilaterals, algorithm 8 is
+Gmsh gets some of these domains (column *domains*), with a spline through the points between two corners. It
+uses one thread and the options for quadrilaterals only. The time of Gmsh is the time of `generate(2)`; the
+time of meshonet is the time of the whole process. Gmsh's algorithm 11 generates quasi-structured quadrilaterals, algorithm 8 is
 Delaunay for quadrilaterals, algorithm 9 packing of parallelograms. *meshed*: number of domains that Gmsh
-meshes; *with triangles*: number of these meshes that contain triangles. The other columns give two medians
-over the domains: meshonet / Gmsh.
+meshes; *with triangles*: number of these meshes that contain triangles. The other columns give two medians over
+these domains, for meshonet and for Gmsh.
 
 | algorithm | domains | meshed | with triangles | irregular | mean | 99 % | CPU time, s | cells |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""

@@ -164,8 +164,10 @@ transfinite interpolation (TFI). meshonet has no model for C grids; `infer` marc
 HOLES = """
 ## The moving hole of the MeshONet paper, 101 x 101
 
-The shapes are square plates with a round hole at different heights. The columns `hole-winslow`
-to MeshONet-hard give the median relative L2 distance to Winslow's solution and, in brackets, how many grids
+The shapes are square plates with a round hole at different heights: from -0.4 to 0.4 in the row *random*, and
+up to 0.5 above or below the centre in the second row, for which the paper's models were not evaluated.
+
+The columns `hole-winslow` to MeshONet-hard give the median relative L2 distance to Winslow's solution and, in brackets, how many grids
 have folded cells. The last three columns give the maximum / mean angle, averaged over the grids. The network
 was not trained on such plates; the paper's models were trained on 30 of them
 ([the reproduction](paper/index.md)).
@@ -186,11 +188,12 @@ bodies. For the method see [neural operators](../theory/operators.md).
 - *valid*: share of grids without a folded cell, before repair.
 - *no worse than Winslow*: share of grids that are valid, and in which neither the maximum nor the mean angle
   is larger than in Winslow's grid.
-- *max / mean angle*: take the largest angle of each cell, in degrees; the maximum and the mean over the cells
-  of a grid, averaged over the bodies.
+- *max / mean angle*: maximum and mean, over the cells of a grid, of the largest angle of a cell, in degrees.
+  Both are averaged over the bodies.
 - *gain*: the reduction of the angle compared with Winslow's grid, in percent of the reduction that the
   variational grid reaches. *all*: both reductions are summed over the bodies before the division. *median*:
-  median of the ratios of the bodies.
+  the division is made for each body, and the value is the median of the results. The gain in the largest
+  angle is of the kind *all*.
 - Bodies for which Winslow's iteration does not converge, a few in a hundred, are left out.
 - *CPU ms*: CPU time of one thread, while other programs used the machine.
 """
@@ -202,7 +205,8 @@ TAIL = """
 - With five iterations after the network all grids are valid and angles are closer to 90 degrees than in
   Winslow's grids, a quarter of which have folded cells before repair. This takes about three times as long as
   Winslow's method.
-- `solve-pde --method variational` gives the best angles, and takes about three times as long again.
+- `solve-pde --method variational` gives the best angles, and takes about three times as long as the
+  network with five iterations.
 - In the grids of the network and of the variational method, grid lines cluster where a body is close to its
   far field.
 - For smooth bodies in a round far field and for thin bodies `infer` uses the conformal map and no network.

@@ -169,8 +169,8 @@ HEAD = """# Expected errors of neural networks
 
 <!-- made by python benchmarks/bench_confidence.py --page docs/benchmarks/confidence.md -->
 
-Read this page to decide whether you can rely on the *expected error* that `infer --model` reports, and on its
-threshold.
+Read this page to decide whether you can rely on the *expected error* that `infer --model` reports, and on the
+threshold 0.03 for this error.
 
 The *answer* of a network is the grid that it predicts. To estimate its error, `infer` applies a few steps of
 the solver that the network imitates: 16 iterations of the variational method for `quad-general` and `hole-o`,

@@ -37,8 +37,10 @@ TITLE = """# GPU
 <!-- made by python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md -->
 """
 HEAD = """
-Use this page to find the speed of training and of batches of grids on a GPU. For its use see [threads and
-GPUs](../guide/threads-and-gpu.md). The page is made by `python benchmarks/bench_gpu.py --page
+Use this page to find the speed of training and of batches of grids on a GPU. [Threads and
+GPUs](../guide/threads-and-gpu.md) explains how to use a GPU.
+
+The page is made by `python benchmarks/bench_gpu.py --page
 docs/benchmarks/gpu.md`, which ends within eight minutes; the tables say which measurements were not made for
 lack of time.
 

@@ -252,9 +252,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "The largest angles of cells are closer to 90 degrees in variational grids than in Winslow's grids.\n"
-        f"The predicted variational grids reach {100 * gain['mean_gain']:.0f} % of the reduction of the\n"
-        f"mean over the cells, and {100 * gain['max_gain']:.0f} % of the reduction of the maximum.",
+        "Compared with Winslow's grid, the variational grid has smaller largest angles of cells. The predicted\n"
+        f"variational grid reaches {100 * gain['mean_gain']:.0f} % of the reduction of their mean over the cells,\n"
+        f"and {100 * gain['max_gain']:.0f} % of the reduction of their maximum.",
     ]
     return lines
 

@@ -4,8 +4,8 @@ HEAD = """# A comparison that is open to other programs
 
 <!-- made by python benchmarks/yardstick entries build/yardstick --page docs/benchmarks/yardstick.md -->
 
-Use this page to compare a program that makes structured grids with the programs below, on shapes for which none of them
-was made. The scripts in `benchmarks/yardstick` draw the shapes, read and write the files and judge
+Use this page to compare your program for structured grids with the programs below, on shapes for which none of
+the programs was made. The scripts in `benchmarks/yardstick` draw the shapes, read and write the files and judge
 the grids. They need NumPy and h5py, and do not use meshonet.
 
 There are nine kinds of random shapes, here {count} of each, drawn with seed {seed}. Six kinds are four-sided domains with
@@ -15,7 +15,7 @@ and `section`. The boundary nodes are given.
 - *Grids*: the number of shapes for which the program made a grid.
 - *Folded*: number of grids with folded cells and, in brackets, number of folded cells. A cell is folded if
   the Jacobian at one of its corners is not positive.
-- *Largest angle*: largest corner angle of a cell of a grid, in degrees; mean / maximum over the grids.
+- *Largest angle*: largest corner angle in a grid, in degrees; mean and worst value over the grids.
   *Least angle*: smallest corner angle of a cell, over all grids.
 - *Skew*: largest deviation of the angles of a cell from 90 degrees, in degrees; mean over all cells.
 - *Boundary error*: the largest distance of a boundary node from the given node, relative to the size of the

@@ -12,7 +12,7 @@ MeshONet is a neural network that learns to predict the grid of a shape from its
 `meshonet` commands: `make paper` samples the six [families of shapes](../../reference/families.md), solves for their grids, trains
 the networks, evaluates them and measures the results. The commands are in `examples/paper/Makefile`;
 [paper models](../../theory/paper-models.md) describes the networks. The paper measures quality by the largest included angle of a
-cell and shows it as colour maps without numbers. This page therefore quotes its claims in words next to our values.
+cell, and shows this angle in colour maps without numbers. This page therefore quotes the paper's claims in words next to our values.
 """
 
 STANDS = """
