@@ -22,7 +22,7 @@ _IN_ARCHIVE = re.compile(r"\.zip/", re.IGNORECASE)
 
 
 def member_names(path: str) -> Iterator[str]:
-    """Return an iterator over an archive's sorted names. Raises InputError: not a zip archive; unreadable."""
+    """Return the sorted names of an archive's members. Raises InputError: not a zip archive; unreadable."""
     return iter(sorted(name for name in _archive(path).NameToInfo if not name.endswith("/")))
 
 

@@ -86,7 +86,7 @@ class Conversion:
     def of_boundaries(self, source: str, output: str, from_format: str | None, to_format: str | None) -> bool:
         """Return whether boundaries are written instead of grids.
 
-        They are if no change needs grids, and the format of the input or of the output has none.
+        Boundaries are written if no change needs grids, and the format of the input or output has no grids.
         """
         changed = self.swap or self.coarsen > 1 or self.copies != 1 or self.scale != 1.0
         if changed or self.heights() or self.turn():
@@ -121,7 +121,8 @@ def plot3d_variant(
 ) -> tuple[str | None, str | None]:
     """Return the formats to read and to write, one of them with the Plot3D options `words`.
 
-    They belong to the output if it is Plot3D, else to the input. Raises InputError: an unknown option.
+    The options apply to the output if that is Plot3D, else to the input. Raises InputError: an unknown
+    option.
     """
     if words is None:
         return from_format, to_format

@@ -39,11 +39,11 @@ class Format:
     space : kinds of three-dimensional grids that are read and written.
     many : whether one file can contain several grids or boundaries.
     one_size : whether all samples of a file must have the same node counts and topology.
-    beside : whether more files are written next to the file; it cannot be written to a stream then.
+    beside : whether more files are written next to the file, so that streams are impossible.
     fills_folder : whether the file stands for its folder, which has one grid.
     choices : groups of options; the name may be followed by one word of each group.
     reads_options : whether `read_grids` takes ``options`` as `write_grids` does.
-    suffix_options : by extension, the option that it implies when a file is written.
+    suffix_options : by extension, the option that the extension implies when a file is written.
     """
 
     name: str
@@ -115,7 +115,7 @@ class Format:
 
 
 def later(function: str, /, *args: Any, **settings: Any) -> Any:
-    """Import `function`, ``package.module:name``, and call it; a `partial` of this loads no module."""
+    """Import and call `function`, ``package.module:name``; a `partial` of `later` imports nothing."""
     module, _, name = function.partition(":")
     return getattr(importlib.import_module(module), name)(*args, **settings)
 

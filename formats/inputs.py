@@ -23,8 +23,8 @@ _IS_DATASET = re.compile(r"\.(?:h5|hdf5)(?:#[a-z0-9,:]+)?$", re.IGNORECASE)
 class Numbered(NamedTuple):
     """An input, and the numbers of its members (shapes or grids) among the members of all inputs.
 
-    `first` is the number of its first member; None: numbered as they are read. `step` is the difference of
-    successive numbers, 0 for a single member.
+    `first` is the number of the first member of the input; None: members are numbered as they are read.
+    `step` is the difference of successive numbers, 0 for a single member.
     """
 
     text: str | InputError

@@ -99,8 +99,9 @@ def open_source(text: str) -> Source:
     """Return the source called `text`: a path, ``-`` for standard input, or ``FILE.zip/MEMBER``.
 
     ``FILE#test`` and ``FILE#train`` select a split of a dataset, ``FILE#7`` a sample, counted from 0,
-    ``FILE#5:9`` and ``FILE#5::2`` a range, ``FILE#test,0:9`` a range of a split. A file with the ``#`` in its
-    name comes first. Raises InputError: no such file, a folder, a file that may not be read, an empty file.
+    ``FILE#5:9`` and ``FILE#5::2`` a range, ``FILE#test,0:9`` a range of a split. A file whose name contains
+    the ``#`` takes precedence. Raises InputError: no such file, a folder, a file that may not be read, an
+    empty file.
     """
     split, rows = "", None
     if "#" in text:

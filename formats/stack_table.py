@@ -89,8 +89,9 @@ def _section(
 def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) -> float:
     """Return x or y of the section in `row` at this `z`, after the sections `before`.
 
-    The key `direct` (``x`` or ``y``) has it, default as before; or `angle` (``sweep`` or ``dihedral``) has
-    the angle in degrees between the z axis and the line from the previous section. Raises InputError: both
+    The key `direct` (``x`` or ``y``) gives the value, by default that of the previous section. Or the key
+    `angle` (``sweep`` or ``dihedral``) gives the angle, in degrees, between the z axis and the line from the
+    previous section. Raises InputError: both
     keys; an angle of the first section, or above 85 degrees.
     """
     if angle not in row.data:

@@ -29,7 +29,7 @@ class Table:
 
     @contextmanager
     def located(self) -> Iterator[None]:
-        """Within the ``with`` block, prepend this table's place to places of errors that lack it."""
+        """Within the ``with`` block, prepend the place of this table to places in errors that lack it."""
         try:
             yield
         except InputError as error:
@@ -40,7 +40,7 @@ class Table:
 
     @contextmanager
     def in_file_of(self, key: str) -> Iterator[None]:
-        """Within the ``with`` block, add `key`, whose value is the file that is read, to errors."""
+        """Within the ``with`` block, add `key` to errors; its value is the file that is read."""
         try:
             yield
         except InputError as error:

@@ -35,8 +35,8 @@ def _readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:
 class Walk:
     """One walk through inputs, which counts files found and files picked.
 
-    Left out are empty lines of lists and those with ``#``; names with a leading dot or ``__``, and folders of
-    a file beside them, ``out/`` of ``out.h5``.
+    Left out are empty lines of lists and lines that begin with ``#``, names with a leading dot or ``__``, and
+    folders that belong to a file beside them, such as ``out/`` of ``out.h5``.
     """
 
     def __init__(self, inputs: Inputs) -> None:

@@ -45,7 +45,7 @@ def model_of(shape: Any, name: str, notes: tuple[str, ...]) -> CadModel:
 
 
 def open_edges(shape: Any) -> int:
-    """Return the number of edges that occur exactly once in the boundaries of all faces."""
+    """Return the number of edges that belong to one face only."""
     numbers, uses = _Numbers(), []
     for face in _parts(shape, TopAbs_FACE):
         for edge in _parts(face, TopAbs_EDGE):

@@ -32,7 +32,7 @@ _FACES = ("FaceCenter", "IFaceCenter", "JFaceCenter", "KFaceCenter", "EdgeCenter
 def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[Face]:
     """Yield the faces of block number `block` with a boundary condition, named after the condition's family.
 
-    `counts` are the zone's node counts along its three indices; the third is 1 in a planar zone.
+    `counts` are the node counts of the zone along three indices; the third is 1 in a planar zone.
     """
     for _, group in children(zone, "ZoneBC_t"):
         for title, condition in children(group, "BC_t"):
@@ -70,7 +70,10 @@ def interfaces(
 
 
 def window_of(block: int, points: Points, counts: Triple) -> FaceWindow | None:
-    """Return the window between `points` (2, 3) of a block of `counts` nodes; None for a point outside."""
+    """Return the window from first to last node `points` (2, 3) of a block of `counts` nodes, or None.
+
+    None is returned if a point is outside the block.
+    """
     return _window(block, points) if _inside(points, counts) else None
 
 

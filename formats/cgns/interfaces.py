@@ -29,8 +29,9 @@ def range_of(side: Side, span: Range, counts: tuple[int, ...]) -> Integers:
 def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid) -> None:
     """Write each connection of `grid` as an interface in both of its `zones`, which have these `names`.
 
-    A transform has the donor's direction for each direction of the zone; across the interface, a step out of
-    the zone is a step into the donor. https://cgns.github.io/standard/SIDS/multizone_interface.html
+    A transform gives, for each direction of the zone, the direction of the donor; a step out of the zone
+    across the interface is a step into the donor.
+    https://cgns.github.io/standard/SIDS/multizone_interface.html
     """
     groups: dict[int, Node] = {}
     taken: dict[int, set[str]] = {}

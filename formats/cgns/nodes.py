@@ -35,7 +35,7 @@ def root(file: h5py.File) -> Node:
 
 
 def child(parent: Node, name: str, label: str, value: str | NDArray[Any] | None = None) -> Node:
-    """Add a node to `parent`, by a template (twice as fast), and return it; arrays have HDF5's axes."""
+    """Add a node to `parent` and return it; the axes of an array `value` are in the order of HDF5."""
     data = _codes(value, len(value.encode())) if isinstance(value, str) else value
     blank = _blank(label, "MT" if data is None else _TYPES[data.dtype.name])
     own = name.encode()

@@ -45,7 +45,7 @@ _NAME = 48  # number of letters of a grid's name that fit above a view
 def draw(
     grid: Grid, colouring: Colouring | None = None, zoom: Box | None = None, every: int | None = None
 ) -> Figure:
-    """Return a figure of `grid`, or of its part in `zoom`; without `colouring`, of its lines only.
+    """Return a figure of `grid`, or of the part in `zoom`; without `colouring`, only lines are drawn.
 
     A grid around a small body also gets a view near the body. Every `every`-th line is drawn; None chooses
     the step by the resolution. Raises InputError: a `zoom` without cells.

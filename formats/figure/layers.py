@@ -106,7 +106,7 @@ def paint(
     limits: tuple[float, float],
     colouring: Colouring,
 ) -> QuadMesh:
-    """Colour the cells of `part` by values (ni-1, nj-1) of all cells; groups in a pixel get their worst."""
+    """Colour the cells of `part` by `values` (ni-1, nj-1); cells in one pixel get the worst of them."""
     nodes = grid.nodes[part.i0 : part.i1 + 1, part.j0 : part.j1 + 1]
     shown = values[part.i0 : part.i1, part.j0 : part.j1]
     columns = _blocks(_extents(nodes, part.mask, 0) * pixels)
@@ -127,7 +127,7 @@ def rule(
     faint: bool,
     flipped: tuple[bool, bool] = (False, False),
 ) -> None:
-    """Draw the last grid line and every k-th; `steps` are k for i = const and for j = const.
+    """Draw every k-th grid line and the last; `steps` are k for lines i = const, and for j = const.
 
     In `flipped` directions, lines are counted from the last one.
     """

@@ -29,7 +29,7 @@ _AT_ONCE = 1 << 13  # number of nodes that are looked up together
 class RowSections:
     """Sections of the grid of a blade row, a volume around an axis.
 
-    The axis is that of the rotation between periodic sides, else that of a full ring, else x.
+    The axis is that of the rotation between periodic sides; without such sides, that of a full ring, or x.
     Raises InputError: not a volume with patches `hub` and `shroud`.
     """
 
@@ -78,7 +78,7 @@ class RowSections:
 
     @cached_property
     def places(self) -> list[Floats]:
-        """For each block, (ni, nj, nk, 3): axial position, radius and angle of its nodes."""
+        """For each block, axial position, radius and angle (ni, nj, nk, 3) of the nodes."""
         return [self._cylindrical(block.nodes) for block in self.grid.blocks]
 
     def _cylindrical(self, nodes: Floats) -> Floats:

@@ -50,8 +50,8 @@ def parse_slice(text: str) -> Slice:
 class CellSheet:
     """A lattice of nodes (n, m, 3) in space, and optional values (n-1, m-1) of its cells.
 
-    `outside` is 1 if the flow is on the side of the first times the second direction, -1 if opposite, 0 if
-    unknown.
+    `outside` is 1 if the cross product of the first and the second direction points into the flow, -1 if out
+    of the flow, 0 if unknown.
     """
 
     nodes: Floats
@@ -83,7 +83,7 @@ def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """Polygons (n, 12, 2) in which a plane intersects cells, the last corner repeated; cell values (n,)."""
+    """Polygons (n, 12, 2) in which a plane cuts n cells, filled up with the last corner; cell values (n,)."""
 
     polygons: Floats
     values: Floats | None

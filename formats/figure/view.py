@@ -23,7 +23,7 @@ class View:
     every : step between drawn lines; None: by the resolution of the picture.
     slice : slice of a volume, ``i=10``, ``k=-1`` or ``x=.5``; None: the walls, or the whole boundary.
     seen_from : azimuth and elevation in degrees, for pictures in space; None is `SEEN_FROM`.
-    up : axis that points upwards in pictures in space; elevations are measured from the plane normal to it.
+    up : axis that points upwards in pictures in space, normal to the plane of elevation 0.
     span : fractions of a blade row's span for sections, 0 at the hub, 1 at the shroud.
     meridional : draw the meridional section of a blade row.
 
@@ -99,7 +99,7 @@ def check_flat(view: View) -> None:
 
 
 def flat_box(zoom: tuple[float, ...] | None, across: int | None = None) -> Box | None:
-    """Return a planar picture's box, without the axis `across`. Raises InputError: in space, planar grid."""
+    """Return the box `zoom` in the plane, without the axis `across`. Raises InputError: a box in space."""
     if zoom is None:
         return None
     if len(zoom) == 6 and across is not None:

@@ -24,7 +24,7 @@ _KINDS = {2: 1, 4: 3, 8: 5}  # Gmsh's numbers of lines, quads and hexahedra by t
 
 
 class Link(NamedTuple):
-    """A periodic patch: its tag, that of its master, the affine map from the master, node pairs (n, 2)."""
+    """A periodic patch: tag, tag of the master patch, affine map from the master, node pairs (n, 2)."""
 
     tag: int
     master: int

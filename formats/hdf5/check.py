@@ -208,7 +208,8 @@ def checked(source: Source) -> Iterator[Checked]:
 def opened(source: Source, *, texts: bool = True) -> Iterator[h5py.File]:
     """Open `source` for reading; errors of the HDF5 library inside the context become InputError.
 
-    Without `texts`, the file is not searched for damaged texts, and none of variable length may be read.
+    Without `texts`, the file is not searched for damaged texts, and texts of variable length must not be
+    read.
     """
     import h5py
 
@@ -246,7 +247,7 @@ def _short(error: Exception) -> str:
 
 
 def check_heaps(source: Source) -> None:
-    """Raise InputError if the sizes of objects in a heap of texts do not add up to that of the heap."""
+    """Raise InputError if the sizes of texts in a heap do not add up to the size of the heap."""
     if source.size > _MOST_SEARCHED:
         return
     with source.open() as stream, contextlib.ExitStack() as stack:

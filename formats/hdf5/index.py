@@ -35,7 +35,7 @@ class Failed(NamedTuple):
 class PartFacts:
     """Description of a part, read from its file.
 
-    `size` is the same in all parts. `columns` has length, row shape and type of each dataset, `common`
+    `size` is the same in all parts. `columns` has length, row shape and type of each dataset. `common` has
     digests of the facts that all grids of the part share.
     """
 

@@ -36,7 +36,7 @@ class Input(NamedTuple):
 
 
 class OtherPartsError(InputError):
-    """Error: the existing parts are not parts of the dataset that is being made."""
+    """Error: existing parts belong to another dataset than the one that is being made."""
 
 
 @dataclass(frozen=True)
@@ -96,8 +96,9 @@ class PartFiles:
     def state(self, number: int, inputs: Sequence[Input]) -> State:
         """Return the state of a part: ``complete``, ``missing``, or to be ``extended``.
 
-        It is to be extended if `inputs` are more than it was made from, or if a failed input has changed or
-        may succeed now. Raises OtherPartsError: it was made otherwise; InputError: it cannot be read.
+        A part is to be extended if there are more `inputs` than it was made of, or if a failed input has
+        changed or may succeed now. Raises OtherPartsError: the part was made of other inputs or settings;
+        InputError: it cannot be read.
         """
         if not self.path(number).exists():
             return "missing"
@@ -118,7 +119,7 @@ class PartFiles:
         self, number: int, kind: str, samples: Iterable[Boundary | Grid], inputs: Sequence[Input],
         failed: list[Failed],
     ) -> int:  # fmt: skip
-        """Write a part atomically and return its number of samples; `failed` is filled meanwhile.
+        """Write a part atomically and return its number of samples; failed samples are added to `failed`.
 
         Raises InputError: samples of different sizes; a path that cannot be written.
         """

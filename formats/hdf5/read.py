@@ -39,7 +39,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
 
 def samples_read(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Callable[[], T]]:
-    """Yield functions that read one sample each, so that an error in one does not end the generator."""
+    """Yield functions that read one sample each, so that an error in a sample does not end the generator."""
     with opened(source) as file:
         parts = shown_parts(file, source)
         if parts is None:
@@ -148,7 +148,7 @@ def _patch(name: str, side: Side, start: int, stop: int, block: int = 0, *more: 
 
 @dataclass(frozen=True)
 class DatasetSamples:
-    """Selected samples of a dataset: those with indices `rows` in a split, or in all samples."""
+    """Samples of a dataset, selected by the indices `rows` among those of a split, or among all."""
 
     name: str
     split: str
@@ -166,7 +166,7 @@ class DatasetSamples:
                 yield str(error)
 
     def named(self, start: int, stop: int, step: int = 1) -> str:
-        """Return the input text that stands for every `step`-th of these samples, from `start` to `stop`."""
+        """Return the input text for every `step`-th of the samples from `start` to `stop`."""
         rows = self.rows[start:stop:step]
         split = f"{self.split}," if self.split else ""
         words = f"{rows[0]}" if len(rows) == 1 else f"{rows.start}:{rows.stop}"

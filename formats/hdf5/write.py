@@ -178,7 +178,7 @@ def _put(data: h5py.Dataset, row: int, value: Floats) -> None:
 
 @contextlib.contextmanager
 def writing(path: Path, kind: Kind) -> Iterator[Writer]:
-    """Return a context with the writer of a new dataset, in which appended samples survive an exception."""
+    """Return a context with the writer of a new dataset; an exception leaves the appended samples in it."""
     with created(path) as file:
         writer = Writer(file, kind)
         try:
@@ -190,7 +190,7 @@ def writing(path: Path, kind: Kind) -> Iterator[Writer]:
 def write_boundaries(path: Path, boundaries: Iterable[Boundary], failed: Sequence[Failed] = ()) -> None:
     """Write boundaries of the same size and topology, one at a time.
 
-    `failed` lists samples that could not be made or are left out; it may grow meanwhile.
+    `failed` lists samples that could not be made or are left out; it may grow while boundaries are read.
     """
     _write(path, "meshonet-boundary", boundaries, failed)
 

@@ -35,7 +35,7 @@ def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
 def faces_of(side_numbers: Indices, side: Side) -> Indices:
     """Return the edges (k, 2) or quadrilaterals (k, 4) of a side part with node numbers (n,) or (n, m).
 
-    Edges have the domain on their left; normals of quadrilaterals point out of it.
+    Edges have the domain on their left; normals of quadrilaterals point out of the domain.
     """
     if side_numbers.ndim == 1:
         rows = np.stack([side_numbers[:-1], side_numbers[1:]], axis=-1)

@@ -18,7 +18,7 @@ Indices = NDArray[np.int64]
 
 
 def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, Bools]]:
-    """Yield block, side, direction, and the mask (n-1, m) or (n, m-1) of edges of zero length."""
+    """Yield block, side, direction of edges, and the mask (n-1, m) or (n, m-1) of edges of zero length."""
     for number, block in enumerate(grid.blocks):
         for side in sides_of(block.counts) if len(block.counts) == 3 else ():
             face = block.face(side)
@@ -31,7 +31,7 @@ def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, Bools]]:
 def with_collapsed(grid: Grid, numbers: list[Indices]) -> list[Indices]:
     """Return node `numbers` of all blocks, in which coincident neighbours on a side share a number.
 
-    Numbers have no gaps. Without degenerate sides, the same arrays are returned.
+    Numbers have no gaps. Without degenerate sides, the arrays `numbers` are returned.
     """
     edges = list(collapsed_edges(grid))
     if not edges:

@@ -16,8 +16,8 @@ def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]
     """Return topology, name, patches and provenance of `grid` as texts by key, for `grid_with`.
 
     A patch is ``side start stop name``; kinds and ranges along the second direction are added where needed.
-    In a multi-block grid the texts are those of one `block`, of the grid with this `number` in its file; the
-    first block has connections and provenance. An extruded grid has the texts of its planar grid.
+    In a multi-block grid the texts are those of one `block`; `number` is the number of the grid in the file.
+    The first block has connections and provenance. An extruded grid has the texts of its planar grid.
     """
     space = grid.form != "plane"
     if space:

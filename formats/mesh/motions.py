@@ -40,9 +40,10 @@ def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
 
 
 def like_others(connection: Connection, motions: list[Motion]) -> Connection:
-    """Return a periodic connection with the motion in `motions` that is nearly equal to its own.
+    """Return a periodic connection, its motion replaced by a nearly equal one of `motions`.
 
-    If there is none, its own is added. Sides of equal or inverse motions thus agree bitwise where they meet.
+    If there is none, the motion is added to `motions`. Sides of equal or inverse motions thus agree bitwise
+    where they meet.
     """
     for known in motions:
         for each in (connection, connection.reversed()):

@@ -141,7 +141,7 @@ def donor_range(each: Connection) -> Range:
 
 
 def patch_on(grid: Grid, connection: Connection) -> str:
-    """Return the name of the patches that cover a connection's first side, empty unless it is one."""
+    """Return the name of the patches on a connection's first side; empty if their names differ."""
     own = [patch for patch in grid.patches if patch.block == connection.block]
     counts = grid.blocks[connection.block].counts
     owners = owners_of(own, counts, (), connection.side)

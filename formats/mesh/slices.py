@@ -58,10 +58,10 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
     """Return the nodes of all blocks of a file; `places` name the blocks in messages.
 
     A slice has one plane of nodes with a constant coordinate, or two such planes one cell apart. If all
-    blocks are slices across the same coordinate at the same places, they are planar: this coordinate is left
-    out. Otherwise, and within `surfaces_wanted`, a block of one plane is a surface patch, any other a volume.
-    Left-handed planar blocks and volumes are reversed along i. Coordinates x, y[, z] are (n1, n2, n3), of any
-    number type and order. Raises InputError: a block without cells.
+    blocks are slices with the same constants of the same coordinate, they are planar, and this coordinate is
+    left out. Otherwise, and within `surfaces_wanted`, a block of one plane is a surface patch, any other a
+    volume. Left-handed planar blocks and volumes are reversed along i. Coordinates x, y[, z] are (n1, n2,
+    n3), of any number type and order. Raises InputError: a block without cells.
     """
     with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
         slices = []

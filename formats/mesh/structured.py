@@ -34,7 +34,7 @@ from meshonet.geometry.errors import in_place
 class FileBlock:
     """A block of a file: coordinates x, y[, z], each (n1, n2, n3), name, and place for messages.
 
-    `iblank` has the number of nodes with each iblank value; `facts` are those of `facts_of`.
+    `iblank` has the number of nodes with each iblank value. `facts` are the texts of `facts_of`.
     """
 
     coordinates: Sequence[Floats]
@@ -45,7 +45,7 @@ class FileBlock:
 
 
 def described_grids(blocks: Iterable[FileBlock], name: str) -> Iterator[Grid]:
-    """Yield the grids of blocks whose facts state their topology; blocks of a grid follow each other."""
+    """Yield the grids of blocks whose facts state the topology; blocks of one grid are consecutive."""
     for number, group in groupby(blocks, key=lambda block: number_of_grid(block.facts)):
         read = ((block, in_place(block.place)(_described)(block)) for block in group)
         if number is not None:

@@ -37,7 +37,7 @@ class MeshBoundary:
 
     Parameters
     ----------
-    edges : point numbers (k, 2) by name, "" without one; none: those of only one cell.
+    edges : point numbers (k, 2) of edges by name, "" for no name; empty: edges of only one cell.
     cells : point numbers (m, 3 or 4), one array per kind of cell.
     """
 
@@ -49,10 +49,10 @@ class MeshBoundary:
 def shapes_of(surface: MeshBoundary, name: str) -> Iterator[Shape]:
     """Yield the shapes that the closed curves of `surface` form.
 
-    A four-sided domain keeps its nodes if opposite sides have equally many, and without cells at least three.
-    A body and a far field keep theirs if there is an O grid between them. Corners come from cells, or from
-    names that change four times; the south side has the file's first edge. Raises InputError: too few or too
-    many edges; edges that form no closed curves; a curve in a hole.
+    A four-sided domain keeps its nodes if opposite sides have equal numbers of nodes, and without cells at
+    least three. A body and a far field keep their nodes if there is an O grid between them. Corners come from
+    cells, or from names that change four times; the south side has the file's first edge. Raises InputError:
+    too few or too many edges; edges that form no closed curves; a curve in a hole.
     """
     edges = surface.edges or {"": _free_edges(surface.cells)}
     count = sum(map(len, edges.values()))

@@ -17,7 +17,7 @@ _SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.ite
 
 
 class FaceWindow(NamedTuple):
-    """A range of a block's face: the indices, from 0, of its first and last node in the file.
+    """A range of a block's face, given by the indices, from 0, of the first and the last node in the file.
 
     The last node may precede the first, as in descriptions of connected ranges.
     """
@@ -48,7 +48,7 @@ class Pair(NamedTuple):
 
 
 class SidePart(NamedTuple):
-    """A range of a side; for each direction the file's index along it, and the sign 1 or -1."""
+    """A range of a side; for each direction of the side, the index of the file, and the sign 1 or -1."""
 
     side: Side
     range: Range
@@ -57,7 +57,10 @@ class SidePart(NamedTuple):
 
 
 def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | None:
-    """Return a window's side part; None: an edge, a whole planar block. Raises InputError: no such place."""
+    """Return the part of a side that is a window, or None. Raises InputError: no such part.
+
+    None is returned for a window that is no part of a single side, such as an edge of a volume.
+    """
     if not 0 <= window.block < len(lattices):
         problem = f"a face of block {window.block + 1} is named and there are {len(lattices)}"
         raise InputError(problem, "name those that there are")

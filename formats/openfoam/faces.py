@@ -29,8 +29,8 @@ class Faces(NamedTuple):
 
     Parameters
     ----------
-    nodes : (f, 4) point numbers, the normal out of the owner; consecutive ones may be equal.
-    owner : (f,) cell of each face; of two cells the lower.
+    nodes : (f, 4) point numbers; the normal points out of the owner. Consecutive numbers may be equal.
+    owner : (f,) cell of each face; of two cells the one with the lower number.
     neighbour : (g,) other cells of the g interior faces, which come first.
     """
 
@@ -75,7 +75,7 @@ def whole(nodes: NDArray[np.integer[Any]]) -> Bools:
 
 
 def without_collapsed(faces: Faces, parts: Mapping[str, NamedFaces]) -> tuple[Faces, dict[str, NamedFaces]]:
-    """Return faces and parts without degenerate faces, and without parts of no other faces."""
+    """Return faces and parts without degenerate faces; parts that become empty are left out."""
     keep, inner = whole(faces.nodes), len(faces.neighbour)
     kept = {name: (part, whole(part.faces)) for name, part in parts.items()}
     left = Faces(faces.nodes[keep], faces.owner[keep], faces.neighbour[keep[:inner]])

@@ -35,7 +35,7 @@ class CasePatch(NamedTuple):
 def with_empty_planes(grid: Grid, parts: Mapping[str, NamedFaces]) -> dict[str, NamedFaces]:
     """Return `parts`; bottoms and tops of a planar grid become a last part, `PLANES`.
 
-    It is planar if all blocks are one cell thick between symmetry planes; solvers then ignore k.
+    A volume counts as planar if all blocks are one cell thick between symmetry planes.
     """
     outer = grid.outer_patches()
     ends = {patch.name for patch in outer if patch.side in ("bottom", "top")}

@@ -25,7 +25,7 @@ def drawing_bytes(source: Source) -> bytes:
 
 
 def shapes_of_drawing(lines: list[tuple[str, Floats]], skipped: Iterable[str], name: str) -> Iterator[Shape]:
-    """Yield the shapes of named curves (n, 2), with a note on elements of `skipped` kinds, no curves."""
+    """Yield the shapes of named curves (n, 2), with a note on the `skipped` kinds of elements."""
     counts = Counter(skipped)
     listed = ", ".join(f"{count} {printable(kind)}" for kind, count in sorted(counts.items()))
     notes = (f"of the drawing, elements that are no curves are left out: {listed}",) if counts else ()

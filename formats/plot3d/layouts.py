@@ -31,7 +31,7 @@ MOST_INTEGERS = 1 + 3 * _MOST_BLOCKS  # number of integers in the longest header
 
 @dataclass(frozen=True)
 class FileLayout:
-    """A layout: whether it has a block count, 2 or 3 axes, whether it has iblank, node counts."""
+    """A layout: whether there is a block count, 2 or 3 axes, whether there is iblank, and node counts."""
 
     counted: bool
     axes: int
@@ -44,7 +44,7 @@ class FileLayout:
         return int(self.counted) + self.axes * len(self.dims)
 
     def starts(self, real: int = 1, integer: int = 1) -> list[int]:
-        """Return where blocks start and the last ends; numbers take `real` and `integer` bytes."""
+        """Return the first byte of each block, and the end; numbers take `real` and `integer` bytes."""
         node = self.axes * real + integer * int(self.iblank)
         return list(
             itertools.accumulate((node * prod(dims) for dims in self.dims), initial=integer * self.header)
@@ -80,7 +80,7 @@ def _dims(integer: Header, blocks: int, axes: int, start: int) -> tuple[Dims, ..
 
 @dataclass(frozen=True)
 class Candidate:
-    """A layout whose length is that of the file, and the numbers of the file in it.
+    """A layout whose length is that of the file, with the numbers of the file.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def _tallied(flags: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
 def regular_cells(nodes: Floats) -> tuple[int, int]:
     """Return the number of cells with the prevailing orientation, and of all cells.
 
-    Orientation is the sign of area or volume; on surfaces, that of neighbouring normals to each other.
+    Orientation is the sign of area or volume; on surfaces, the sign of the product of neighbouring normals.
     """
     if nodes.shape[2:] == (3,):
         normal = np.cross(*_diagonals(nodes))

@@ -35,7 +35,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def write_map(path: Path, grids: Sequence[Grid], span: int = 2) -> None:
-    """Write the map of all blocks; the file's third index is the grid's index `span`."""
+    """Write the map of all blocks; the third index in the file is the index `span` (0 to 2) of the grid."""
     dims: list[list[int]] = []
     rows: list[str] = []
     for grid in grids:
@@ -117,7 +117,7 @@ class Map(NamedTuple):
 
 
 def read_map(path: Path, dims: Sequence[tuple[int, int, int]]) -> Map:
-    """Return the map of blocks with node counts `dims`. Raises InputError: unreadable; of other blocks."""
+    """Return the map of blocks with node counts `dims`. Raises InputError: unreadable; other blocks."""
     name = printable(path.name)
     try:
         if path.stat().st_size > _MOST_BYTES:

@@ -35,8 +35,8 @@ class Stream:
 def unframed(data: memoryview, order: str) -> Stream | None:
     """Return the content of a Fortran file's records, or None if it has no such records.
 
-    Lengths stand before and after records; gfortran splits those above 2 GiB and marks parts by negative
-    ones.
+    The length of a record stands before and after it. gfortran splits records above 2 GiB, and marks the
+    parts by negative lengths.
     """
     pieces: list[memoryview] = []
     records, more, end = 0, False, 0

@@ -54,9 +54,9 @@ class StoredBlock:
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
     """Write the blocks of `grids`, and a neutral map unless they are several grids of one block.
 
-    Planar blocks get z = 0 only if others have z. `options` select the index of a volume's third direction.
-    Raises InputError: no grid; several in a file without a count; a block too large for a Fortran record; 2D
-    for a grid in space.
+    Planar blocks get z = 0 only if other blocks have z. `options` select the index of a volume's third
+    direction. Raises InputError: no grid; several in a file without a count; a block too large for a Fortran
+    record; 2D for a grid in space.
     """
     if "planes" in options:
         raise InputError("planes are read and not written", "leave the word out")

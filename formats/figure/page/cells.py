@@ -46,7 +46,7 @@ def scale_of(values: Floats) -> Scale:
 
 
 def histogram(values: Floats, scale: Scale) -> list[int]:
-    """Return how many `values` are in each of `BARS` equal intervals; the outer ones have those beyond."""
+    """Return how many `values` are in each of `BARS` equal intervals; the outer intervals are open."""
     first, last = scale.parts(np.array([scale.start, scale.stop]))
     part = (scale.parts(values) - first) / max(last - first, 1e-300)
     bar = np.clip((part * BARS).astype(np.int64), 0, BARS - 1)
@@ -56,7 +56,7 @@ def histogram(values: Floats, scale: Scale) -> list[int]:
 def worst_places(
     values: Sequence[Floats], metric: Metric, most: int = 10
 ) -> Iterator[tuple[int, tuple[int, ...], float]]:
-    """Yield block, cell indices and value of the worst cells, without neighbours of earlier ones.
+    """Yield block, cell indices and value of the worst cells; neighbours of a yielded cell are skipped.
 
     `values` are the cell values of each block.
     """

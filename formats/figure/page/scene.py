@@ -58,9 +58,9 @@ class Lattice:
 class SceneSheet:
     """A layer of cells of a lattice.
 
-    `axis` is the direction normal to the layer (None: the lattice is a layer), `node` its index along `axis`,
-    `ranges` its first and last nodes along the other directions. In a large volume it is the layer `at` of
-    constant `across`, i, j or k.
+    `axis` is the direction normal to the layer; None: the lattice is a layer. `node` is the index of the
+    layer along `axis`, `ranges` are the first and last nodes along the other directions. In a large volume
+    the layer has the index `at` along `across`, i, j or k.
     """
 
     lattice: int

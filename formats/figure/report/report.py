@@ -15,7 +15,7 @@ SHOWN = 20  # largest number of grids with pictures in a report; of more grids, 
 
 
 class QualityPage:
-    """Reports of the `SHOWN` worst grids, by gates, then largest angle; `software` is the page's author."""
+    """Reports of the `SHOWN` worst grids, sorted by gates, then largest angle; `software` made the page."""
 
     def __init__(self, gates: Sequence[Gate] = (), software: str = "meshonet") -> None:
         self._gates, self._software = tuple(gates), software
@@ -24,7 +24,7 @@ class QualityPage:
         self._numbers = itertools.count()
 
     def add(self, label: str, report: QualityReport) -> None:
-        """Add the report of the grid `label`. Raises InputError: it lacks the figure of a gate."""
+        """Add the report of the grid `label`. Raises InputError: the grid lacks the figure of a gate."""
         report = report.under(self._gates)
         good, angle = passed(report, self._gates), report.quality["max_angle"].max
         number = next(self._numbers)
