@@ -8,7 +8,7 @@ _NEW = 100_000  # objects, twice those of modules, after which cycles are search
 
 
 def main() -> NoReturn:
-    """Run the command line; an interrupt during loading ends it as silently as a later one."""
+    """Run the command line; an interrupt while modules load ends it without a traceback."""
     gc.set_threshold(_NEW)
     try:
         from meshonet_cli.app import main as run

@@ -109,7 +109,7 @@ class Destination:
         """Return the number of inputs in a part of the dataset, 0 for an output without parts.
 
         Parts are written if requested, for a shard, to continue existing parts, and for more than `MANY`
-        inputs. They are smaller for a shard, and if workers may be on another machine (`elsewhere`).
+        inputs. Parts are smaller for a shard, and if workers may be on another machine (`elsewhere`).
 
         Raises InputError: an existing dataset would be replaced, or cannot be continued.
         """

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 def digests_of(entry: str | InputError | Draw) -> list[Input]:
-    """Return the input with a digest of its name and content; a dataset has one per sample.
+    """Return the input with a digest of name and content; for a dataset, one entry per sample.
 
-    The digest of an unreadable input is that of the error.
+    For an unreadable input the digest is that of the error.
     """
     if isinstance(entry, InputError):
         return [Input(entry.source, digest_of(entry.source, str(entry)))]

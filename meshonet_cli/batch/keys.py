@@ -19,7 +19,7 @@ class Keys:
         self._names = UniqueNames()
 
     def named(self, item: Item[Any], what: Any) -> Any:
-        """Return the grid or boundary `what` with its key as name; another name becomes its title."""
+        """Return the grid or boundary `what`, named by its key; a different name is kept as title."""
         if not isinstance(what, Grid | Boundary):
             return what
         key = self._names.add(item.stem if _of_file(item) else what.name)

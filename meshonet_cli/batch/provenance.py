@@ -14,8 +14,8 @@ _MOST_NAMED = 12  # words between options that are all kept
 def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
     """Return the version and the command line of the program, without the name of the output.
 
-    Equal inputs and settings then give equal bytes. `arguments` are without the program's name; None: this
-    process's.
+    Equal inputs and settings then give equal bytes. `arguments` are without the program's name; None: the
+    arguments of this process.
 
     >>> provenance(["tfi", "a b.csv", "-o", "grid.vts", "--res", "80"])["command"]
     "meshonet tfi 'a b.csv' --res 80"

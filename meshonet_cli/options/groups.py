@@ -52,14 +52,14 @@ def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:
-    """Return the InputError for an option that is not `what` was expected."""
+    """Return the InputError for an option whose `text` is not what was expected (`what`)."""
     from meshonet.geometry.errors import InputError
 
     return InputError(f"{text!r} is not {what}", remedy, parameter=parameter)
 
 
 def numbers(text: str | None, counts: tuple[int, ...], what: str, remedy: str, parameter: str) -> Any:
-    """Return the numbers in the text of an option, None for None; `counts` are the permitted numbers of them.
+    """Return the numbers in the text of an option, None for None; `counts` says how many are permitted.
 
     Raises InputError: other text.
 

@@ -108,7 +108,7 @@ class SamplingOptions:
     )] = False
 
     def placed(self, layers: "Mapping[str, Any] | None" = None) -> "Sampling":
-        """Return the options as `Sampling`, with those of layers. Raises InputError: an invalid value."""
+        """Return the options, with those of `layers`, as `Sampling`. Raises InputError: an invalid value."""
         from meshonet.geometry.spacing.sampling import Sampling
         from meshonet.solvers.pipeline.uses import counted
 

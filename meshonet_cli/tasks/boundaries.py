@@ -43,7 +43,7 @@ def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = Non
 
 
 def itself(member: Draw) -> Iterator[Draw]:
-    """Yield `member`: the content of a member of a family is the member itself."""
+    """Yield `member`, a drawn member of a family, which is its own content."""
     return iter([member])
 
 

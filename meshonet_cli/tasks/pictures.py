@@ -33,7 +33,7 @@ def _drawn(item: Item[Grid], metric: str | None) -> tuple[Grid, Delivered]:
 
 
 def leave_out_docstrings() -> None:
-    """Have Matplotlib's classes compose no docstrings when they are loaded: a fifth of a picture's time."""
+    """Let Matplotlib compose no docstrings when it is imported, which takes a fifth of a picture's time."""
     if "matplotlib.figure" in sys.modules:
         return
     from matplotlib import artist

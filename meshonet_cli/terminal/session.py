@@ -196,7 +196,7 @@ class Session:
             self._line = StageLine(self._draw, self._clear)
 
     def begin(self, name: str, count: int | None = None) -> None:
-        """Show the current member and their number, None if unknown; stop if a signal requested it."""
+        """Show the current member and the number of members, if known; stop if a signal requested it."""
         check()
         self.members += 1
         if self._line and self.batch:

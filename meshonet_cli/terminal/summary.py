@@ -35,7 +35,7 @@ def gates_not_met(judgement: Judgement | None) -> list[str]:
 
 @dataclass(frozen=True)
 class MemberRow:
-    """A member of a batch with its values by column; none if it ended in an error."""
+    """A member of a batch with values by column; after an error there are no values."""
 
     label: str
     figures: Mapping[str, float] = field(default_factory=dict)

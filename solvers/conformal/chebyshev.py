@@ -29,7 +29,7 @@ def weights(n: int) -> Floats:
 
 
 def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
-    """Return the (len(nodes), len(x)) matrix from values at `nodes` to values at `x`; exact at nodes.
+    """Return the matrix (len(nodes), len(x)) that interpolates values at `nodes` to `x`; exact at nodes.
 
     >>> points(5) ** 4 @ barycentric(points(5), weights(5), np.array([0.0, 0.3]))
     array([0.    , 0.0081])
@@ -47,8 +47,8 @@ def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
 class Panels(NamedTuple):
     """Consecutive panels along eta: panel k covers the grid levels from ``ends[k]`` to ``ends[k + 1]``.
 
-    `eta` (panels NODES,) are the points of the panels. The values at a level's panel, times its column of
-    `matrix` (NODES, levels), are the value at the level. Without panels, `ends` has one entry.
+    `eta` (panels NODES,) are the points of the panels. The value at a level is the product of
+    the values on its panel and its column of `matrix` (NODES, levels). Without panels, `ends` has one entry.
     """
 
     ends: list[int]
@@ -57,7 +57,7 @@ class Panels(NamedTuple):
 
 
 def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> Panels:
-    """Return panels that cover the levels `first` to `last` - 1 of `eta`, if this saves evaluations.
+    """Return panels that cover the levels `first` to `last` - 1 of `eta`; none unless they save work.
 
     `eta` (nj,) ascends from 0 at the wall to 1; `height` is the difference of psi between wall and far field,
     and `spread` the variation of psi along the wall. Maps to the plane are singular only at the wall: on a

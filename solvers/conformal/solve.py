@@ -45,8 +45,8 @@ def solve(
 
     `polish`: number of Picard iterations; `correction`: returns a term that is added to the harmonic
     extension, for all boundaries at once; `model`: name of the network that computes it; `substitute`: makes
-    the grid of a boundary without a conformal map, from the boundary and the reason; where it returns None,
-    the elliptic solver is used.
+    the grid of a boundary without a conformal map, from the boundary and the reason; if `substitute`
+    returns None, the elliptic solver is used.
     """
     across()  # made once a process: no part of a grid's time
     begun = time.perf_counter()

@@ -96,10 +96,10 @@ def wavenumbers(like: Any = None, xp: Any = np) -> Any:
 
 
 def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
-    """Return the factors (..., len(k), len(eta)) at eta of mode k of the wall, and those of the far field.
+    """Return factors (..., len(k), len(eta)) by which mode k of the wall, and of the far field, decays.
 
-    They are sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT), computed without overflow. T, the height of
-    the strip, is a number or (..., 1, 1).
+    At eta they are sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT), computed without overflow. T, the
+    height of the strip, is a number or (..., 1, 1).
     """
     k, exp = abs(k)[:, None], functions_of(xp).exp
     flat = k == 0
@@ -111,7 +111,7 @@ def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:
-    """Return modes (..., 2 MODES + 1, len(eta)) of the harmonic function with these modes at walls."""
+    """Return modes (..., 2 MODES + 1, len(eta)) of a harmonic function from its modes `wall` and `far`."""
     count, T = MODES + 1, (far - wall)[..., :1, None].real
     k = wavenumbers(wall, xp)[:count]  # k and -k decay alike
     near, away = decay(k, T, array_like(eta, wall, xp), xp)

@@ -38,7 +38,7 @@ class Window:
         return rows, *(slice(low + less, high + 1 - less) for low, high in ends)
 
     def cut(self, nodes: Floats, periodic: bool = False) -> Floats:
-        """Return a planar copy of those `nodes` (ni, nj, 2) or (ni, nj, nk, 3) that are in the window."""
+        """Return a copy, in planar layout, of the `nodes` (ni, nj, 2) or (ni, nj, nk, 3) in the window."""
         return as_planar(nodes[self._index(self.rows(len(nodes), periodic), 0)])
 
     def put(self, nodes: Floats, periodic: bool, patch: Floats) -> None:

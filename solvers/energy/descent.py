@@ -35,9 +35,9 @@ def descend(
     """Minimise from planar `nodes` (ni, nj, 2) in place; return the iterations and whether the grid is valid.
 
     `still`: the `tol` of `variational.solve`; `most`: largest number of iterations; `first`: number of
-    iterations after which only values above `HARD` are lowered further; `periodic`: around a body, where the
-    last row of nodes repeats the first, and both move; `stiffness`: from `stiffness_of`, preconditions smooth
-    displacements.
+    iterations after which the descent continues only for a value above `HARD`; `periodic`: the last row of
+    nodes repeats the first, and both move (around a body); `stiffness`: from `stiffness_of`, preconditions
+    smooth displacements.
     """
     ni, nj = nodes.shape[:2]
     if min(ni, nj) < 3:
@@ -73,7 +73,7 @@ def newton(nodes: Floats, weights: Weights, most: int) -> int:
 
 
 def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int, int]] | None:
-    """Return the Hessian at coarse planar `nodes`, and their counts; None if cells are folded."""
+    """Return the Hessian at coarse planar `nodes`, and the node counts; None if cells are folded."""
     if count_folded(nodes):
         return None
     hessian = Stiffness(np.moveaxis(nodes, -1, 0), aspect_of(nodes), weights.shape, weights.smoothness)

@@ -52,8 +52,8 @@ def value(nodes: Floats, weights: Weights) -> float:
 def relief_of(wall: Floats) -> Floats:
     """Return the factors (ni,) of the angle terms of cell corners at the nodes of a closed `wall` (ni, 2).
 
-    Where the angle of the domain exceeds 320 degrees, as at a trailing edge, the factor is sin⁴ of half of
-    it: the least possible value of the term is then that of right angles.
+    Where the angle of the domain exceeds 320 degrees, as at a trailing edge, the factor is sin⁴ of half the
+    angle. The least possible value of the term is then the same as for right angles.
     """
     half = 0.5 * (np.pi - turning(wall[:-1], closed=True))
     share = np.where(half > 8.0 / 9.0 * np.pi, (np.maximum(sin(half), 1e-3) ** 2) ** 2, 1.0)

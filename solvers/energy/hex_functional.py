@@ -26,7 +26,7 @@ class HexWeights:
         E = mean over cells of the integral of |T|² / (3 det(T)^⅔)
 
     For folded grids, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0. A minimisation ends after two consecutive
-    steps, each of which lowers the value by less than the fraction `gain` of it.
+    steps, each of which lowers the value by less than the fraction `gain`.
     """
 
     shape: float = 0.9

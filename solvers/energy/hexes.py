@@ -30,7 +30,7 @@ OPENED = 20, 10, 10  # iterations of each stage of opening
 
 @dataclass(frozen=True, eq=False)
 class Slides:
-    """Nodes that move in planes or along lines: their indices (k,), and projections (k, 3, 3) onto these."""
+    """Nodes that slide: indices (k,), and projections (k, 3, 3) onto the plane or line of each node."""
 
     nodes: Indices
     projections: Floats
@@ -41,7 +41,7 @@ class Slides:
         return cls(np.empty(0, dtype=np.intp), np.empty((0, 3, 3)))
 
     def among(self, nodes: Indices) -> Slides:
-        """Return the sliding nodes among `nodes` (m,), sorted node indices, as positions in `nodes`."""
+        """Return the sliding nodes that are in `nodes` (m,), sorted indices, by their positions in it."""
         place = np.minimum(np.searchsorted(nodes, self.nodes), len(nodes) - 1)
         some = nodes[place] == self.nodes
         return Slides(place[some], self.projections[some])

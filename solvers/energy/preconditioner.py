@@ -40,7 +40,7 @@ class Descent:
     ) -> tuple[float, float, int]:  # fmt: skip
         """Minimise; return the value of the functional, the smallest corner Jacobian and the iterations.
 
-        The iteration stops if nodes move by less than `still` times their cells, or after `most` iterations.
+        The iteration stops if nodes move by less than `still` cell sizes, or after `most` iterations.
         `epsilon` is an area that regularises Jacobians, `relief` the result of `relief_of`. `listener` is
         called with number, value and norm of the gradient, before the first and after each iteration.
         """

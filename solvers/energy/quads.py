@@ -42,8 +42,8 @@ def optimise(
     """Return the mesh with all nodes at the minimum of the functional; wall nodes slide along their loops.
 
     Periodic partners move together; cells without free nodes are ignored, but must not be folded. The
-    smoothness term has squared differences of log lengths of edges along and across grid lines, also across
-    interfaces.
+    smoothness term is the square of differences of log lengths of edges, along and across grid lines, also
+    across interfaces.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def optimise(
     held : (n,) mask of nodes that stay bitwise where they are, like corners (`Places.cells` > 0).
     aspects : (m,) target ratios of a quad's sides 1-2 and 0-3 to its sides 0-1 and 3-2.
     targets : (e,) target lengths of `mesh.edges`, in any unit: only ratios of neighbouring edges matter.
-    tolerance : the iteration ends if three consecutive gains are below a hundredth of it, relative.
+    tolerance : the iteration ends after three consecutive relative gains below a hundredth of this.
     turning : angle in radians by which a wall may turn along one edge without penalty.
     weights : w and β of the functional if there are `targets` or if growth is penalised.
     growth : weight of the penalty for ratios of consecutive edges, and logarithm of the largest free ratio.

@@ -39,7 +39,7 @@ _FADE = 1.0  # widths of the base over which the correction of first cells off i
 def around_base(
     lines: BaseWake, *, first: float, growth: float | None, free_rows: bool, constant: int, multiple: int = 1
 ) -> Solution:
-    """Return the grid of two blocks around `lines`; `first` is the first-cell height in their unit.
+    """Return the grid of two blocks around `lines`; `first` is the first-cell height in the same unit.
 
     The other parameters are those of `march.hyperbolic`.
 

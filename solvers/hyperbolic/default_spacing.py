@@ -36,7 +36,7 @@ def first_cell(boundary: Boundary) -> float:
 def first_cell_around_base(width: float, away: float, chord: float, ni: int, nj: int) -> float:
     """Return the first-cell height of a C grid that keeps a blunt base of this `width`.
 
-    The smallest cell is assumed to be that behind a sharp edge, or one on the base.
+    The height follows from the smallest cell length, at a sharp edge or on the base.
     """
     return _height(min(C_EDGE / ni * chord, COARSEST * width), away, nj)
 
@@ -49,7 +49,7 @@ def _height(smallest: float, away: float, nj: int) -> float:
 def march_by_default(boundary: Boundary) -> Solution | None:
     """Return the C grid marched from `boundary`, or None if another method suits better.
 
-    That is so if the nodes of the far field are given, if cells would grow by more than `STEEPEST`, or if
+    None is returned if the far-field nodes are given, if cells would grow by more than `STEEPEST`, or if
     cells are folded.
     """
     if boundary.wall is None:

@@ -47,8 +47,8 @@ OPEN_ATTEMPTS = (
 def attempts_around_base(ratio: float, *, concave: bool) -> tuple[MarchSettings, ...]:
     """Return the settings for C grids around a blunt base; rows grow by `ratio`.
 
-    Lines from the corners of a base start one first-cell height apart, and need more evening the faster rows
-    grow. Lines from `concave` corners converge, and need more smoothing.
+    Lines from the corners of a base start one first-cell height apart. The faster rows grow, the more these
+    lines must be spread. Lines from `concave` corners converge, and need more smoothing.
     """
     even = max(0.05, 0.5 * (ratio - 1.0) - 0.05)
     first = replace(OPEN_ATTEMPTS[0], even=even)

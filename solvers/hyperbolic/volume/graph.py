@@ -20,7 +20,7 @@ _WIDTH, _FALL = 4, 0.35  # rings of nodes around irregular ones that are smoothe
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A neighbour of a node, real or ghost, at own x(node) + sign x(base) + shift."""
+    """A neighbour of a node, real or ghost, at the position own * x(node) + sign * x(base) + shift."""
 
     base: int
     own: float = 0.0
@@ -40,14 +40,14 @@ class Seen:
         )
 
     def opposite(self, splay: float) -> Seen:
-        """Return the ghost node opposite, 1 + `splay` times as far from the node."""
+        """Return the ghost node on the opposite side, 1 + `splay` times as far from the node."""
         far = 1.0 + splay
         return Seen(self.base, 1.0 + far, -far * self.sign, -far * self.shift)
 
 
 @dataclass(frozen=True, eq=False)
 class MarchGraph:
-    """Arrays of ``kernels/surfaces/graph.h``; `order` (n,) are the surface nodes in its order."""
+    """Arrays of ``kernels/surfaces/graph.h``; `order` (n,) are the surface nodes in the order of these."""
 
     order: Indices
     red: int

@@ -30,8 +30,9 @@ def growth_of_levels(lines: Floats) -> Floats:
 def slower_steps(steps: Floats, last_growth: Floats, growth: float) -> Floats:
     """Return `steps` (m,) of the last march, changed to grow less where cells grew too much.
 
-    `last_growth` (m - 1,) are the largest ratios of cells there. They exceed those of the steps by a factor,
-    on logarithms, that is assumed to depend on the distance from the wall. `growth` is the limit.
+    `last_growth` (m - 1,) is the largest ratio of neighbouring cells at each inner level of that march,
+    `growth` the limit. The logarithm of this ratio exceeds the logarithm of the ratio of steps by a factor,
+    which is assumed to depend on the distance from the wall.
     """
     length, most = float(steps.sum()), math.log(growth)
     ratio = np.maximum(log(steps[1:] / steps[:-1]), _LEAST * most)
@@ -61,7 +62,7 @@ def slower_steps(steps: Floats, last_growth: Floats, growth: float) -> Floats:
 def limit_growth(lines: Floats, growth: float) -> None:
     """Move nodes of `lines` (3, n, levels) along the lines, in place; first cells and last nodes stay.
 
-    Lines within the limit do not change. On lines that are too long for it, cells grow by one ratio.
+    Lines within the limit `growth` do not change. On lines too long for the limit, cells grow by one ratio.
     """
     if math.isinf(growth):
         return

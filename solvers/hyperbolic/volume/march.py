@@ -65,7 +65,7 @@ def march_surface(
 
     Parameters
     ----------
-    wing : whether other smoothing is tried also if cells are poor.
+    wing : whether other smoothing is also tried if cells are valid, but poor.
     remedy : remedy for folded cells, in place of the usual one.
 
     Raises InputError: impossible settings; grids of two parts would overlap. Raises NoValidGridError, with

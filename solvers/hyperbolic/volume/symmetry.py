@@ -29,8 +29,8 @@ class Symmetry(NamedTuple):
 def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
     """Return the planes of symmetry of a surface that is marched to a distance `far`.
 
-    `axis` is their normal, ``none`` for no plane, None to detect them. A detected plane that walls face is
-    left out.
+    `axis` is the normal of the planes; ``none`` for no plane, None to detect planes. A detected plane is left
+    out if most walls face it.
 
     Raises InputError: no open edge is in a plane normal to `axis`; walls that face the plane are too close.
     """
@@ -53,7 +53,7 @@ def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
 
 
 def closes_in(surface: Surface, plane: Plane) -> float:
-    """Return the mean distance of walls that face a plane, infinite unless most walls do."""
+    """Return the mean distance of the walls that face a plane; infinite unless most walls face it."""
     a, b, c, d = (surface.nodes[surface.quads[:, k]] for k in range(4))
     area = 0.5 * np.cross(c - a, d - b)
     away = (0.25 * (a + b + c + d))[:, plane.axis] - plane.value
@@ -65,7 +65,7 @@ def closes_in(surface: Surface, plane: Plane) -> float:
 
 
 def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ...], Indices]:
-    """Return the planes normal to an axis that contain open edges, and the mask (p, k) of these.
+    """Return the planes normal to an axis that contain open edges, and a mask (p, k) of these edges.
 
     `axis`: see `symmetry_of`. Raises InputError: no open edge is in a plane normal to the axis.
     """
