@@ -55,10 +55,10 @@ Grids have {around} nodes around the wing and {span} along the span, and a far f
   positive. (If all Bezier coefficients are positive, the Jacobian is positive in the whole cell.)
 - *least scaled Jacobian*: the smallest [scaled Jacobian](../reference/metrics.md#cells-of-volumes) of a cell
   of the grid. *relative error of first cells*: the largest relative error of a first-cell height.
-- *growth*: take all pairs of consecutive edges along grid lines, also across blocks. The value is the share of
-  pairs whose lengths differ by a factor of at most 1.3.
+- *growth*: take all pairs of consecutive edges along grid lines, also across blocks. The value is the share
+  of pairs whose lengths differ by a factor of at most 1.3.
 - *normals*: 95th percentile of the angle between a grid line that leaves a wall and the normal of the wall.
-- *best*, *median* and *worst* are over the grids; for nodes and CPU time, the smallest value is the best.
+- *best*, *median* and *worst* are over the grids; of nodes and CPU times, the smallest is the best.
 - *CPU s*: one thread of {machine}, while other programs used the machine.
 
 A grid was made for {made} of the {count} aircraft; {folded} of these grids have folded cells.

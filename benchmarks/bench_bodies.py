@@ -167,9 +167,9 @@ HOLES = """
 The shapes are square plates with a round hole at different heights: from -0.4 to 0.4 in the row *random*, and
 up to 0.5 above or below the centre in the second row, for which the paper's models were not evaluated.
 
-The columns `hole-winslow` to MeshONet-hard give the median relative L2 distance to Winslow's solution and, in brackets, how many grids
-have folded cells. The last three columns give the maximum / mean angle, averaged over the grids. The network
-was not trained on such plates; the paper's models were trained on 30 of them
+The columns `hole-winslow` to MeshONet-hard give the median relative L2 distance to Winslow's solution and, in
+brackets, how many grids have folded cells. The last three columns give the maximum / mean angle, averaged
+over the grids. The network was not trained on such plates; the paper's models were trained on 30 of them
 ([the reproduction](paper/index.md)).
 
 | split | hole-winslow | 2 cycles | MeshONet | MeshONet-hard | hole-o | hole-o, 5 steps | Winslow |

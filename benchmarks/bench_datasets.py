@@ -58,9 +58,9 @@ reads the name of that sample. Times are medians over {repeats} processes, with 
 PARTS = """
 ## Number of parts
 
-Here each part has only ten grids. The table gives the time to write the index file, the size of this file, and
-the times to open it and to read the last sample in a new process. Each dataset was written once, so the first
-column also shows disturbances by other programs.
+Here each part has only ten grids. The table gives the time to write the index file, the size of this file,
+and the times to open it and to read the last sample in a new process. Each dataset was written once, so the
+times to write also show disturbances by other programs.
 """
 ZARR = """
 ## Comparison with Zarr

@@ -123,7 +123,7 @@ FAMILIES_HEAD = """# The six test families
 Use these families of shapes to train and compare neural operators. They are the test cases of the MeshONet
 paper ([results](../benchmarks/paper/index.md)). The shapes of a family depend on one parameter.
 *arch*, *hexagon* and *wrench* change the edges of a square of side 1. *semicircle* is a channel, 2 long and 1
-high, with a semicircle on its floor. *hole* is a plate, 2 by 2 with the origin at its centre, with a round hole.
+high, with a semicircle on its floor. *hole* is a plate with a round hole, 2 by 2 around the origin.
 
 `sample-boundary --family NAME --count N` makes N shapes. Their parameters lie in the range given below, or in
 the range A to B with `--range A:B`. `solve-pde` makes the grids.
@@ -252,9 +252,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "Compared with Winslow's grid, the variational grid has smaller largest angles of cells. The predicted\n"
-        f"variational grid reaches {100 * gain['mean_gain']:.0f} % of the reduction of their mean over the cells,\n"
-        f"and {100 * gain['max_gain']:.0f} % of the reduction of their maximum.",
+        "The variational grid reduces the largest angles of cells, compared with Winslow's grid. The\n"
+        f"predicted grid reaches {100 * gain['mean_gain']:.0f} % of the reduction of their mean over the\n"
+        f"cells, and {100 * gain['max_gain']:.0f} % of the reduction of their maximum.",
     ]
     return lines
 
