@@ -85,6 +85,8 @@ class Session:
         """Report a failed member; a `repeated` error, of many members, at most `SAME_ERRORS` times."""
         from meshonet_cli.terminal.summary import MemberRow
 
+        if self._line and not self.batch:
+            self._unwatch()  # or the line is drawn again below the error
         self.failed += 1
         code = error.exit_code if isinstance(error, MeshonetError) else 2
         self.worst = max(self.worst, code)
