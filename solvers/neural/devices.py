@@ -38,9 +38,9 @@ def solve_on(
 ) -> list[Solution]:
     """Return a grid inside each boundary; boundaries with equal node counts are computed in one batch.
 
-    `polish`: number of Picard steps of strip operators; for other operators ``auto`` or ``off``; `instead`:
+    `polish`: ``auto`` or ``off``, or, for strip operators, a number of Picard steps; `instead`: function that
     makes the grids that cannot be computed on the device. Raises InputError: torch or the device is missing;
-    boundaries or polish that do not suit the operator. Raises MemoryError: too little device memory.
+    `boundaries` or `polish` do not suit the operator. Raises MemoryError: the device has too little memory.
     """
     if not operator.batched:
         raise InputError(f"model {operator.name} has no grids on a device", "leave {device} out")

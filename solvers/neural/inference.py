@@ -37,10 +37,10 @@ def infer_many(
 
     `model`: name of a shipped model, path of a ``.safetensors`` file, ``base`` for the conformal solver, or
     None for the default of the topology; `polish`: steps after the network (`operator.Operator.solve`);
-    `device`: torch computes the grids on it, and ``auto`` polish means 3 Picard steps of strip operators,
-    none of quad operators; `fallback`: replaces grids without accepted `confidence` by those of the imitated
-    method. Raises InputError: no such model or device; a model that cannot be read or does not suit a
-    boundary.
+    `device`: where torch computes the grids; ``auto`` polish then means 3 Picard steps of strip operators and
+    no step of quad operators; `fallback`: whether grids without accepted `confidence` are replaced by grids
+    of the method that the network imitates. Raises InputError: no such model or device; a model that cannot be
+    read or does not suit a boundary.
     """
     named = None if model is None else load(model)
     solutions: dict[int, Solution] = {}
@@ -142,7 +142,7 @@ class OperatorMethod:
 
     @cached_property
     def together(self) -> Topology | None:
-        """The topology of the boundaries that the network computes in batches; None if one by one."""
+        """The topology of boundaries that are computed in batches; None if they are computed one by one."""
         if self.device is None and self.model == BASE:
             return None  # no network
         if self.model is not None and makes_volumes(self.model):

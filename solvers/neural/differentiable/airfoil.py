@@ -31,7 +31,7 @@ class AirfoilGrids:
 
     `model`: a strip operator, its name or path, or ``base`` for the harmonic base without a network;
     `polish`: number of Picard steps after the network, or ``converged``; `device`: torch's name of the
-    device. Raises InputError: no such model, or one that cannot be read or is of another kind.
+    device. Raises InputError: the model does not exist, cannot be read, or is no strip operator.
     """
 
     def __init__(

@@ -13,13 +13,13 @@ TINY = 1e-300  # keeps quotients finite where a step repeats the one before
 def limit(
     step: Callable[[Tensor, Tensor], Tensor], start: Tensor, tol: Tensor, most: int
 ) -> tuple[Tensor, Tensor]:
-    """Return the limits (batch, n) of the iteration x -> step(x), and whether (batch,) each was reached.
+    """Return the limits (batch, n) of the iteration x -> step(x), and a mask (batch,) of converged members.
 
     Parameters
     ----------
     step : ``step(x, members)`` returns the next iterates of `members` (m,) from their iterates `x` (m, n).
     start : (batch, n) first values.
-    tol : (batch,) largest change of a value in a step of a converged member.
+    tol : (batch,) a member has converged if no value changes by more than this in a step.
     most : largest number of steps.
     """
     limits, far = start.clone(), torch.ones(len(start), dtype=torch.bool, device=start.device)

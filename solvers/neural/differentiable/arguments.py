@@ -10,7 +10,7 @@ from meshonet.geometry.errors import InputError
 
 
 def check_sides(least: int, nj: int = 2, **sides: Tensor) -> None:
-    """Raise InputError unless `sides` (..., n, 2), in pairs of opposite sides, are those of a batch of grids.
+    """Raise InputError unless `sides` (..., n, 2) can bound a batch of grids; opposite sides are neighbours.
 
     `least`: smallest number of nodes of a side; `nj`: for bodies, number of nodes from wall to far field.
     """
@@ -47,7 +47,7 @@ _CLOSE = 1e-5  # corners of two sides nearer than this fraction of the extent co
 
 
 def check_corners(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> None:
-    """Raise InputError, with the member's index, for sides that do not meet at corners; not under `vmap`."""
+    """Raise InputError, with the grid's index, if sides do not meet at corners; no check under `vmap`."""
     pairs = {
         "south and west": (south[..., 0, :], west[..., 0, :]),
         "south and east": (south[..., -1, :], east[..., 0, :]),
@@ -73,10 +73,10 @@ def batched(
     make: Callable[..., Tensor], sides: Sequence[Tensor], nj: int | None = None,
     dtype: torch.dtype = torch.float64, device: str | torch.device | None = None,
 ) -> Tensor:  # fmt: skip
-    """Return nodes (..., ni, nj, 2) inside `sides` (..., n, 2), of their type and on their device.
+    """Return the nodes (..., ni, nj, 2) that `make` returns for `sides` (..., n, 2) with any batch axes.
 
-    `make` takes sides (batch, n, 2) of type `dtype` on `device`, and returns nodes (batch, ni, nj, 2). For
-    bodies, `nj` is the number of nodes from wall to far field.
+    `make` takes sides (batch, n, 2) of type `dtype` on `device`, and returns nodes (batch, ni, nj, 2). The
+    result has the type and the device of `sides`. For bodies, `nj` is the node count from wall to far field.
     """
     if torch.is_inference_mode_enabled():  # solvers differentiate, which tensors of this mode do not allow
         with torch.inference_mode(False), torch.no_grad():
@@ -91,9 +91,10 @@ def batched(
 
 
 def unit_of(values: Tensor) -> Tensor:
-    """Return powers of 2 near the extents of `values` (batch, ...), in a shape that broadcasts with them.
+    """Return, for each member of `values` (batch, ...), a power of 2 near the maximum minus the minimum.
 
-    Values divided by them are exact, and their fourth powers neither overflow nor vanish.
+    The result (batch, 1, ...) broadcasts with `values`. The quotient of both is exact, and its fourth powers
+    neither overflow nor vanish.
     """
     flat = values.detach().flatten(1)
     power = torch.frexp(flat.amax(1) - flat.amin(1)).exponent

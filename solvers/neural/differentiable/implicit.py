@@ -20,26 +20,28 @@ class Equations(Protocol):
         ...
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solutions (batch, 2, ni, nj), and for each the number (batch,) in its equations.
+        """Return the solutions (batch, 2, ni, nj), and a coefficient (batch,) of each member's equations.
 
-        Only the boundary nodes of `nodes` are used. Raises MemberError: there is no solution.
+        The coefficient is the weight of smoothness, or 0 in equations without one. Only the boundary nodes of
+        `nodes` are used. Raises MemberError: there is no solution.
         """
         ...
 
     def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivative of a functional of the solution `nodes` by its boundary nodes, like `nodes`.
+        """Return the derivative (batch, 2, ni, nj) of a functional of the grid by its boundary nodes.
 
-        `gradient` is its derivative by all nodes as independent variables. Values at inner nodes are ignored.
+        `nodes`: the solution; `number`: its coefficient from `solve`; `gradient`: the derivative of the
+        functional by all nodes as independent variables. Callers ignore the result at inner nodes.
         """
         ...
 
 
 class Converged(BatchFunction):
-    """The solution of equations as a function of nodes (batch, 2, ni, nj); inner nodes have no effect."""
+    """The solution of equations as a function of the boundary nodes of `nodes` (batch, 2, ni, nj)."""
 
     @staticmethod
     def forward(equations: Equations, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the solution, and for each member the number in its equations (see `Equations.solve`)."""
+        """Return the solutions and the coefficients of the equations, as `Equations.solve`."""
         unit = unit_of(nodes)
         solution, number = in_parts(equations.solve, equations.most(nodes), nodes / unit)
         return unit * solution, number

@@ -14,9 +14,9 @@ from meshonet.solvers.neural.quad.unrolled import middles
 
 @dataclass(frozen=True)
 class TorchWalls:
-    """F (n,) on the `wall` and the `far` field in the strip of a body (see `StripWalls`).
+    """The values F (n,) of the conformal lift on the `wall` and the `far` field (see `StripWalls`).
 
-    `lift` holds the conformal lift as tensors, `numpy` as NumPy arrays.
+    `lift` holds the coefficients of the lift as tensors, `numpy` the same coefficients as NumPy arrays.
     """
 
     lift: Lift
@@ -29,7 +29,9 @@ class TorchWalls:
 
 
 def torch_walls(z: Tensor, far: Tensor) -> TorchWalls:
-    """Return both walls of the strip of a body with nodes `z` and `far` (n,), both counter-clockwise.
+    """Return the images in the strip of a body's nodes `z` (n,) and far field `far` (n,).
+
+    Both curves are complex and counter-clockwise.
 
     Raises InputError: the body has no conformal lift.
     """

@@ -53,7 +53,7 @@ def check_failed(failed: str) -> None:
 
 
 def without_failed(make: Callable[..., Tensor], counts: tuple[int, int], *sides: Tensor) -> Tensor:
-    """Return what `make` returns for `sides`, NaN for members without a grid; `counts`: ni, nj."""
+    """Return the nodes (batch, ni, nj, 2) by `make` for `sides`, NaN without a grid; `counts`: ni, nj."""
     left = torch.arange(len(sides[0]), device=sides[0].device)
     none = sides[0].new_full((len(left), *counts, 2), torch.nan)
     while len(left):
@@ -67,7 +67,7 @@ def without_failed(make: Callable[..., Tensor], counts: tuple[int, int], *sides:
 
 
 def in_parts(function: Callable[..., tuple[Tensor, ...]], most: int, *tensors: Tensor) -> tuple[Tensor, ...]:
-    """Return the values of `function` for a batch; it is called for at most `most` members at a time.
+    """Return the values of `function` for a batch, computed for at most `most` members at a time.
 
     Raises MemberError, with the failed members of all parts.
     """
@@ -85,11 +85,11 @@ def in_parts(function: Callable[..., tuple[Tensor, ...]], most: int, *tensors: T
 
 
 class BatchFunction(torch.autograd.Function):
-    """A function of a batch; `vmap` computes batches of batches as one batch."""
+    """A differentiable function of a batch; `torch.vmap` over it makes one larger batch."""
 
     @classmethod
     def vmap(cls, info: Any, in_dims: Any, *inputs: Any) -> Any:
-        """Return values and their batch dimensions; `inputs` that are no tensors belong to all batches."""
+        """Return the values and the axes to map over; `inputs` that are no tensors serve all batches."""
         flat, count = [], info.batch_size
         for value, dim in zip(inputs, in_dims, strict=True):
             if isinstance(value, Tensor):

@@ -47,8 +47,8 @@ class NetworkGrids:
     """An operator of the quad network as a differentiable function.
 
     `model`: an operator, the name of a shipped one, or the path of a file; `device`: torch's name of the
-    device; `dtype`: floating-point type of the arithmetic. Raises InputError: no such model, or one that
-    cannot be read or makes grids of another topology.
+    device; `dtype`: floating-point type of the arithmetic. Raises InputError: the model does not exist,
+    cannot be read, or makes grids of another topology.
     """
 
     topology: ClassVar[Topology]

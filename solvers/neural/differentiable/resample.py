@@ -97,9 +97,9 @@ def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None 
 
 
 def inwards(planes: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-    """Return the blending weights (.., m, n) of south, north, west and east (`algebraic.resample.quad`).
+    """Return the weights (.., m, n) with which displacements of the four sides move the inner nodes.
 
-    `planes` (.., 2, m, n) are the nodes.
+    The order is south, north, west, east (`algebraic.resample.quad`). `planes` (.., 2, m, n) are the nodes.
     """
     south, north = _both(planes)
     west, east = (share.mT for share in _both(planes.mT))

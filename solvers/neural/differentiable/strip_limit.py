@@ -23,7 +23,7 @@ TOGETHER = 8  # members solved at once on a CPU, so that they fit in its cache
 
 
 def picard(c: Tensor) -> Tensor:
-    """Return the modes (batch, modes, LEVELS) after a Picard step; see `strip.picard`."""
+    """Return the modes (batch, modes, LEVELS) of grids in the strip, `c`, after a Picard step."""
     return _stepped(c.mT).mT
 
 
@@ -43,7 +43,7 @@ class Settled(torch.autograd.Function):
     @staticmethod
     @once_differentiable
     def backward(ctx: Any, gradient: Tensor) -> Tensor:
-        """Return the derivative with respect to the start, by the limit of the steps' derivatives."""
+        """Return the derivative with respect to the initial modes, from a linear fixed-point iteration."""
         start, levels = ctx.saved_tensors
         (result,) = in_parts(_pulled, _together(start), start.mT.contiguous(), levels, gradient.mT)
         return result.mT

@@ -40,9 +40,9 @@ class Optimum:
     """The equations of the variational optimum: the gradient of the functional is zero at inner nodes."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return how many members can be solved at once so that their factors fit into the memory.
+        """Return how many members can be solved at once within the memory for Cholesky factors.
 
-        Raises InputError: the factors of a single one are too large.
+        Raises InputError: the factor of a single member is too large.
         """
         ni, nj = nodes.shape[2:]
         if storage(ni, nj) > LARGEST:
@@ -171,8 +171,9 @@ def _compiled(batch: Floats) -> list[tuple[Floats, float]]:
 
 
 class BlockCholesky:
-    """The factor of a stencil's matrix at the inner nodes; `positive` (batch,): whether it exists.
+    """The Cholesky factor of the matrix of a nine-point stencil at the inner nodes.
 
+    `positive` (batch,): whether the matrix of a member is positive definite, so that the factor exists.
     Two grid lines along the direction with fewer nodes are one block. The work for m x n nodes, n the smaller
     count, is about 300 m n³ operations. Golub and Van Loan, Matrix Computations (2013), section 4.5.
     """
@@ -194,7 +195,7 @@ class BlockCholesky:
             self.positive &= failed == 0
 
     def solve(self, right: Tensor) -> Tensor:
-        """Return the solutions (batch, 2, mi, mj), values at inner nodes, for `right` of the same shape."""
+        """Return the solutions (batch, 2, mi, mj) at inner nodes for right sides `right` of this shape."""
         right = right.mT if self._turned else right
         rows = list(_by_blocks(right).unbind(1))
         for k, factor in enumerate(self._factors):

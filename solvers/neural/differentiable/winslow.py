@@ -46,7 +46,7 @@ class Winslow:
 
 
 def residual(nodes: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-    """Return, at inner nodes of `nodes` (batch, 2, ni, nj), Winslow's left sides, α and γ."""
+    """Return, at inner `nodes`, the left side α x_ξξ - 2 β x_ξη + γ x_ηη of Winslow's equations, α and γ."""
     return left_side(_derivatives(nodes), _dot)
 
 

@@ -42,7 +42,7 @@ class Task(nn.Module):
         parts.sum().backward()
 
     def validate(self) -> dict[str, float]:
-        """Return ``loss`` and other figures over the held-out shapes; an empty dict if there are none."""
+        """Return ``loss`` and other errors on held-out shapes, by name; without such shapes, {}."""
         return {}
 
     @abstractmethod
@@ -56,7 +56,7 @@ class Task(nn.Module):
 
 @dataclass(frozen=True)
 class Run:
-    """A task, its settings (stored as the recipe), and further settings that a resumed run must share."""
+    """A training task, the `recipe` stored in the model file, and what a resumed run must have in common."""
 
     task: Task
     recipe: Mapping[str, Any]

@@ -68,10 +68,8 @@ class ModelTask(Task):
 def judged(operator: PaperOperator, samples: Samples) -> dict[str, float]:
     """Return the errors of the grids that a model predicts for `samples`; without samples, an empty dict.
 
-    The predicted boundary nodes are not replaced by the given ones.
-
     `median`, `worst`: of the relative L2 error against the solved grids; `boundary`: largest distance of a
-    boundary node from the given one; `folded`: number of folded cells in all grids.
+    predicted boundary node from the given boundary node; `folded`: number of folded cells in all grids.
     """
     boundary, errors, folded = 0.0, [], 0
     for nodes, edges in zip(samples.nodes, samples.boundaries(), strict=True):

@@ -61,9 +61,10 @@ def _first_of_strip(name: str, shape: tuple[int, ...], shapes: dict[str, tuple[i
 class QuadUNet(NamedParameters, UNet[Tensor]):
     """The quad network, from features of a grid to displacements of its nodes.
 
-    `widths`: sets of eight channels on each level, the finest first; each level has half as many nodes per
-    direction as the one before; `blocks`: residual blocks on each level, on the way down and again on the way
-    back; `around`: whether grids are O grids, periodic along xi and not padded with zeros.
+    `widths`: number of sets of eight channels on each level, the finest first; each level has half as many
+    nodes per direction as the level before; `blocks`: residual blocks on each level, on the way down
+    and again on the way back; `around`: whether grids are O grids, periodic along xi and not padded with
+    zeros.
     """
 
     def __init__(self, widths: Sequence[int], blocks: Sequence[int], around: bool = False) -> None:

@@ -128,8 +128,8 @@ def run(
 ) -> Run:
     """Return the run that trains `model` on the training split of `data`, never on its test split.
 
-    `held_out`: number of training grids, spread evenly, on which the loss is monitored; `settings`: of the
-    model, in place of its defaults. Raises InputError: too few grids; unknown settings.
+    `held_out`: number of training grids, spread evenly, on which the loss is monitored; `settings`: values
+    by name that replace the model's default settings. Raises InputError: too few grids; unknown settings.
     """
     made = architecture(model, data.topology, settings)
     rows = np.arange(len(data)) if made.physics else data.where("train")

@@ -22,8 +22,8 @@ def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: G
     """Return figures that compare the network's grids `answers` (m, heads, n, n) with targets (m, n, n).
 
     Figures of angles are the largest corner angle of a grid, and the mean over cells of each cell's largest.
-    A gain is the improvement of a figure over Winslow's grid, divided by that of the variational grid;
-    domains whose Winslow grid has folded cells are left out.
+    A gain compares improvements of a figure over Winslow's grid: the improvement by the network, divided by
+    the improvement by the variational grid. Domains whose Winslow grid has folded cells are left out.
     """
     solved, best = angles(winslow), angles(variational)
     valid = solved[0] < 360.0
@@ -68,11 +68,11 @@ def _share(values: Bools) -> float:
 
 
 def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-    """Return three measures (batch,) of how much worse grids `z` (batch, m, n), complex, are than `goal`.
+    """Return three measures (batch,) of how much worse complex grids `z` (batch, m, n) are than `goal`.
 
     The first two are excesses, in radians or 0, of the mean and of the maximum over cells of the cell's
-    largest angle. The third is log(1 + s / `SLIGHT`), where s sums the parts of angles outside of `NARROW` to
-    `WIDE`, or outside of the angles that the same cell has in `goal`.
+    largest angle. The third is log(1 + s / `SLIGHT`). There, s sums by how much angles leave the interval
+    from `NARROW` to `WIDE`, widened where the same cell of `goal` already leaves it.
     """
     least, most = extremes(z)
     with torch.no_grad():

@@ -22,10 +22,11 @@ from meshonet.solvers.neural.samples import Samples, gathered
 
 @dataclass(frozen=True)
 class Quads:
-    """m domains of unit size: `base`, `winslow` and `variational` grids (m, n, n), complex64.
+    """Complex grids (m, n, n) of m domains of unit size: `base`, `winslow` and `variational`.
 
-    `base` and its last Picard `step` are results of `approach` from transfinite grids; `around` bodies the
-    grids are unrolled strips (m, 65, n), from equal steps between wall and far field.
+    `approach` makes `base` from transfinite grids, by Picard steps; `step` is the last of these steps. With
+    `around`, grids are unrolled strips (m, 65, n) of O grids, and `base` starts from equal steps between wall
+    and far field.
     """
 
     base: Tensor

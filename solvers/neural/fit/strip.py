@@ -64,9 +64,9 @@ class StripTask(Task):
         return (self.importance[rows] * (error**2).sum(1).mean(1)).mean()[None]
 
     def validate(self) -> dict[str, float]:
-        """Return ``loss`` (the median), ``p90`` and ``worst`` of held-out strips' `distance` from R.
+        """Return ``loss`` (the median), ``p90`` and ``worst`` of the `distance` between output and R.
 
-        R is Winslow's solution minus the harmonic base.
+        R is Winslow's solution in a held-out strip minus the harmonic base.
         """
         pairs = zip(self.answers(), self.held_out.residual, strict=True)
         errors = [distance(answer, goal) for answer, goal in pairs]
@@ -81,7 +81,7 @@ class StripTask(Task):
         return list(decode(out.numpy().astype(np.float64), self.basis, self.scale, size))
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
-        """Return quantiles over the held-out strips of the distance to R, for the network and for zero."""
+        """Return quantiles over held-out strips of the `distance` from R to the network's output, and to 0."""
         test, errors = self.held_out, dict[str, list[float]]()
         for wall, far, goal, answer in zip(test.wall, test.far, test.residual, self.answers(), strict=True):
             base = harmonic(wall, far, across().eta)

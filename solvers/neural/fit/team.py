@@ -27,7 +27,7 @@ class Team:
     def share(self, rows: Tensor) -> tuple[Tensor, float]:
         """Return this process's part of a batch `rows`, and the weight of this part in the mean of the batch.
 
-        Every process must compute a step; one that would get no rows gets the first row, with weight 0.
+        Every process must compute a step: a process without rows gets the first row, with weight 0.
         """
         own = rows[self.rank :: self.size]
         if len(own) == 0:

@@ -33,7 +33,7 @@ HELD_OUT = 0
 
 
 class VolumeTask(Task):
-    """Training of `model` on `volumes`; `points`: numbers of points drawn per step, inside and on faces."""
+    """Training of `model` on `volumes`; `points`: numbers of random points inside and on faces per step."""
 
     parts = ("winslow", "faces", "weights")
 
@@ -58,7 +58,7 @@ class VolumeTask(Task):
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the parts of the loss over the geometries `rows`, in units of each geometry's own size.
+        """Return the parts of the loss over the geometries `rows`; the size of a geometry is the unit of length.
 
         ::
 

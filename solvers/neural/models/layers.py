@@ -23,7 +23,10 @@ def dense_shapes(name: str, sizes: Sequence[int], stacked: int | None = None) ->
 
 
 def dense(xp: Any, w: Weights, name: str, h: Any, *, last: bool = False) -> Any:
-    """Return h (.., in) after the layers called `name`; tanh follows each, the last only if `last`."""
+    """Return the output of the dense layers called `name` for h (.., in).
+
+    tanh follows each layer; it follows the last layer only with `last`.
+    """
     k = 0
     while f"{name}/{k}/weight" in w:
         weight, bias = w[f"{name}/{k}/weight"], w[f"{name}/{k}/bias"]

@@ -75,10 +75,10 @@ class PaperOperator(Operator):
         return Solution(grid, "operator", model=self.name, seconds={"grid": spent}, notes=notes)
 
     def nodes(self, boundary: Boundary, *, paste: bool = True) -> tuple[Floats, float]:
-        """Return the nodes (ni, nj, 2), and the largest distance of the network's edges from `boundary`.
+        """Return the nodes (ni, nj, 2), and the largest distance of predicted boundary nodes from `boundary`.
 
-        With `paste`, the edges are then replaced by those of `boundary`. Otherwise only the two sides of the
-        cut of an O grid are made equal.
+        With `paste`, boundary nodes are then replaced by those of `boundary`. Otherwise only the two sides of
+        the cut of an O grid are made equal.
         """
         answer = self.difference(boundary)
         if self.model.base == "harmonic":

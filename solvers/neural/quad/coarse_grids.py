@@ -56,8 +56,8 @@ def transfinite(sides: Sides) -> Floats:
 def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
     """Return the nodes (batch, 2, m, n) of the network's grids inside `sides`.
 
-    Grids have 33 x 33 nodes; those of Winslow's head as many as the sides, but at least 33 and at most 65 per
-    direction. `head` is an index into `encoding.HEADS`.
+    `head` is an index into `encoding.HEADS`. Grids have 33 x 33 nodes. Grids of Winslow's head have as many
+    nodes as the sides, but at least 33 and at most 65 per direction.
     """
     base = transfinite(thinned(sides, LATENT, LATENT))
     shares = None if head == WINSLOW else _shares
@@ -110,6 +110,6 @@ def _shares(near: Complexes, move: Complexes) -> Floats:
 
 
 def share(start: Complexes, answer: Complexes) -> float:
-    """Return how far to go from `start` to `answer` (m, n), as a fraction: 1 unless cells would fold."""
+    """Return the fraction of the way from `start` to `answer` (m, n) that is taken: 1 unless cells fold."""
     tried = (part for part in (1.0, *SHARES) if not count_folded(pairs_of(start + part * (answer - start))))
     return next(tried, 1.0)

@@ -29,7 +29,7 @@ STRETCH = 30.0  # factor of small Picard steps in the inverse hyperbolic sine
 def frame(z: Any, xp: Any) -> tuple[Any, Any]:
     """Return the centres (batch,) and the factors (batch,) to unit size of complex grids `z` (batch, n, n).
 
-    ``(z - middle) * factor`` has area 1. Its x direction is that of the sum of two vectors: the mean vector
+    The grid ``(z - centre) * factor`` has area 1. Its x axis is along the sum of two vectors: the mean vector
     from west to east, and the mean vector from south to north rotated by a quarter turn. Only boundary nodes
     are used; relabelled domains have rotated or mirrored frames.
     """

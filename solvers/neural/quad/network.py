@@ -67,9 +67,10 @@ def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...
 
 @lru_cache(maxsize=4)
 def rim_factor(m: int, n: int, around: bool) -> Floats:
-    """Return the factor (m, n) of displacements: 0 on the boundary, inside the product of two d / (d + 2).
+    """Return the factor (m, n) that multiplies displacements; it is 0 on the boundary.
 
-    d is the distance from the boundary in nodes, along xi and along eta; with `around` only along eta.
+    The factor is the product of d / (d + 2) along xi and along eta, with `around` only along eta; d is the
+    number of nodes to the boundary.
     """
     along, across = (np.minimum(np.arange(k), np.arange(k)[::-1]).astype(np.float64) for k in (m, n))
     rise = np.multiply.outer(np.ones(m) if around else along / (along + 2.0), across / (across + 2.0))

@@ -25,8 +25,8 @@ COMPACT = 0.15  # least over largest distance of the wall from the middle, of bo
 def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) -> Floats:
     """Return the nodes (batch, 2, 65, 33) of the network's grids of O `boundaries` with equal node counts.
 
-    `head` is an index into `encoding.HEADS`. Raises InputError: a wall, reduced to 65 nodes, does not wind
-    once around the centroid of the body, nor around the point `inside` the body.
+    `head` is an index into `encoding.HEADS`. Raises InputError: a wall, reduced to 65 nodes, winds once
+    neither around the centroid of the body nor around the point of `inside_point.inside`.
     """
     walls, strips, centres, once = _strips(boundaries)
     if not once.all():
@@ -42,7 +42,7 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
 
 
 def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
-    """Return the strips `base` (batch, m + 1, n), which have equal steps, moved by the network and closed.
+    """Return the strips `base` (batch, m + 1, n) of equal steps, moved by the network and closed.
 
     `factor`: (batch, 1, 1) scales them to unit size; `network`: as in `coarse_grids.answered`; `xp`: numpy or
     torch.

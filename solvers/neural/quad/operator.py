@@ -63,8 +63,8 @@ class QuadOperator(Operator):
     ) -> list[Solution]:
         """Return a grid inside each boundary; its boundary nodes are bitwise those of the boundary.
 
-        Boundaries with equal node counts form batches; seconds are those of a batch over its number of
-        boundaries.
+        Boundaries with equal node counts form batches. A solution's seconds are the time of the batch,
+        divided by the number of boundaries in it.
         """
         self.check(boundaries)
         network = self.network(dtype)

@@ -23,7 +23,10 @@ STILL = 1e-4  # moves at which a descent stops sooner, as `meshonet.solvers.ener
 def polished(
     boundaries: Sequence[Boundary], network: Network, topology: Topology, head: int, steps: int
 ) -> tuple[Floats, list[int]]:
-    """Return nodes (batch, 2, ni, nj) inside boundaries with equal counts, and their numbers of steps."""
+    """Return polished nodes (batch, 2, ni, nj), and the number of steps taken for each grid.
+
+    `boundaries` have equal node counts; `steps`: largest number of Newton steps, descents and cycles.
+    """
     if topology == "quad":
         coarse = coarse_grids.coarse_grids(coarse_grids.sides_of(boundaries), network, head)
     else:

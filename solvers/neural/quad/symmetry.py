@@ -69,7 +69,7 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 
 
 def table(size: int) -> Integers:
-    """Return, for each entry of the kernels K[h, g] (8, 8, size²), its index in one set of 8 size² weights w.
+    """Return the indices (8, 8, size²) of the weights w (8 size²) that form the kernels K[h, g].
 
     A layer's channels come in sets of eight, one for each element h of the group, the element fastest::
 

@@ -13,7 +13,7 @@ TURN = 2.0 * np.pi  # once around, the period of a strip
 
 
 def middles(walls: Any, xp: Any = np) -> Any:
-    """Return the centroids (batch,) of the areas inside closed curves (batch, n), first node not repeated."""
+    """Return the centroids (batch,) of the areas inside curves (batch, n) without a repeated first node."""
     off = walls - walls[:, :1]  # near the origin, against cancellation
     ahead = xp.roll(off, -1, 1)
     cross = times(off.conj(), ahead).imag
@@ -21,10 +21,10 @@ def middles(walls: Any, xp: Any = np) -> Any:
 
 
 def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
-    """Return the strips Z of O grids `z` (batch, m + 1, n) around `centres` (batch,), and a mask (batch,).
+    """Return the strips i log(z - centre) of O grids `z` (batch, m + 1, n), and a mask (batch,).
 
-    The first index of `z` runs around the body and repeats the first node. The mask tells which grids wind
-    once around their centre; the strips of the others cannot be used.
+    `centres` (batch,) are complex. The first index of `z` runs around the body and repeats
+    the first node. The mask is true for grids that wind once around their centre; other strips are useless.
     """
     off = z - centres[:, None, None]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -55,13 +55,13 @@ def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any 
 
 
 def even(strips: Any, n: int, xp: Any = np) -> Any:
-    """Return strips (batch, m + 1, n) with equal steps from the first row of `strips` to their last."""
+    """Return strips (batch, m + 1, n) with `n` equally spaced nodes from wall to far field of `strips`."""
     eta = xp.linspace(0.0, 1.0, n, dtype=strips.real.dtype, device=strips.device)
     return strips[:, :, :1] * (1.0 - eta) + strips[:, :, -1:] * eta
 
 
 def factors(strips: Any, xp: Any = np) -> Any:
-    """Return the factors (batch,) that scale half a period of each strip (batch, m + 1, n) to the area 1."""
+    """Return factors (batch,) of length that give half a period of each strip (batch, m + 1, n) the area 1."""
     heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
     return 1.0 / xp.sqrt(0.5 * TURN * heights)
 

@@ -78,7 +78,7 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
 
 @dataclass(frozen=True)
 class StripTargets:
-    """Inputs (n, CHANNELS, COLUMNS), (n, SCALARS); wanted outputs (n, 2 Q, COLUMNS), whose mean square is 1.
+    """Inputs (n, CHANNELS, COLUMNS) and (n, SCALARS), and wanted outputs (n, 2 Q, COLUMNS) of mean square 1.
 
     An output times `scale` gives the coefficients of R / size^2 in `basis` (Q, LEVELS - 2), the proper
     orthogonal decomposition across the strip in the H1 inner product.

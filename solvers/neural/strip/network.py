@@ -96,7 +96,7 @@ def gelu(x: Any, xp: Any) -> Any:
 def spectral(mixing: Any, h: Any, xp: Any) -> Any:
     """Return (d, batch, n): the channels of h (c, batch, n), mixed by a matrix for each Fourier mode.
 
-    `mixing` (modes, 2 c, 2 d) are these matrices for real and imaginary parts.
+    `mixing` (modes, 2 c, 2 d) has a matrix for each mode; real and imaginary parts alternate in it.
     """
     spectrum = xp.fft.rfft(h)[..., : len(mixing)].swapaxes(0, 2)
     parts = xp.stack([spectrum.real, spectrum.imag], -1).reshape(len(mixing), h.shape[1], -1)

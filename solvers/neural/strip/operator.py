@@ -49,9 +49,9 @@ class StripOperator(Operator):
         """Return the modes (batch, 2 MODES + 1, LEVELS) of R, Winslow's solution minus the harmonic base.
 
         `wall`, `far`: (batch, 2 MODES + 1) modes of the strip's walls; `hand`: (batch,) result of
-        `meshonet.geometry.polygon.mirror.handedness`, for equivariance under reflection: -1 takes the
-        network's output for the mirror image, whose modes are conjugate; 0 makes the output symmetric. Modes
-        that Picard steps would not correct are zero.
+        `meshonet.geometry.polygon.mirror.handedness`, so that mirror images get mirrored grids: -1 computes
+        the mirror image, whose modes are conjugate; 0 makes the output symmetric. Modes that Picard steps
+        cannot correct are zero.
         """
         if self.network is None:
             return np.zeros((*wall.shape, LEVELS), complex)

@@ -45,8 +45,8 @@ class VolumeMeshNet:
 class VolumeNetwork:
     """Trained networks, one per geometry, at any resolution.
 
-    ``(x, y, z) = centre + size N_g(2 xi - 1, 2 eta - 1, 2 zeta - 1)``. `weights` include sensors (count, s,
-    3), centres and sizes.
+    ``(x, y, z) = centre + size N_g(2 xi - 1, 2 eta - 1, 2 zeta - 1)``. `weights` include sensors
+    (count, s, 3), centres (count, 3) and sizes (count, 1) of the `count` geometries.
     """
 
     name: str
@@ -91,7 +91,7 @@ def scales(volumes: Sequence[SixFaces]) -> dict[str, Floats]:
 
 
 def load_volume(name: str) -> VolumeNetwork:
-    """Return the networks of a model file. Raises InputError: it does not exist or is for planar grids."""
+    """Return the networks of a model file. Raises InputError: the file is missing or for planar grids."""
     path = model_path(name)
     kind, header, arrays = read_model(path)
     if kind != VOLUME:
