@@ -39,8 +39,8 @@ def infer_many(
     None for the default of the topology; `polish`: steps after the network (`operator.Operator.solve`);
     `device`: where torch computes the grids; ``auto`` polish then means 3 Picard steps of strip operators and
     no step of quad operators; `fallback`: whether grids without accepted `confidence` are replaced by grids
-    of the method that the network imitates. Raises InputError: no such model or device; a model that cannot be
-    read or does not suit a boundary.
+    of the method that the network imitates. Raises InputError: no such model or device; a model that cannot
+    be read or does not suit a boundary.
     """
     named = None if model is None else load(model)
     solutions: dict[int, Solution] = {}

@@ -81,7 +81,7 @@ class StripTask(Task):
         return list(decode(out.numpy().astype(np.float64), self.basis, self.scale, size))
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
-        """Return quantiles over held-out strips of the `distance` from R to the network's output, and to 0."""
+        """Return quantiles over held-out strips of the `distance` from R to the network's output and to 0."""
         test, errors = self.held_out, dict[str, list[float]]()
         for wall, far, goal, answer in zip(test.wall, test.far, test.residual, self.answers(), strict=True):
             base = harmonic(wall, far, across().eta)

@@ -58,7 +58,7 @@ class VolumeTask(Task):
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the parts of the loss over the geometries `rows`; the size of a geometry is the unit of length.
+        """Return the parts of the loss over the geometries `rows`; lengths are relative to a geometry's size.
 
         ::
 
