@@ -236,14 +236,14 @@ VALID = """
 BESIDE = """
 ## Gmsh at equal cell count
 
-Gmsh gets some of these domains (column *domains*), with a spline through the points between two corners. It
-uses one thread and the options for quadrilaterals only. The time of Gmsh is the time of `generate(2)`; the
-time of meshonet is the time of the whole process.
+A part of these domains is also meshed by Gmsh (number: column *domains*); its geometry has one spline between
+two neighbouring corners. It uses one thread and the options for quadrilaterals only. The time of Gmsh is the
+time of `generate(2)`; the time of meshonet is the time of the whole process.
 
-Gmsh's algorithm 11 generates quasi-structured quadrilaterals, algorithm 8 is Delaunay for quadrilaterals,
-algorithm 9 packing of parallelograms. *meshed*: number of domains that Gmsh meshes; *with triangles*: number
-of these meshes that contain triangles. The other columns give two medians over these domains, for meshonet
-and for Gmsh.
+*algorithm*: Gmsh's number; 11 is for quasi-structured quadrilaterals, 8 Delaunay for quadrilaterals, 9
+packing of parallelograms. *meshed*: number of domains that Gmsh meshes; *with triangles*: number of these
+meshes that contain triangles. The other columns give two medians over these domains, for meshonet and for
+Gmsh.
 
 | algorithm | domains | meshed | with triangles | irregular | mean | 99 % | CPU time, s | cells |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""

@@ -174,7 +174,7 @@ threshold 0.03 for this error.
 
 The *answer* of a network is the grid that it predicts. To estimate its error, `infer` applies a few steps of
 the solver that the network imitates: 16 iterations of the variational method for `quad-general` and `hole-o`,
-one more Picard step for `airfoil-o`, and two multigrid cycles of Winslow's equations for `quad-winslow` and
+one Picard step for `airfoil-o`, and two multigrid cycles of Winslow's equations for `quad-winslow` and
 for the networks of [the paper](../theory/paper-models.md). The expected error is the distance by which these
 steps move the nodes, divided by the size of the grid. The true error is the relative L2 distance from the
 converged solution. An answer is accepted if its expected error is at most {threshold:g} and none of its cells

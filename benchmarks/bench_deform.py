@@ -48,13 +48,13 @@ The deformations are random (seed {seed}).
 
 The columns and methods of the table are:
 
-- *deformations*: kind, with the number of deformations in brackets. Of the random deformations, {refused}
-  gave an invalid outline and were left out.
+- *deformations*: kind, with the number of deformations in brackets. Random deformations that give an
+  invalid outline are left out: {refused} here.
 - *folded*: number of grids with folded cells and, if there are any, the largest number of folded cells in
   one grid.
 - *first cell*: largest relative change of a first-cell height, over all wall nodes and deformations.
-- *angle*: increase of the largest cell corner angle of a grid by the deformation, in degrees; the table
-  gives the largest increase over all deformations.
+- *angle*: by how many degrees the deformation increases the largest cell corner angle of the grid; maximum
+  over all deformations.
 - *CPU ms*: CPU time to compute the new grid from the grid and the new outline in memory, median / 90th
   percentile, one thread of {machine}, while other programs used the machine.
 - *IDW*: interpolation of displacements with weights 1/r^3 (Witteveen, Bijl, AIAA 2009-3996). *IDW,

@@ -247,22 +247,22 @@ four-sided domains. For the method see [neural operators](../theory/operators.md
 
 - `quad-general` predicts the variational grid, `quad-winslow` Winslow's grid. *n steps* and *n cycles* are
   `--polish n`: iterations of the variational method, or multigrid cycles for Winslow's grid.
-- *4 Picard steps, 33* is the initial grid that the network corrects, on 33 x 33 nodes.
+- *4 Picard steps, 33*: the grid that the network corrects, without the network: four Picard steps for
+  Winslow's equations on 33 x 33 nodes.
 - *valid*: share of grids without a folded cell, before repair.
 - *no worse than Winslow*: share of grids that are valid, and in which neither the maximum nor the mean angle
   is larger than in Winslow's grid.
 - *angle*: largest included angle of each cell, in degrees. The tables give the maximum and the mean over
   the cells, averaged over the domains.
-- *gain*: by how much the angle is smaller than in Winslow's grid, divided by how much it is smaller in the
-  full variational grid, in percent. *all*: ratio of the sums over all domains. *median*: median of the
-  ratios of the single domains.
+- *gain*: (Winslow's angle - angle) / (Winslow's angle - angle of the full variational grid), in percent.
+  *all*: ratio of the sums over all domains. *median*: median of the ratios of the single domains.
 - *CPU ms*: CPU time of one thread, while other programs used the machine.
 """
 TAIL = """
 ## Conclusions
 
-- **One domain**: the variational method on fewer nodes (`--coarse`), the default of `infer`, reaches 99 to
-  100 % of the gain in mean angle.
+- **One domain**: use no network. Without `--model`, `infer` minimises the functional on fewer nodes
+  (`--coarse`) and reaches 99 to 100 % of the gain in mean angle.
 - **Batches**: use `--model quad-general`. The network evaluates all domains together, in a fraction of the
   time of any solver. `--polish 2` to `5` removes folded cells.
 - **Winslow's grid**: the network has no advantage. On 65 x 65 nodes, multigrid solves the equations in less

@@ -70,7 +70,7 @@ class Values:
         return [self._below(key, value, below) for value in values]
 
     def entry(self, key: str, k: int, of: int, below: int) -> int:
-        """Return entry `k` of the list at `key`: `of` integers from 0 to `below` - 1."""
+        """Return entry `k` of the list of `of` integers from 0 to `below` - 1 at `key`."""
         values = self.data.get(key)
         if not isinstance(values, list) or len(values) != of:
             raise self.error(f"{key} are not {of} numbers")

@@ -40,7 +40,7 @@ def joins_whole_sides(grid: Grid, connection: Connection) -> bool:
 def families(grid: Grid) -> list[list[Member]]:
     """Return the families of grid lines; each pair of a block and a direction is in exactly one family.
 
-    In volumes, where lines have two indices, `Member.flipped` has no meaning.
+    In volumes, `Member.flipped` has no meaning.
     """
     beyond: dict[tuple[int, int], list[tuple[tuple[int, int], bool, bool]]] = {}
     for each in grid.connections:

@@ -129,7 +129,7 @@ class Channel:
     def lengthen(self, begin: Floats, end: Floats, sizes: Floats) -> None:
         """Move the points `end` (..., 3), in place, to the distances `sizes` (...) from `begin`.
 
-        Points are s, theta, h; distances are in space.
+        Points are s, theta, h; their distances are measured in x, y, z.
         """
         lengthen_cells(self._tables, begin.reshape(-1, 3), sizes.reshape(-1), end.reshape(-1, 3))
 

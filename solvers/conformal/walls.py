@@ -34,7 +34,7 @@ class StripWalls(NamedTuple):
 
 
 def walls(boundary: Boundary) -> StripWalls:
-    """Return the walls of an O boundary in the strip. Raises InputError: the body has no conformal map."""
+    """Return the walls of an O boundary, mapped to a strip. Raises InputError: no conformal map exists."""
     z, far = mirrored(boundary.south[:-1]), mirrored(boundary.north[:-1])
     hand, (point, direction) = handedness(z, far)
     # near the origin: far from it the map's branch points are subject to cancellation

@@ -89,8 +89,8 @@ def nested(nodes: Tensor) -> Tensor:
 def newton(nodes: Tensor, tol: float, *, strict: bool = True) -> Tensor:
     """Return the solution of Winslow's equations near `nodes` (batch, 2, ni, nj).
 
-    `tol`: preconditioned residual of a converged member, relative to its extent. Raises MemberError, if
-    `strict`, with the members that have not converged.
+    A grid of the batch has converged if its preconditioned residual is at most `tol` times its extent. Raises
+    MemberError, if `strict`, with the grids that have not converged.
     """
     nodes = nodes.clone()
     extent = (nodes.amax((2, 3)) - nodes.amin((2, 3))).amax(1)

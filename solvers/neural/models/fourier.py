@@ -137,10 +137,10 @@ def _waves(ni: int, nj: int, modes: int, padding: int) -> tuple[NDArray[Any], Fl
 class KNO(AlongXi):
     """Koopman neural operator along xi; `width` is the number of observables.
 
-    K multiplies the observables g of each of the lowest Fourier modes by one matrix. ::
+    K multiplies each of the lowest Fourier modes of the observables by one and the same matrix; W restores
+    the other modes. ::
 
-        h <- h + K h    `steps` times, from h = tanh(g)
-        g <- tanh(h + W g + b)    W adds what the modes left out
+        h = g;  `steps` times: h <- h + K h;  g <- tanh(h + W g + b)
 
     A second decoder reconstructs the inputs from the observables (weight `reconstruction` in the loss). Xiong
     et al., Koopman neural operator as a mesh-free solver of non-linear partial differential equations,

@@ -62,7 +62,7 @@ def pad(mesh: QuadMesh, loops: Sequence[int]) -> QuadMesh:
 
 
 def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
-    """Return the mesh with a row of quads along a stretch between two corners with one quad each.
+    """Return the mesh with a row of quads along a span between two corners at each of which one quad meets.
 
     If both corners are the same, the row is closed. The new quads are as in `with_row`.
     """
