@@ -17,7 +17,7 @@ _MOST = 4096  # crossings looked for; those at the joints of concatenated polyli
 def check_apart(table: NodeTable, targets: NodeTargets) -> None:
     """Raise InputError, with the place, if planar walls in their new positions cross other boundaries.
 
-    Sliding sides are not checked: their ends are known only after the deformation.
+    Sliding sides are not checked: the ends of such a side are known only after the deformation.
     """
     moved = targets.moved
     walls = [piece for piece in table.pieces if moved[piece.numbers].all()]

@@ -25,9 +25,9 @@ def deform(grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> Solution:
     """Return `grid` deformed to the new shapes of `walls`, with notes.
 
     Displacements of the boundary are interpolated (`meshonet.solvers.deformation.follow`). If cells fold,
-    this is divided into steps; then cells are repaired, and at last nodes outside layers are smoothed. Raises
-    InputError: the grid is a surface or has folded cells; it does not have one of the walls; a new shape is
-    unsuitable; walls cross.
+    the deformation is divided into steps. If cells still fold, they are repaired, and at last nodes outside
+    layers are smoothed. Raises InputError: the grid is a surface or has folded cells; the grid has no wall of
+    a given name; a new shape is unsuitable; walls cross.
     """
     table = NodeTable.of(grid)
     folded = count_folded_in(grid)

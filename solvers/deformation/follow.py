@@ -39,7 +39,7 @@ class Field:
 
     @classmethod
     def of(cls, nodes: Floats, sources: Indices, areas: Floats, near: float, points: Indices) -> Self:
-        """Return the field that `sources` cause at `points`; both are indices of `nodes` (n, d).
+        """Return the field of `sources` (k,) at `points` (m,), which are both indices into `nodes` (n, d).
 
         `areas` (n,) are the lengths or areas of the nodes.
         """
@@ -48,13 +48,13 @@ class Field:
         return cls(sources, places, np.ascontiguousarray(areas[sources]), near, where)
 
     def blended(self, motions: Floats) -> Floats:
-        """Return the displacements (m, d) of the points by the `motions` (d + d², k) of the sources."""
+        """Return the displacements (m, d) of the points, for `motions` (d + d², k) of sources by `affine`."""
         moved = np.empty_like(self.points)
         blend_motions(self.places, self.areas, motions, self.near, self.points, thread_count(), moved)
         return moved.T
 
     def transposed(self, pull: Floats) -> Floats:
-        """Return d(Σ pull · displacement) / d(planar motions of the sources), (6, k); `pull` is (m, 2)."""
+        """Return the gradient (6, k) of Σ pull · displacement by the planar motions; `pull` is (m, 2)."""
         gathered = np.empty((6, len(self.areas)))
         force = np.ascontiguousarray(pull.T)
         blend_transposed(self.places, self.areas, self.near, self.points, force, gathered)
@@ -93,7 +93,7 @@ class Follow:
         return there
 
     def boundary_to(self, to: Floats) -> Floats:
-        """Return all nodes (n, d); only the moved and the sliding nodes have new positions."""
+        """Return all nodes (n, d): moved nodes at `to` (n, d), sliding nodes displaced, others unchanged."""
         nodes = self.table.nodes
         there = np.where(self.sources.moved[:, None], to, nodes)
         if self.slide is not None:

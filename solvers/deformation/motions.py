@@ -17,7 +17,7 @@ from meshonet.geometry.polygon.corners import angle_between
 
 @dataclass(frozen=True, eq=False)
 class Turning:
-    """Rotation angles of the nodes of a planar wall, as weighted means over its edges."""
+    """Weights for the rotation angle of each node of a planar wall, a mean over the edges at the node."""
 
     edges: Indices  # (m, 2) node indices of the edges
     share: Floats
@@ -31,7 +31,7 @@ class Turning:
         return cls(edges, nearness[:, None] / total[edges])
 
     def angles(self, old: Floats, new: Floats) -> Floats:
-        """Return the wall's rotation angles (n,) at its nodes, in radians, from `old` to `new` (n, 2)."""
+        """Return by which angle (n,), in radians, the wall turns at each node from `old` to `new` (n, 2)."""
         before, after = (nodes[self.edges[:, 1]] - nodes[self.edges[:, 0]] for nodes in (old, new))
         return self._at_nodes(angle_between(before, after), len(old))
 
@@ -59,13 +59,13 @@ class Turning:
 
 
 def turns_in_plane(angles: Floats) -> Floats:
-    """Return R - 1 (n, 2, 2) for rotations by `angles` (n,), without cancellation for small angles."""
+    """Return R - 1 (n, 2, 2) for rotation matrices R by `angles` (n,), accurate also for small angles."""
     sine, less = sin(angles), -2.0 * sin(0.5 * angles) ** 2
     return np.stack([np.stack([less, -sine], axis=-1), np.stack([sine, less], axis=-1)], axis=-2)
 
 
 def turns_in_space(quads: Indices, old: Floats, new: Floats) -> Floats:
-    """Return R - 1 (n, 3, 3) at the nodes of a wall of `quads` (m, 4), moved from `old` to `new` (n, 3)."""
+    """Return R - 1 (n, 3, 3) for rotations R from `old` to `new` (n, 3) at the nodes of `quads` (m, 4)."""
     before, after = _frames(old[quads]), _frames(new[quads])
     whole = product(after, inverse(before))
     total = np.zeros((len(old), 3, 3))
@@ -86,9 +86,10 @@ def _frames(corners: Floats) -> Floats:
 
 
 def affine(places: Floats, moved: Floats, turns: Floats) -> Floats:
-    """Return a and B for each node, stacked (d + d², n): the node's motion displaces a point x by a + B x.
+    """Return the coefficients a (d) and B (d²), stacked (d + d², n), of the displacement a + B x by a node.
 
-    `places` and `moved` (n, d) are the old and the new positions of the nodes, `turns` (n, d, d) is R - 1.
+    x is the point that is displaced. `places` and `moved` (n, d) are the old and the new positions of the
+    nodes, `turns` (n, d, d) is R - 1.
     """
     shift = moved - places - product(turns, places[:, :, None])[:, :, 0]
     return np.ascontiguousarray(np.concatenate([shift.T, turns.reshape(len(places), -1).T]))

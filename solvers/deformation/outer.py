@@ -85,7 +85,7 @@ class NodeTable:
 
 
 def lines_of(pieces: Sequence[Piece]) -> list[Indices]:
-    """Return planar pieces joined to polylines, as node indices (n,); closed ones repeat their first node."""
+    """Return planar pieces joined to polylines of node indices (n,); closed ones repeat the first node."""
     left = [piece.numbers for piece in pieces]
     lines = []
     while left:

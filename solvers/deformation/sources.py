@@ -31,8 +31,8 @@ class Sources:
 def sources_of(table: NodeTable, moved: Bools) -> Sources:
     """Return the sources on the outer boundary of `table` when the nodes `moved` (n,) move.
 
-    Far from all moved nodes one source stands for a group of nodes, which is small compared with its distance
-    from the moved nodes and with the cells at the boundary.
+    Far from all moved nodes, one source stands for a group of nodes. The extent of such a group is
+    limited by the distance from the moved nodes and by the first-cell height.
     """
     elements = elements_of(table.pieces, table.nodes.shape[1])
     areas = areas_of(table.nodes, elements)

@@ -48,7 +48,7 @@ def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> Node
     `walls` has the new shapes by the name of the wall, or one shape if there is only one wall. A grid or a
     boundary gives new shapes to all walls that have the names of its patches.
 
-    Raises InputError: the grid does not have one of the walls; a new shape is unsuitable.
+    Raises InputError: the grid has no wall of a given name; a new shape is unsuitable.
     """
     moved, nodes = np.zeros(len(table.nodes), dtype=bool), table.nodes.copy()
     notes: list[str] = []

@@ -15,8 +15,8 @@ from meshonet.geometry.arrays import Floats
 class Direction:
     """One index direction of a level: node positions (n,), in units of the steps of the finest level.
 
-    Coarse nodes are every second one and the last; the last step may be shorter. If `periodic`, the last node
-    is the first.
+    Coarse nodes are every second node and the last node; the last step may be shorter. If `periodic`, the
+    last node is the first.
 
     >>> Direction(np.arange(8.0), periodic=False).coarse.positions
     array([0., 2., 4., 6., 7.])

@@ -46,10 +46,10 @@ class Factors:
 
 @dataclass(frozen=True, eq=False)
 class Controls:
-    """The logarithms of the ratios of neighbouring steps, as sums of products of functions of ξ and of η.
+    """Control functions φ and ψ, kept as the logarithms l of the ratios of neighbouring steps.
 
-    In α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0 it is φ = -(2/h) tanh(h l/2) for the logarithm l (see
-    ``stencil.h``), which is exact for geometric growth on every level.
+    The equations are α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0. On a level with step h,
+    φ = -(2/h) tanh(h l/2) (see ``stencil.h``), which is exact for geometric growth.
     """
 
     phi: Factors  # logarithm of the ratio of neighbouring steps along ξ and along η
@@ -68,7 +68,7 @@ def thomas_middlecoff(boundary: Boundary) -> Controls:
 
     On an edge with arc length s, φ = -(x_ξ·x_ξξ)/(x_ξ·x_ξ) = -(ln s_ξ)_ξ, for grid lines that leave the edge
     straight and orthogonally. Inside, φ and ψ are interpolated linearly between opposite edges. For an O
-    boundary, ψ is that of the seam.
+    boundary, ψ is that on the cut.
 
     Thomas and Middlecoff, AIAA J. 18 (1980) 652-656.
     """

@@ -28,7 +28,8 @@ class Settings:
 class Multigrid:
     """The multigrid levels for planar `nodes` (ni, nj, 2) inside `edges` (south, north, west, east).
 
-    `nodes` are the finest level, changed in place and without initial values. `periodic` means an O grid.
+    `nodes` are the finest level; they are changed in place, and initial values are ignored. `periodic` means
+    an O grid.
     """
 
     def __init__(
@@ -89,7 +90,7 @@ class Multigrid:
         return float(np.sqrt(level.residual(False) / level.x.size))
 
     def nested_iteration(self) -> float:
-        """Fill the finest level from coarser levels; return the residual of its transfinite interpolation."""
+        """Fill the finest level from coarser ones; return the residual of transfinite interpolation there."""
         last = len(self.levels) - 1
         self.interpolate_edges(last)
         start = self.residual(last)

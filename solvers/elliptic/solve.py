@@ -40,8 +40,8 @@ def solve(
 
     Parameters
     ----------
-    tol : residual that ends the iteration, relative to that of the transfinite interpolation. None: it ends
-        when its estimated error is below the discretisation error.
+    tol : residual that ends the iteration, relative to the residual of the transfinite interpolation. None:
+        the iteration ends when the estimated error of the solution is below the discretisation error.
     max_cycles : largest number of cycles.
     initial : a grid with the same node counts, in place of nested iteration.
 

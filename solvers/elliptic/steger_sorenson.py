@@ -44,8 +44,8 @@ def solve_steger_sorenson(
 
     Parameters
     ----------
-    heights : first-cell heights of controlled sides of a quad or O boundary, in its unit; 0 for a free one.
-        None: free heights at south and north, or at a body.
+    heights : first-cell heights at the controlled sides of a quad or O boundary, in the unit of the boundary;
+        0: the height is free. None: south and north, or a body, with free heights.
     angle : angle in degrees between an edge and the lines that leave it.
     tol, max_cycles, initial : as in `solve`.
 
@@ -74,7 +74,7 @@ def solve_steger_sorenson(
 
 
 def largest_lean(nodes: Floats, boundary: Boundary) -> float:
-    """Return the largest deviation from 90 degrees of lines at south and north of a quad, off corners."""
+    """Return the largest deviation from 90 degrees, in degrees, of lines at south and north, off corners."""
     sides = ("south", "north")
     edges = _edges(boundary, dict.fromkeys(sides, 0.0), 90.0, nodes)
     sine = max(float(np.abs(edge.errors(nodes)[0]).max()) for edge in edges)

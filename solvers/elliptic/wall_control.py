@@ -23,9 +23,9 @@ class ControlledEdge:
     """An edge (n, 2) at which angle and first-cell height are controlled.
 
     Sources φ(i, j) = p(i) e^{-b j} along the edge and ψ(i, j) = q(i) e^{-b j} across decay inwards. On a
-    uniform grid with steps dx and dy, a Fourier mode of p with wave number κ/dy rotates lines by (dy/dx) p/(b
-    + κ); one of q changes the logarithm of the height by q/(b + κ). Corrections are errors with modes times b
-    + κ.
+    uniform grid with steps dx and dy, a Fourier mode of p with wave number κ/dy rotates lines by
+    (dy/dx) p/(b + κ), and such a mode of q changes the logarithm of the height by q/(b + κ). A correction is
+    therefore the error, with each Fourier mode multiplied by b + κ.
 
     `across`: nodes from this edge to the opposite one; `periodic`: whether the edge is closed; `angle`: in
     degrees, between the edge and the lines that leave it; `height`: of first cells, 0 if it is free.
@@ -46,7 +46,7 @@ class ControlledEdge:
     def errors(self, nodes: Floats) -> tuple[Floats, Floats]:
         """Return two errors (n,): of the angle (as a sine), and of the logarithm of the first-cell height.
 
-        They decrease to 0 at corners and ends of the edge, where the angle cannot be prescribed.
+        Both are reduced to 0 at corners and ends of the edge, where the angle cannot be prescribed.
         """
         lines = lines_from_side(nodes, self.side)
         lean = leaning(lines, self._tangent) - math.cos(math.radians(self.angle))
@@ -113,7 +113,7 @@ def _stiffened(values: Floats, decay: float, flat: float, periodic: bool) -> Flo
 
 
 def lines_from_side(nodes: Floats, side: str) -> Floats:
-    """Return a view of `nodes` (ni, nj, 2) as lines that leave `side`: (along it, away from it, 2)."""
+    """Return a view (n, m, 2) of `nodes` (ni, nj, 2): n lines of m nodes that leave `side`."""
     lines = nodes if side in ("south", "north") else np.swapaxes(nodes, 0, 1)
     return lines[:, ::-1] if side in ("north", "east") else lines
 

@@ -22,7 +22,7 @@ TURNING_DEG = 25.0  # largest angle in degrees by which a wall turns along a cel
 
 @dataclass(frozen=True, eq=False)
 class Chords:
-    """The distinct edges of a layout's blocks, and chords: opposite edges, which have equally many cells."""
+    """The distinct edges of a layout's blocks, and its chords: sets of opposite edges with one cell count."""
 
     layout: Layout
     edges: tuple[Indices, ...]
@@ -77,8 +77,8 @@ class Chords:
     def multiple(self) -> Indices:
         """(chords,) divisors that the counts of a symmetric layout must have, to be symmetric when refined.
 
-        They are the number of mirrors of the ring for the chord around it, 2 for a chord along a wall with a
-        mirror through a corner, and 1 for others.
+        The divisor is the number of mirrors for the chord around a ring, 2 for a chord along a wall with a
+        mirror through a corner, and 1 for other chords.
         """
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):
@@ -140,7 +140,7 @@ class Chords:
         return along
 
     def cut_off(self) -> Floats:
-        """Return the area (e,), not negative, between the wall and the straight cell sides of each edge."""
+        """Return the area (e,) between wall and straight cell sides along each edge; 0 off walls."""
         lost = np.zeros(len(self.edges))
         part = np.linspace(0.0, 1.0, 5)
         for edge, loop, arcs in self._walls():
@@ -159,7 +159,7 @@ class Chords:
     def counts_for_size(self, size: float, least: Indices | None = None) -> Indices:
         """Return counts (chords,) for a cell size: the geometric mean of length / size over a chord's edges.
 
-        They are at least `least` (chords,), which is by default the property with this name.
+        Counts are at least `least` (chords,), by default the property `least`.
         """
         wanted = log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)

@@ -32,9 +32,9 @@ def refine(
 ) -> Layout:
     """Return the layout with `counts` (chords,) of cells along the edges of each of its `Chords`.
 
-    `places` has, for each edge, the positions (cells + 1,) of its new nodes as fractional indices of old
-    nodes; by default they are at equal steps. The new node nearest to a corner of the domain inside an edge
-    is moved to the corner. Layers are not preserved.
+    `places` has, for each edge, the positions (cells + 1,) of the new nodes as fractional indices of old
+    nodes; by default at equal steps. If a corner of the domain lies inside an edge, the nearest new node is
+    moved to the corner. Layers are not preserved.
     """
     chords = chords or Chords.of(layout)
     return _Refined(chords, counts, places).layout
@@ -49,7 +49,7 @@ def multiplied(layout: Layout, times: int) -> Layout:
 def refined(grid: Grid, times: int) -> Grid:
     """Return `grid` with each cell divided into `times` x `times` cells; its nodes are kept.
 
-    Raises InputError: a connection that covers only a part of a side; see also `layout_of`.
+    Raises InputError: a connection that covers only a part of a side; as `layout_of`.
     """
     for each in grid.connections:
         if not joins_whole_sides(grid, each):

@@ -37,7 +37,11 @@ class Near:
 
 @dataclass(frozen=True, eq=False)
 class SizeMetric:
-    """Target lengths of edges across and along walls, the axes of an ellipse for other directions."""
+    """Target lengths of edges by place and direction.
+
+    Lengths across and along a wall are half axes of an ellipse; in other directions, the length is its
+    radius.
+    """
 
     points: Floats  # (n, 2) points on walls and fronts
     normals: Floats  # (n, 2) unit normals at the points

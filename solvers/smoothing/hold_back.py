@@ -21,7 +21,7 @@ _NOTHING = 1.0, 0.05, 0.1
 
 @dataclass(frozen=True)
 class PlaneMeasures:
-    """The number of folded cells, and measures that must not become worse; a smaller `score` is better."""
+    """Measures of a planar grid that must not become larger, and a `score`, where smaller is better."""
 
     folded: int
     angle: float  # largest non-orthogonality of a face in degrees
@@ -60,7 +60,7 @@ _SMALL = 0.02  # fraction of the displacement below which a node is reset
 
 
 def held_back(grid: Grid, original: Layout, layout: Layout, before: PlaneMeasures) -> Grid | None:
-    """Return `grid`, whose layout is `original`, moved towards `layout` where that does not make it worse.
+    """Return `grid` of the layout `original`, moved towards `layout` where no measure becomes worse.
 
     `before` are the measures of `grid`. Return None if hardly any node would move.
     """

@@ -14,11 +14,11 @@ ROWS = 200  # largest number of rows of layers
 
 
 def with_layers(mesh: QuadMesh, original: QuadMesh) -> tuple[QuadMesh, Bools]:
-    """Return `mesh` with the layer heights of `original`, of the same quads, and a mask (n,) of layer nodes.
+    """Return `mesh` with the layer heights of `original`, and a mask (n,) of the nodes in layers.
 
-    Layers are rows of cells at the boundary that are `THIN`. Their nodes move along the line that leaves the
-    wall to the sum of the heights of `original` at the same arc length, unless they are in layers of two
-    walls.
+    Both meshes have the same quads. Layers are rows of `THIN` cells at the boundary. A node in a layer moves
+    along the line that leaves the wall, to the distance that it has in `original` at the same arc length of
+    the wall. Nodes in layers of two walls stay.
     """
     lines = _lines(original)
     held = np.zeros(len(original.nodes), dtype=bool)

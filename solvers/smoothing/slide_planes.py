@@ -15,7 +15,7 @@ _SAME = 1e-6  # largest difference of unit normals of the same plane
 
 
 def slides_of(grid: Grid, mesh: HexMesh) -> tuple[Slides, Bools]:
-    """Return the constraints of the outer nodes that slide, and the mask (n,) of these nodes.
+    """Return the planes or lines in which outer nodes slide, and the mask (n,) of these nodes.
 
     Nodes are fixed on patches that are not flat, on borders between different patches in one plane, and where
     three planes meet.

@@ -26,7 +26,7 @@ _AS_GOOD = "the grid is kept as it was: its optimum is no better"
 
 @timed
 def smooth(grid: Grid, *, slide: bool = False, iterations: int = ITERATIONS) -> Solution:
-    """Return `grid` with its nodes moved to the optimum of all blocks; boundary nodes may `slide`.
+    """Return `grid` with its nodes at the variational optimum of all blocks; boundary nodes may `slide`.
 
     Of two optima, with and without evening out jumps of the spacing between blocks, the better one is used.
     Displacements are reduced where the largest non-orthogonality or skewness of a face, or the mean deviation

@@ -28,7 +28,7 @@ class VolumeLayers:
 
 
 def layers_of(mesh: HexMesh, moves: Bools, targets: Targets) -> list[VolumeLayers]:
-    """Return the layers at outer sides of a mesh with free nodes `moves` (n,)."""
+    """Return the layers of thin cells at outer sides of a mesh; `moves` (n,) is the mask of free nodes."""
     layers = []
     for number, (block, wanted) in enumerate(zip(mesh.blocks, targets, strict=True)):
         for side, (axis, end) in PLACES.items():
@@ -122,7 +122,7 @@ def _at(points: Floats, place: Floats, wanted: Floats) -> Floats:
 
 
 def with_first_heights(nodes: Floats, first: Indices, heights: Floats) -> Floats:
-    """Return `nodes` with the second node of each edge in `first` (m, 2) exactly `heights` (m,) away."""
+    """Return `nodes` (n, 3) with edges `first` (m, 2) of lengths `heights` (m,); second nodes move."""
     foot = nodes[first[:, 0]]
     way = nodes[first[:, 1]] - foot
     moved = nodes.copy()

@@ -98,7 +98,7 @@ def _thinned(connection: Connection, kept: tuple[tuple[Indices, ...], ...]) -> C
 
 
 def carried(mesh: HexMesh, copy: CoarserCopy, values: Floats, targets: Targets) -> Floats:
-    """Return `values` (m, 3) of the copy interpolated to all nodes (n, 3), linearly in target lengths."""
+    """Return `values` (m, 3) at the nodes of `copy`, interpolated to all nodes (n, 3) of `mesh`."""
     result = np.empty((len(mesh.nodes), 3))
     for block, coarse, kept, wanted in zip(mesh.blocks, copy.mesh.blocks, copy.kept, targets, strict=True):
         here = values[coarse]

@@ -12,9 +12,10 @@ _MOST, _SMALL = 500, 1e-8  # largest number of iterations, and the relative resi
 
 
 def harmonic(mesh: HexMesh, moves: Bools) -> Floats:
-    """Return the nodes (n, 3) of a mesh, those of the mask `moves` (n,) at the means of their neighbours.
+    """Return the nodes (n, 3) of a mesh; those of the mask `moves` (n,) are means of neighbouring nodes.
 
-    Their coordinates satisfy Laplace's equation on the graph of edges; all other nodes stay where they are.
+    The coordinates of moved nodes satisfy Laplace's equation on the graph of edges; all other nodes stay
+    where they are.
     """
     edges = _edges(mesh)
     start = mesh.nodes.copy()

@@ -36,7 +36,7 @@ _AS_GOOD = "the grid is kept as it was: its optimum is no better"
 
 @timed
 def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = False) -> Solution:
-    """Return `grid` with its nodes moved to the optimum of all blocks.
+    """Return `grid` with its nodes moved to the variational optimum of all blocks.
 
     Nodes of outer and periodic sides are bitwise unchanged, except that with `slide` the nodes of flat
     patches move in their planes. `iterations` is the largest number of iterations. Displacements are reduced

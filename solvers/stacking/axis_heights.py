@@ -27,10 +27,10 @@ _TIE = 1e-9  # so that a half is rounded alike on every processor
 def axis_heights(
     sections: Floats, nodes: int | None, panels: Sequence[int | None]
 ) -> tuple[Floats, tuple[str, ...]]:
-    """Return z (n,) from the first of the `sections` to the last, with a node at each, and notes.
+    """Return z (n,) of nodes along the axis, and notes; each height in `sections` is the z of a node.
 
-    None for `nodes` is 49, or as many more as uneven sections need. `panels` are given numbers of cells
-    between sections.
+    `nodes`: number of nodes; None: 49, or more if sections are uneven. `panels`: number of cells between each
+    two sections, or None.
 
     Raises InputError: see `span_heights`.
     """

@@ -18,7 +18,7 @@ def with_counts(
 ) -> tuple[StackRequest, tuple[str, ...]]:
     """Return the request with node counts for about `cells` cells, and notes.
 
-    Lines away from the wall have `rows` cells. Node counts that the request has are kept.
+    Lines away from the wall have `rows` cells. Node counts that the request sets are kept.
 
     Raises InputError: cells, nodes around and nodes along the span are all given.
     """

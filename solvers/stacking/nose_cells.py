@@ -22,12 +22,12 @@ _BESIDE = 4  # cells on each side of the nose whose angles count
 
 
 def nose_cell(shape: Airfoil, cells: int) -> float | None:
-    """Return the length in chords of nose cells, with `cells` cells on a side; None if these are too few."""
+    """Return the length in chords of nose cells, with `cells` cells on a side; None for too few cells."""
     return float(np.interp(TURN, *_turns(shape, cells, 1.0))) if cells >= _FEWEST else None
 
 
 def nose_note(shape: Airfoil, cells: int, nose: float | None) -> str:
-    """Return a note if nose cells turn much and shorter ones would turn less, else an empty text.
+    """Return a note if the angle between nose cells is large and shorter cells would reduce it, else ''.
 
     `cells` is the number of cells on a side, `nose` a prescribed length of nose cells in chords.
     """

@@ -53,9 +53,10 @@ class Around:
         return TanhLaw.fitted(self.cells, *self.ends(height, length, nose))
 
     def ends(self, height: float, length: float, nose: float | None = None) -> tuple[float, float]:
-        """Return the lengths of the cells next to the base and at the nose, in lengths of the side.
+        """Return the lengths of the cells next to the base and at the nose, relative to the side's length.
 
-        `nose` is the latter in chords if it is not prescribed; None: 0.35 mean cells.
+        `height` of the base, `length` of the side and `nose` are in chords. `nose` is the length of nose
+        cells unless the field `nose` prescribes it; None: 0.35 mean cells.
         """
         edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
         first = edge if self.edge is None else self.edge / length

@@ -18,10 +18,10 @@ _EVEN = 1e-6  # smallest relative decrease of the largest growth for which a cel
 def span_heights(
     sections: Floats, nodes: int, last: float | None, panels: Sequence[int | None] = ()
 ) -> Floats:
-    """Return z (nodes,) from the first of the `sections` to the last, with a node at each.
+    """Return z (nodes,) of nodes along the span; each height in `sections` is the z of a node.
 
-    Cells decrease towards the tip to `last`, or are nearly equal. `panels` are given numbers of cells between
-    sections, else None; the other panels share the remaining cells.
+    Cells decrease towards the tip to the length `last`; None: cells are nearly equal. `panels`: number of
+    cells between each two sections, or None; the panels with None share the remaining cells.
 
     Raises InputError: more sections than nodes; numbers of cells that do not fit.
     """
@@ -55,7 +55,7 @@ def _moved(cells: list[int], source: int, target: int) -> list[int]:
 
 
 def growth_at(heights: Floats) -> Floats:
-    """Return the ratio (n - 2,), at least 1, of the cells at each inner node of `heights` (n,)."""
+    """Return the ratio (n - 2,), at least 1, of the two cells at each inner node of `heights` (n,)."""
     steps = np.diff(heights)
     ratio = steps[1:] / steps[:-1]
     return np.maximum(ratio, 1.0 / ratio)
@@ -83,7 +83,7 @@ def _cells(own: Indices, panels: Sequence[int | None], free: Sequence[int]) -> l
 
 
 def by_panel(sections: Floats, cells: Sequence[int], last: float | None) -> Floats:
-    """Return heights with these `cells` between sections, whose lengths change smoothly there."""
+    """Return heights with `cells` cells between sections; cell lengths change smoothly at sections."""
     lengths = np.diff(sections)
     means = lengths / np.array(cells)
     ends = np.concatenate([means[:1], np.sqrt(means[1:] * means[:-1]), means[-1:]])

@@ -48,7 +48,7 @@ class Cap:
         """Return nodes of the ring (n, rows + 1, 3) and of the core (n // 2 - 2 short + 1, 2 short + 1, 3).
 
         The closed `loop` (n, 3) is in a plane of constant z and runs from the trailing edge along the upper
-        side first. Both normals point to +z, where the cap is.
+        side first. Normals of both patches point to +z, where the cap is.
         """
         made = {(1.0, 1.0): self._placed(loop, 1.0, 1.0)}
         best = 1.0, 1.0

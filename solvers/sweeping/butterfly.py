@@ -31,7 +31,7 @@ Sides: TypeAlias = Sequence[Floats]
 
 
 class FiveBlocks(NamedTuple):
-    """Division of closed curves: size of the core, rows of the ring, alignment with radii."""
+    """Division of closed curves: relative core size, rows of the ring, alignment with radii, 0 to 1."""
 
     core: float
     rows: int
@@ -46,7 +46,7 @@ class CrossSection:
     first: float | None = None  # first-cell height at the wall; None: about that of the core's cells
 
     def inner(self, core: float, radial: float) -> list[Floats]:
-        """Return the nodes (n, 2) on the four sides of a core with this size and alignment."""
+        """Return the nodes (n, 2) on the four sides of a core; arguments as in `FiveBlocks`."""
         middle = np.concatenate([arc[:-1] for arc in self.arcs]).mean(axis=0)
         u = np.linspace(-1.0, 1.0, len(self.arcs[0]))
         t = (0.5 + 0.5 * ((1.0 - radial) * u + radial * tan(0.25 * np.pi * u)))[:, None]
@@ -57,7 +57,7 @@ class CrossSection:
         return [middle + core * ((1.0 - bend) * line + bend * arc - middle) for line, arc in both]
 
     def across(self, core: float, radial: float, *, eighth: bool = False) -> tuple[Floats, Floats]:
-        """Return the lengths (k,) of lines through the ring, and of the core cells (k,) at their ends.
+        """Return the lengths (k,) of lines through the ring, and of the core cells (k,) at the ends of lines.
 
         `eighth`: only an eighth of the lines, which suffices for a circle.
         """
@@ -82,9 +82,10 @@ class CrossSection:
 def planned(
     sections: Sequence[CrossSection], growth: float = GROWTH, rows: int | None = None, *, radial: bool = False
 ) -> FiveBlocks:
-    """Return one division for all sections with growth up to `growth`, or as little as possible.
+    """Return one division for all sections: cells grow by at most `growth`, or as little as possible.
 
-    None for `rows`: they are chosen too. `radial`, for circles, aligns the ring's lines with radii.
+    `rows`: rows of the ring; None: the smallest sufficient number. `radial`, for circles, aligns the ring's
+    lines with radii.
     """
     best, least = FiveBlocks(_SIZES[0], rows or 1), np.inf
     for core in _SIZES:

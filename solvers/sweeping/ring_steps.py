@@ -15,10 +15,10 @@ _CLOSE = 1e-9  # of the length, to which steps fill it
 
 
 def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -> Floats:
-    """Return steps (k, rows) that fill `lengths` (k,) and end in cells of length `sizes` (k,).
+    """Return the steps (k, rows) along k lines of `lengths` (k,) that end at cells of `sizes` (k,).
 
-    They begin with `first`; None: all ratios along a line are equal. Beyond the ratio `LARGEST` they do not
-    fill the length (see `largest_ratio`).
+    Steps begin with `first`; None: all ratios along a line are equal. If a ratio above `LARGEST` were needed,
+    steps do not fill the length (see `largest_ratio`).
     """
     most = math.log(LARGEST)
     low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)
@@ -51,7 +51,7 @@ def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: flo
 
 
 def largest_ratio(lengths: Floats, sizes: Floats, steps: Floats) -> float:
-    """Return the largest ratio of neighbouring cells along lines, with the cells at their ends.
+    """Return the largest ratio of neighbouring cells along lines, including the cells beyond the lines.
 
     Infinite if the steps (k, rows) do not fill the `lengths` (k,).
     """

@@ -10,9 +10,9 @@ from meshonet.solvers.volumes.near_faces import closed_place
 
 
 def check_corners(faces: SixFaces) -> None:
-    """Raise InputError, with the node, if `faces` fold a cell for any inner nodes.
+    """Raise InputError, with the node, if `faces` fold a cell wherever the inner nodes are.
 
-    At an edge of the volume the three edges of a cell's corner lie in two faces.
+    At an edge of the volume, the three cell edges that meet in a node of the edge lie in two faces.
     """
     check_hand(faces)
     worst = []

@@ -18,9 +18,10 @@ REACH = 12.0
 
 
 def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, ...]:
-    """Restore first cells of `planes` (3, ni, nj, nk), in place; return the faces where it was done.
+    """Restore first-cell heights in `planes` (3, ni, nj, nk), in place; return the names of these faces.
 
-    These have clustered nodes. First-cell heights at a face are interpolated between its four edges'.
+    Heights are restored at faces with clustered nodes. The height at a node of a face is interpolated between
+    the heights at the four edges of the face.
     """
     kept: list[str] = []
     for axis in range(3):

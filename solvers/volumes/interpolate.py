@@ -36,7 +36,7 @@ def arc_laws(faces: SixFaces) -> Laws:
 
 
 def mean_laws(laws: Laws) -> Laws:
-    """Return laws of which each direction has four times the mean of its four."""
+    """Return laws in which the four edges of a direction all have their mean parameters."""
     xi, eta, zeta = (np.tile(law.mean(axis=0), (4, 1)) for law in laws)
     return xi, eta, zeta
 
@@ -69,8 +69,8 @@ def interpolate(
 ) -> Floats:
     """Return nodes (ni, nj, nk, 3) by interpolation along three directions at `laws`, plus a `spline`.
 
-    They are stored in `out` (3, ni, nj, nk) if given; allocation costs as much as the computation. Gordon and
-    Hall, Int. J. Numer. Methods Eng. 7 (1973) 461-477.
+    Nodes are stored in `out` (3, ni, nj, nk) if given, since allocation costs as much as the computation.
+    Gordon and Hall, Int. J. Numer. Methods Eng. 7 (1973) 461-477.
     """
     planes = np.empty((3, *faces.counts)) if out is None else out
     sides = tuple(np.moveaxis(face, -1, 0) for face in faces.faces)

@@ -26,7 +26,7 @@ SWEEPS, FIRST = 12, 30  # on the coarsest level: in a cycle, and to start with
 class Transfer:
     """Transfer along one direction between a level and the next coarser one.
 
-    Each operator has the first node and the weights of each result.
+    Each operator has, for each result, the index of the first node that contributes, and the weights.
     """
 
     up: tuple[NDArray[np.intp], Floats]  # (n, 2) linear interpolation to the fine nodes
@@ -35,7 +35,7 @@ class Transfer:
 
 
 class Level:
-    """Nodes of a level, and the transfer to the next coarser one."""
+    """Nodes of a level, and the transfer to the next coarser level along each direction."""
 
     def __init__(self, faces: SixFaces, *, coarse: bool) -> None:
         self.faces = faces
@@ -74,8 +74,8 @@ class VolumeMultigrid:
     def nested(self) -> tuple[Floats, float, float]:
         """Return x (3, ni, nj, nk) after a cycle on each level from the coarsest on, and two numbers.
 
-        They are the largest difference of a coordinate between the two finest levels, about three
-        discretisation errors, and the largest change of a coordinate in the last cycle.
+        The first number is the largest difference of a coordinate between the two finest levels, about three
+        discretisation errors. The second is the largest change of a coordinate in the last cycle.
         """
         last = len(self.levels) - 1
         x = self.levels[last].start.copy()
@@ -95,8 +95,8 @@ class VolumeMultigrid:
     def cycle(self, x: Floats) -> tuple[float, float]:
         """Do one V cycle on `x` (3, ni, nj, nk), in place.
 
-        Returns the norm of the residual before it, and the largest change of a coordinate at every third
-        node.
+        Returns the norm of the residual before the cycle, and the largest change of a coordinate, seen at
+        every third node.
         """
         some = x[:, ::SOME, ::SOME, ::SOME]
         before = some.copy()

@@ -20,7 +20,8 @@ Ranges = list[tuple[int, int]]
 def closed_place(faces: SixFaces) -> Place | None:
     """Return indices i, j, k of an inner node that has no valid position, or None.
 
-    Half-spaces, four for each face next to a node, must have a common point: kernels/volumes/near_faces.c.
+    A node next to faces has four half-spaces for each face, which must have a common point
+    (kernels/volumes/near_faces.c).
     """
     for sides, ranges in next_to_faces(faces.counts):
         walls = tuple((np.ascontiguousarray(getattr(faces, side)), *PLACES[side]) for side in sides)

@@ -14,7 +14,8 @@ from meshonet.solvers.energy.hexes import HexProblem, Slides, descent_of
 class PlanesDescent(HexProblem):
     """Minimisation over the inner nodes of planes (3, ni, nj, nk), in place.
 
-    Target lengths are means; with `cubes` the same in all directions.
+    The target length of edges in a direction is the mean step along the volume's edges. With `cubes` it is
+    the same in all directions.
     """
 
     def __init__(self, planes: Floats, cubes: bool = False) -> None:
@@ -41,7 +42,7 @@ class PlanesDescent(HexProblem):
 
 
 def inverse_lengths(planes: Floats) -> tuple[float, float, float]:
-    """Return 1 / mean step along the volume's edges for each direction of `planes` (3, ni, nj, nk)."""
+    """Return, for each direction of `planes` (3, ni, nj, nk), 1 / mean step along the volume's edges."""
     lengths = []
     for axis in range(3):
         rows = np.moveaxis(planes, axis + 1, -1)

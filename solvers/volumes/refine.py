@@ -16,7 +16,7 @@ from meshonet.solvers.volumes.interpolate import Laws, Spline, interpolate, unif
 
 
 def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws: Laws) -> Floats:
-    """Return nodes (3, ni, nj, nk) inside `faces` at the parameters `laws`, four equal ones per direction.
+    """Return nodes (3, ni, nj, nk) inside `faces` at `laws`, whose four rows per direction are equal.
 
     `coarse` (3, mi, mj, mk) are nodes inside `coarse_faces`, at equal steps of the parameters.
     """

@@ -48,11 +48,11 @@ def variational(
     Parameters
     ----------
     max_cycles : largest number of iterations on the finest level that is solved.
-    coarse : most nodes per direction of that level; "auto": 33; None: all nodes of the faces.
+    coarse : most nodes per direction of the finest level; "auto": 33; None: all nodes of the faces.
     energy : ``angles``, for right angles and gradual changes of lengths, or ``shape``, for cells like cubes.
 
-    Raises InputError: cells are folded because of the faces, for any inner nodes (the error names the node);
-    an edge has no length; a setting is not positive.
+    Raises InputError: the faces fold cells wherever inner nodes are (the error names the node); an edge has
+    no length; a setting is not positive.
     """
     begun = time.perf_counter()
     _check(max_cycles, coarse, energy)

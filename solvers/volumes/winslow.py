@@ -32,8 +32,8 @@ def winslow(faces: SixFaces, *, tol: float | None = None, max_cycles: int | None
     Cycles end when they change nodes by less than the discretisation error, or when the residual is `tol`
     times that of the transfinite interpolation.
 
-    Raises InputError: cells are folded because of the faces; a setting is not positive; SolverError: cycles
-    diverge.
+    Raises InputError: the faces fold cells wherever inner nodes are; a setting is not positive; SolverError:
+    cycles diverge.
     """
     check_tolerances(tol, max_cycles)
     check_corners(faces)

@@ -21,7 +21,7 @@ NEAR, FAR = 4.0, 10.0
 
 
 def openings(z: Any, xp: Any) -> Any:
-    """Return the damping (.., 2, 2), 0 to 1, at the four corners of planar grids.
+    """Return how much splines are damped (.., 2, 2), 0 to 1, at the four corners of planar grids.
 
     `z` (.., m, n) are the nodes as complex numbers, arrays of the module `xp`, numpy or torch.
     """

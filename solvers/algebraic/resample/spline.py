@@ -72,9 +72,10 @@ def between(values: Floats, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def places(m: int, n: int) -> tuple[NDArray[np.intp], Floats]:
-    """Return, for n uniform places over m knots, the knot before each (n,) and four weights (n, 4).
+    """Return, for n uniform places over m knots, the index (n,) of the knot before, and weights (n, 4).
 
-    The weights are those of the values f and second derivatives M at this knot and the next, t between them::
+    The weights multiply f_k, f_k+1, M_k and M_k+1: values f and second derivatives M at the knot before and
+    at the next. With t from 0 to 1 between the knots, the spline is ::
 
         s = (1-t) f_k + t f_k+1 - t (1-t) (2-t)/6 M_k - t (1-t) (1+t)/6 M_k+1
     """
@@ -88,7 +89,7 @@ def places(m: int, n: int) -> tuple[NDArray[np.intp], Floats]:
 
 @lru_cache(maxsize=16)
 def spline_matrix(m: int, n: int, periodic: bool = False) -> Floats:
-    """Return the matrix (n, m) from values at m uniform knots to those of their spline at n uniform places.
+    """Return the matrix (n, m) from values at m uniform knots to spline values at n uniform places.
 
     >>> cubes = np.arange(5.0) ** 3
     >>> np.abs(spline_matrix(5, 9) @ cubes - np.linspace(0, 4, 9) ** 3).max() < 1e-12
