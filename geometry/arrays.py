@@ -34,7 +34,7 @@ _MANY, _SAMPLE = 1 << 17, 1 << 14  # values of which ranks are found by a sample
 
 
 def distinct(values: AnyArray) -> AnyArray:
-    """Return the sorted distinct values of a one-dimensional array; np.unique would load numpy.ma (25 ms)."""
+    """Return the sorted distinct values of an array (n,), as np.unique, which would load numpy.ma (25 ms)."""
     ordered = np.sort(values)
     return ordered[np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)]]
 
@@ -84,7 +84,7 @@ def rolled(values: AnyArray, by: int) -> Any:
 
 
 def cross2(u: Floats, v: Floats) -> Floats:
-    """Return the products u x v (...) of plane vectors (..., 2)."""
+    """Return the cross products u x v (...), scalars, of plane vectors (..., 2)."""
     return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
 
 
@@ -108,7 +108,9 @@ def wrapped(parts: Floats, least: float = -0.5) -> Floats:
 
 
 def shortest_ways(ways: Floats, length: float | Floats) -> Floats:
-    """Return `ways` (...) along closed curves, each replaced by the shortest way between the same points.
+    """Return the signed distances (...) by the shorter way around closed curves, for distances `ways` (...).
+
+    `length` is the length of the curves.
 
     >>> shortest_ways(np.array([3.0, -3.0, 1.0]), 4.0).tolist()
     [-1.0, 1.0, 1.0]
@@ -135,19 +137,19 @@ def smooth_step(t: Floats) -> Floats:
 
 
 def running_sums(values: Floats, count: int) -> Floats:
-    """Return the sums (n - count + 1,) of every `count` consecutive `values` (n,)."""
+    """Return the sums (n - count + 1,) of each run of `count` consecutive `values` (n,)."""
     last = len(values) - count + 1
     return np.asarray(sum(values[k : last + k] for k in range(count)))
 
 
 def along_and_across(vectors: Floats, axis: Floats) -> tuple[Floats, Floats]:
-    """Return the scalar products (...) of vectors (..., 2) with `axis` (2,), and with `axis` turned left."""
+    """Return the scalar products (...) of `vectors` (..., 2) with `axis` (2,), and with its left normal."""
     x, y = vectors[..., 0], vectors[..., 1]
     return x * axis[0] + y * axis[1], y * axis[0] - x * axis[1]
 
 
 def middle(values: Floats) -> float:
-    """Return the median of a one-dimensional array without NaN; np.median would load numpy.ma (25 ms)."""
+    """Return the median of an array (n,) without NaN, as np.median, which would load numpy.ma (25 ms)."""
     ordered, half = np.sort(values), len(values) // 2
     return float(ordered[half] if len(values) % 2 else 0.5 * (ordered[half - 1] + ordered[half]))
 

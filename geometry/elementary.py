@@ -87,14 +87,15 @@ def geomspace(start: float, stop: float, count: int) -> Floats:
 
 
 def functions_of(xp: Any) -> Any:
-    """Return the module with elementary functions for arrays of `xp`: this one for numpy, else torch."""
+    """Return the module with elementary functions for arrays of `xp`: `elementary` for numpy, else torch."""
     return sys.modules[__name__] if xp is np else xp
 
 
 def product(a: Any, b: Any) -> Any:
     """Return the matrix product ``a @ b`` in double precision, with sums in a fixed order.
 
-    For a stack of matrices `b` (..., inner, columns), inner terms are summed one by one, and should be few.
+    For a stack of matrices `b` (..., inner, columns), the terms of a sum are added one by one; `inner` should
+    be small.
     """
     left, right = np.asarray(a), np.asarray(b)
     if left.dtype.kind == "c" or right.dtype.kind == "c":

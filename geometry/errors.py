@@ -69,7 +69,7 @@ class InputError(MeshonetError):
 
 
 def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
-    """Return ``did you mean ...?`` with the word of `known` most similar to `word`, or an empty string.
+    """Return ``did you mean ...?`` with the word in `known` most similar to `word`, or ''.
 
     The similarity ratio, 0 to 1, must be at least `likeness`, unless `word` begins with a word of `known`.
 
@@ -88,7 +88,7 @@ def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
 
 @contextmanager
 def in_source(name: str) -> Iterator[None]:
-    """Within the ``with`` block, set the source of input errors that have none."""
+    """Within the ``with`` block, set `name` as the source of input errors without a source."""
     try:
         yield
     except InputError as error:
@@ -98,7 +98,7 @@ def in_source(name: str) -> Iterator[None]:
 
 @contextmanager
 def in_place(place: str) -> Iterator[None]:
-    """Within the ``with`` block, set the place of input errors that have none."""
+    """Within the ``with`` block, set `place` as the place of input errors without a place."""
     try:
         yield
     except InputError as error:

@@ -51,7 +51,7 @@ class Helpers:
                 thread.join()
 
     def run(self, jobs: Sequence[Callable[[], Any]]) -> list[Any]:
-        """Return the results of all `jobs`, in their order; if jobs fail, raise the error of the first."""
+        """Return the results of all `jobs`, in the given order; raise the error of the first failed job."""
         own = _Jobs(jobs)
         with self._change:
             self._open.append(own)

@@ -7,7 +7,7 @@ UNJUDGED = {"verdict": None, "limits_exceeded": None}
 
 
 class Change(str):
-    """A note that says how a shape was changed, or which part of its file was left out."""
+    """A note that says how a shape was changed, or which part of the shape's file was left out."""
 
     __slots__ = ()
 
@@ -19,7 +19,7 @@ class Advice(str):
 
 
 def departure_note(what: str, off: float, unit: str = "") -> str:
-    """Return the note that `what`, a smooth curve, leaves the polygon through its points by `off`."""
+    """Return a note that the smooth curve `what` is up to `off` away from the polygon through its points."""
     lines = f"up to {off:.2g}{unit} away from straight lines between them"
     return f"{what} through the points, {lines}; give more points where it matters"
 

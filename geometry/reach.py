@@ -11,12 +11,12 @@ MOST_REFINED = 200_000_000
 def check_reach(
     count: float, things: str, cause: str, remedy: str, *, most: float = MOST_CELLS, parameter: str = ""
 ) -> None:
-    """Raise InputError if a request needs more than `most` things.
+    """Raise InputError if a request needs more than `most` cells, nodes or the like.
 
     Parameters
     ----------
-    count, things : number that it needs, and their name, such as cells.
-    cause, remedy : what needs them, and what to change.
+    count, things : number that the request needs, and what is counted, such as cells.
+    cause, remedy : texts of the error: what needs so many, and what to change.
     parameter : Python name of the setting.
     """
     if not count <= most:

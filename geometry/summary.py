@@ -23,8 +23,8 @@ class Summary:
 class Quality:
     """Quality of a grid: numbers of cells and of folded cells, and every metric by name.
 
-    `bezier_folded`: cells of volumes with a Bezier coefficient of the Jacobian that is not positive, which
-    may be folded inside; None in the plane and on surfaces.
+    `bezier_folded`: number of cells of volumes that may be folded inside, because a Bezier coefficient of the
+    Jacobian is not positive; None in the plane and on surfaces.
     """
 
     cells: int

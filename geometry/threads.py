@@ -42,7 +42,7 @@ def thread_count() -> int:
 
 
 def threads_for(nodes: int, visits: int = 1) -> int:
-    """Return the number of threads for a loop that visits `nodes` nodes `visits` times; 1 if it is short."""
+    """Return the number of threads for a loop that visits `nodes` nodes `visits` times; 1 for few visits."""
     return max(min(thread_count(), visits * nodes // NODES_EACH), 1)
 
 
@@ -75,9 +75,10 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
 
 
 def over_blocks(work: Callable[[Item], Made], items: Sequence[Item], nodes: Sequence[int]) -> list[Made]:
-    """Return the results of `work` for `items` with numbers of `nodes`.
+    """Return the results of `work` for each of `items`; `nodes` are the node counts of the items.
 
-    Items with many nodes, whose kernels use all threads, are processed one by one, the others together.
+    Items with many nodes are processed one by one, since their kernels use all threads; other items
+    are processed together.
     """
     many = [threads_for(count) > 1 for count in nodes]
     few = [item for item, alone in zip(items, many, strict=True) if not alone]

@@ -75,9 +75,10 @@ def nearest_whole(values: Floats) -> Floats:
 
 
 def made_unlike(costs: Floats) -> Floats:
-    """Return costs (..., n), perturbed by index so that sums of different costs are hardly ever equal.
+    """Return `costs` (..., n) with perturbations, so that sums of different costs are hardly ever equal.
 
-    A linear programme then has one solution. The perturbation is far below real differences.
+    A linear programme then has one solution. Perturbations differ by index, and are far below real
+    differences.
     """
     digits = np.mod(1e3 * np.sqrt(np.arange(costs.size) + 0.618), 1.0)
     return costs + _NOISE * np.abs(costs) * digits.reshape(costs.shape)

@@ -20,14 +20,14 @@ BEND = np.radians(25.0)  # a turn at a point of a curve that makes it a corner
 
 
 class BodyCurve(NamedTuple):
-    """A closed curve, counter-clockwise around 0, with its first point once; `corners` are indices."""
+    """A closed curve, counter-clockwise around 0, first point not repeated; `corners` are point indices."""
 
     points: Complexes
     corners: tuple[int, ...] = ()
 
 
 def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
-    """Return a random O boundary: a simple body with centroid 0, and a far field some distance away."""
+    """Return a random O boundary: a simple body with centroid 0, and a far field around the body."""
     while True:
         body, far = _body(rng), _far(rng)
         placed = _placed_within(body, far, rng)

@@ -57,7 +57,7 @@ class Draw:
 
 @dataclass(frozen=True)
 class Draws(Sequence[Draw]):
-    """A sequence of `length` members of a family with their splits, made when used."""
+    """A sequence of `length` members of a family, each with its split; a member is made when it is used."""
 
     first: Draw
     length: int
@@ -82,9 +82,9 @@ def draws(
 ) -> Draws:
     """Return `count` members of the family `name`; each boundary is generated at its first use.
 
-    `spread` is the range ``A:B`` of the parameter, by default the family's. `way` is how members are split
-    (`split`), if at all. Raises InputError: an unknown family; an invalid range, or one beyond the family's;
-    members that cannot be split.
+    `spread` is the range ``A:B`` of the parameter; None: the default range of the family. `way` is how
+    members are split (`split`); None: they are not split. Raises InputError: an unknown family; an invalid
+    range, or a range beyond the limits of the family; members that cannot be split.
     """
     if name not in (*FAMILIES, *RANDOM):
         known = "use one of " + ", ".join((*FAMILIES, *RANDOM))

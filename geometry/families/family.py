@@ -34,7 +34,7 @@ class Family:
     to_low: bool = False  # whether extrapolation tests low values of the parameter instead of high values
 
     def boundary(self, parameter: float, ni: int, nj: int) -> Boundary:
-        """Return the member with the given parameter and ni by nj nodes, named after both.
+        """Return the member with `parameter` and ni x nj nodes; its name has the family and the parameter.
 
         Raises InputError: a parameter out of range, or too few nodes for the corners.
         """
@@ -58,7 +58,7 @@ def family(name: str) -> Family:
 def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
     """Return n nodes (n, 2) along a polyline, in nearly equal steps; every corner is bitwise a node.
 
-    With `like`, another polyline, corners have the same node indices as its corners.
+    With `like`, corners have the same node indices as the corners of the polyline `like`.
 
     >>> polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], 5).tolist()
     [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]]
@@ -83,7 +83,8 @@ def arch(height: float, ni: int, nj: int) -> Boundary:
 def hexagon(angle: float, ni: int, nj: int) -> Boundary:
     """Case 2: return a square with a kink of `angle` degrees in its top and in its bottom.
 
-    The angle is that inside the kinks at (1/2, 1 + h) and (1/2, -h): 90 degrees for h = 1/2.
+    The kinks are at (1/2, 1 + h) and (1/2, -h). `angle` is measured inside the domain: 90 degrees for
+    h = 1/2.
     """
     h = 0.5 / math.tan(math.radians(0.5 * angle))
     south = polyline([(0.0, 0.0), (0.5, -h), (1.0, 0.0)], ni)
@@ -92,11 +93,11 @@ def hexagon(angle: float, ni: int, nj: int) -> Boundary:
 
 
 def wrench(opening: float, ni: int, nj: int) -> Boundary:
-    """Case 3: return a unit square with a jaw in its top, `opening` wide.
+    """Case 3: return a unit square with a notch, `opening` wide, in its top, like the jaw of a wrench.
 
-    The jaw is centred at x = 1/2, from y = 1 down to 0.6; its lips end at y = 1.15, 0.05 outside of it.
-    Elliptic grids fold at its lower corners. Corners have the node indices of an opening of 0.3, so that
-    nodes depend smoothly on the opening.
+    The notch is centred at x = 1/2 and runs from y = 1 down to 0.6. The tips at both sides of the notch are
+    at y = 1.15, at a distance of 0.05 in x. Elliptic grids fold at the lower corners of the notch. Corners
+    have the node indices of an opening of 0.3, so that nodes depend smoothly on the opening.
     """
     south, north = polyline([(0.0, 0.0), (1.0, 0.0)], ni), polyline(_jaw(opening), ni, like=_jaw(0.3))
     return _upright(south, north, nj, f"wrench-{opening:.6g}")
@@ -125,7 +126,7 @@ def semicircle(centre: float, ni: int, nj: int) -> Boundary:
 
 
 def airfoil(ratio: float, ni: int, nj: int) -> Boundary:
-    """Case 5: return NACA 00xx, `ratio` chords thick, trailing edge closed, in a circle of 15 chords."""
+    """Case 5: return a closed NACA 00xx airfoil, `ratio` chords thick, in a circle of radius 15 chords."""
     # imported here since the other families do not need them
     from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
     from meshonet.geometry.shapes.airfoil.naca import POINTS, thickness

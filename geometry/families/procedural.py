@@ -25,7 +25,7 @@ ORDER = 6  # order of the Bernstein polynomials
 
 
 def boundary(rng: np.random.Generator, ni: int, nj: int, spacing: Spacing | None = None) -> Boundary:
-    """Return a random airfoil's O boundary, with a far field at 4 to 60 chords and this `spacing`."""
+    """Return a random airfoil's O boundary with far field at 4 to 60 chords; `spacing`: wall distribution."""
     while True:
         settings: dict[str, Any] = {"spacing": spacing} if spacing else {}
         far_field = math.exp(rng.uniform(math.log(4.0), math.log(60.0)))

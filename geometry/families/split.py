@@ -15,11 +15,12 @@ SHARE = 1 / 6  # fraction of test members: 6 of 36 in the settings of the paper'
 def split(
     parameters: Sequence[float], way: str, *, seed: int = 0, share: float = SHARE, low: bool = False
 ) -> tuple[str, ...]:
-    """Return ``train`` or ``test`` for each member, by the `way`, one of `WAYS`.
+    """Return ``train`` or ``test`` for each of `parameters`; `way` is one of `WAYS`.
 
-    ``interpolation`` tests middle values of the parameter, ``extrapolation`` the highest (with `low` the
-    lowest), ``random`` any. `share` is the fraction of test members: at least one, with at least two left for
-    training. Raises InputError: an unknown way; fewer than three members; equal parameters, unless random.
+    ``interpolation`` tests members with middle values of the parameter, ``extrapolation`` members with the
+    highest values (with `low`, the lowest), ``random`` a random choice. `share` is the fraction of test
+    members: at least one, with at least two left for training. Raises InputError: an unknown way; fewer than
+    three members; equal parameters, unless random.
 
     >>> split([0.3, 0.1, 0.2], "extrapolation")
     ('test', 'train', 'train')

@@ -49,9 +49,9 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     - by more than 40 degrees and twice as much as at both neighbouring points;
     - by more than 75 degrees.
 
-    Two adjacent points are both corners if the polygon turns at both by more than 40 degrees (8 degrees if it
-    is open), and five times as much as at the points beyond them. The two ends of an oblique base are both
-    corners too.
+    Two adjacent points are both corners if the polygon turns at both by more than 40 degrees (8 degrees if
+    the polygon is open), and five times as much as at the next points on both sides. The two ends of an
+    oblique base are both corners too.
 
     The round end of a thin body that is given by few points can turn by up to 155 degrees at one point and is
     still no corner. It is recognised by the thickness of the body: near a round end it grows like the square
@@ -122,8 +122,8 @@ def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:
     """Return the exponent p with which a body becomes thicker away from its point k.
 
     At a small distance d from point k of the polygon `points` (n, 2), the thickness is proportional to d^p: p
-    is about 1/2 behind a round end, 1 behind a wedge, and more behind a cusp. It follows from the two points
-    on each side of point k, and is infinite if there are none.
+    is about 1/2 behind a round end, 1 behind a wedge, and more behind a cusp. It is estimated from the two
+    points on each side of point k, and is infinite without such points.
     """
     n = len(points)
     if n < 5 or (not closed and not 2 <= k < n - 2):

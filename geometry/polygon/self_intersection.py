@@ -54,10 +54,11 @@ def check_outline(points: Floats, places: Sequence[str] = ()) -> None:
 
 
 def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> list[Crossing]:
-    """Return up to `limit` crossings or contacts of non-adjacent segments of a polygon (n, 2).
+    """Return up to `limit` crossings or contacts of segments of a polygon (n, 2) that are not neighbours.
 
     A segment that runs back along its neighbour is also reported. A closed polygon does not repeat its first
-    point. Only segments that overlap along a direction are compared; if these are too many, shapely searches.
+    point. Only segments that overlap along an oblique direction are compared; for too many pairs, shapely
+    searches.
     """
     p = np.ascontiguousarray(points, dtype=np.float64)
     end = np.roll(p, -1, axis=0) if closed else p[1:]
@@ -69,9 +70,9 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
 
 
 def sweep_spans(p: Floats, end: Floats) -> tuple[Floats, Floats]:
-    """Return start and end (m,) of the segments from `p` (m, 2) to `end` (m, 2) along the sweep direction.
+    """Return the least and the largest coordinate (m,) of segments from `p` to `end` (m, 2) along `_SWEEP`.
 
-    Starts are rounded downwards and ends upwards.
+    `_SWEEP` is an oblique direction. The largest coordinates are rounded upwards.
     """
     along, along_end = product(p[: len(end)], _SWEEP), product(end, _SWEEP)
     low, top = np.minimum(along, along_end), np.maximum(along, along_end)
@@ -97,7 +98,7 @@ def _pairs_by_tree(p: Floats, end: Floats, closed: bool, limit: int) -> list[tup
 
 
 def crossing_of(p: Floats, end: Floats, i: int, j: int) -> Crossing:
-    """Return segments i and j, which may be collinear, with a point that lies on both.
+    """Return the crossing of segments i and j, which may be collinear: a point that lies on both.
 
     Segments run from `p` (m, 2) to `end` (m, 2).
     """

@@ -37,9 +37,9 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
 def straight_intervals(points: Floats, corners: Indices) -> Bools:
     """Return the mask (n,) of the intervals of a closed polygon `points` (n, 2) that are straight lines.
 
-    An interval is straight if it is at least `LONG` times as long as a neighbour that is not beyond one of
-    the `corners` (indices of points), and if the polygon turns at both ends by at most `EXPLAINED` times the
-    angle between tangent and chord of the circle through the next three points.
+    A straight interval is at least `LONG` times as long as a neighbouring interval; neighbours beyond
+    `corners` (indices of points) do not count. At both ends of a straight interval, the polygon turns by at
+    most `EXPLAINED` times the angle between tangent and chord of the circle through the next three points.
     """
     turn, joined = turning(points, closed=True), np.ones(len(points), dtype=bool)
     turn[corners], joined[corners] = 0.0, False

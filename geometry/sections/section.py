@@ -38,11 +38,11 @@ class Section:
     about : tuple of 2 float, optional
         Centre of the twist, in chords from the leading edge.
     cant : float or 'panel', optional
-        Angle in degrees by which the plane is rotated about the leading edge's line along x, positive like
-        dihedral. ``panel``: the dihedral of the adjacent panels (`Stack.cants`).
+        Angle in degrees by which the plane is rotated about the line along x through the leading edge, with
+        the sign of dihedral. ``panel``: the dihedral of the adjacent panels (`Stack.cants`).
     nodes : int, optional
-        Number of nodes along the span from the previous section to this one, with both; None: from the whole
-        stack.
+        Number of nodes along the span from the previous section to this section, including the nodes of both;
+        None: the stack decides.
 
     Raises
     ------
@@ -76,9 +76,9 @@ class Section:
 
     @property
     def frame(self) -> tuple[Floats, float]:
-        """Leading edge (2,) and chord of the given shape, which is moved and scaled to (0, 0) and 1.
+        """Leading edge (2,) and chord of the given shape, which becomes a leading edge at (0, 0) and chord 1.
 
-        A shape that nearly has this position and size is unchanged, as most airfoil files have them.
+        Most airfoil files nearly have this position and size; such shapes are unchanged: (0, 0) and 1.
         """
         if isinstance(self.shape, Airfoil):
             nose, length = self.shape.leading_edge, self.shape.unit
@@ -90,19 +90,22 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """(6,) chord, twist in radians, x, y, and `about`, which are interpolated in z."""
+        """(6,) chord, twist in radians, x, y and both values of `about`; a stack interpolates them in z."""
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 
 class Fade(NamedTuple):
-    """Weights (n,) at nodes: 1 means full twist and scale, 0 no twist and scaling by `chord`."""
+    """Weights (n,) at nodes: 1 means the section's twist and chord, 0 no twist and the length `chord`."""
 
     weight: Floats
     chord: float
 
 
 def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
-    """Return nodes (..., n, 2) of unit sections at placements (..., 6) (`Section.placement`)."""
+    """Return nodes (..., n, 2) of sections: nodes `unit` of unit chord, moved to `placement` (..., 6).
+
+    The six values of a placement are those of `Section.placement`.
+    """
     chord, twist, x, y, about_x, about_y = (placement[..., k, None] for k in range(6))
     if fade is not None:
         chord, twist = fade.chord + (chord - fade.chord) * fade.weight, twist * fade.weight

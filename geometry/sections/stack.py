@@ -110,7 +110,7 @@ class Stack:
         return sum(cells) + 1 if len(cells) == len(self.panel_cells) else None
 
     def with_tip(self, tip: Tip | None) -> Stack:
-        """Return the stack with another tip; None keeps its own.
+        """Return the stack with another tip; None keeps the tip as it is.
 
         Raises InputError: the stack is no wing, or the tip is unknown.
         """
@@ -156,7 +156,7 @@ class Stack:
     def cants(self) -> Floats:
         """(n,) cant of the sections in radians.
 
-        For ``panel`` it is the mean dihedral of the adjacent panels, and 0 in a plane of symmetry.
+        A cant ``panel`` is the mean dihedral of the adjacent panels, and 0 in a plane of symmetry.
         """
         panels = self.dihedrals
         own = np.concatenate([[0.0], 0.5 * (panels[1:] + panels[:-1]), panels[-1:]])
@@ -167,9 +167,10 @@ class Stack:
 
     @property
     def steep(self) -> str:
-        """Note on the steepest panel; empty if none is steep.
+        """Note on the panel that is most inclined to its sections' normals; empty if inclinations are small.
 
-        Panels are thinner than their sections by the cosine of the angle between section and panel normal.
+        A panel is thinner than its sections by the cosine of the angle between section plane and panel
+        normal.
         """
         if self.kind != "wing":
             return ""
@@ -188,8 +189,8 @@ class Stack:
         """Return nodes (m, n, 3) of the sections at the heights `z` (m,) of the leading edge.
 
         `unit` (sections, n, 2) are nodes of the given sections at unit chord. Shape, chord, twist and
-        position are interpolated separately. Nodes with `weight` (n,) 0 are not twisted, and scaled by the
-        longest chord.
+        position are interpolated separately. Nodes with `weight` (n,) 0 are not twisted, and are scaled
+        by the longest chord; nodes with weight 1 have the section's twist and chord.
         """
         fade = None if weight is None else Fade(weight, self.chord)
         placements = np.stack([section.placement for section in self.sections])
