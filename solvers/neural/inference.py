@@ -123,7 +123,7 @@ def _refuse(**parameters: object) -> None:
 
 @dataclass(frozen=True)
 class OperatorMethod:
-    """The method ``operator``: grids by `infer_many`, whose settings are its fields.
+    """The method ``operator``: grids by `infer_many`; fields are the parameters of `infer_many`.
 
     Raises InputError: `fallback` is given for a model that is no network.
     """

@@ -18,7 +18,7 @@ OURS = "use a file made by meshonet train"  # remedy for a file that is no model
 
 
 class Kind(NamedTuple):
-    """A kind of model file, whose header has the entries ``kind``: `text` and `key`: `version`."""
+    """A kind of model file: in the header, ``kind`` is `text`, and the entry named `key` is `version`."""
 
     text: str
     key: str
@@ -37,8 +37,8 @@ KINDS = {kind.text: kind for kind in (STRIP, QUAD, PAPER, VOLUME)}
 def read_model(path: Path) -> tuple[Kind, dict[str, Any], dict[str, NDArray[Any]]]:
     """Return the kind, the header and the arrays of a model file.
 
-    Raises InputError: the file is not safetensors, no model of meshonet, or of another version; an array is
-    not finite.
+    Raises InputError: the file is no safetensors file, no model of meshonet, or a model of another version;
+    an array is not finite.
     """
     header, arrays = read_tensors(path)
     kind = KINDS.get(str(header.get("kind")))

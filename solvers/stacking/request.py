@@ -28,7 +28,7 @@ class StackRequest(VolumeRequest):
     cells : int, optional
         Approximate number of cells around a wing or blade, instead of `around`, `span` or both.
     base : float, optional
-        Smallest height of trailing edges in chords of each section; thinner ones are opened. None: 0.005, or
+        Smallest height of trailing edges in chords of each section; thinner edges are opened. None: 0.005, or
         0.001 for a wing from a surface file.
     first_cell : float, optional
         First-cell height at every wall node; None: 1e-3.

@@ -77,7 +77,7 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
 
 
 def refuse_crossing(stack: Stack, unit: Floats) -> None:
-    """Raise InputError if neighbouring sections are canted until they cross; `unit` is as in `lofted`."""
+    """Raise InputError if canted neighbours cross; `unit`: nodes (sections, n, 2) at unit chord."""
     cants = stack.cants
     if not cants.any():
         return

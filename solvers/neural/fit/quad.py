@@ -176,7 +176,7 @@ def run(
 
     `initial`: quad operator that gives the initial weights and the sizes; `weights`: of parts of the loss, in
     place of those in `PARTS`. Raises InputError: fewer domains than one batch after those held out; a weight
-    of an unknown part, or a negative or non-finite one; an initial operator of another kind.
+    of an unknown part, or a negative or non-finite weight; an `initial` operator that is no quad operator.
     """
     sizes, kept = sizes or QuadUNetSizes(), plan.kept(len(data), held_out, "domains")
     if initial is not None:

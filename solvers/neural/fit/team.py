@@ -49,7 +49,7 @@ class Team:
 
 
 def team(device: Device) -> Team:
-    """Return this process's team, joining the others under torchrun.
+    """Return the team of this process; under torchrun, it consists of all started processes.
 
     Raises InputError: ``cuda`` is asked for and there is none.
     """

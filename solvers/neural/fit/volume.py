@@ -148,7 +148,7 @@ def residual(net: Mapping[str, Tensor], points: Tensor, h: float) -> Tensor:
 
 
 def project(first: Tensor, second: Tensor) -> Tensor:
-    """Return the sum of two gradients (n,), each without the part that points against the other one."""
+    """Return the sum of two gradients (n,), without the component of each that opposes the other gradient."""
     dot = first @ second
     if dot >= 0.0:
         return first + second

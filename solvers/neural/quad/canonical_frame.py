@@ -34,7 +34,7 @@ class Canonical:
     symmetric: bool = False  # an O boundary that is its own mirror image
 
     def back(self, planes: Floats) -> Floats:
-        """Return a grid `planes` (2, ni, nj) transformed from the frame back to the original boundary."""
+        """Return a grid `planes` (2, ni, nj) of the canonical frame, transformed back to the boundary."""
         z = planes[0] + 1j * planes[1]
         along, across, transposed = self.element
         if self.symmetric:
@@ -54,9 +54,9 @@ def canonical(boundary: Boundary) -> Canonical:
     """Return a quad or O boundary in its canonical frame, or unchanged if rounding would merge its nodes.
 
     Descent amplifies rounding errors: thirty steps around a corner turn 1e-16 into 1e-3. A domain that is
-    translated, rotated, scaled, mirrored or relabelled therefore has bitwise the same edges here, rounded to
-    1e-9 of their size. The frame of an O boundary has the cut from 0 to 1, that of a quad is given by the
-    corners. Of mirror images or relabellings, the one whose bytes come first is taken.
+    translated, rotated, scaled, mirrored or relabelled therefore has bitwise the same edges in the canonical
+    frame, rounded to 1e-9 of the domain's size. The frame of an O boundary has the cut from 0 to 1, that of a
+    quad is given by the corners. Of mirror images or relabellings, the one whose bytes come first is taken.
     """
     return _of_body(boundary) if boundary.periodic else _of_quad(boundary)
 

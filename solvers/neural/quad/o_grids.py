@@ -61,7 +61,7 @@ def _strips(boundaries: Sequence[Boundary]) -> tuple[Complexes, Complexes, Compl
 
 
 def compact(boundary: Boundary) -> bool:
-    """Return whether the body of an O boundary is about as thick as those of the training set."""
+    """Return whether the body of an O boundary is about as thick as the bodies of the training set."""
     _, _, centres, once = _strips([boundary])
     reach = np.abs(_complex(boundary.south.T[None]) - centres)
     return bool(once[0] and reach.min() > COMPACT * reach.max())

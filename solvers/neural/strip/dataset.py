@@ -40,7 +40,7 @@ class Strips:
 def solve_strips(
     boundaries: Iterable[Boundary], progress: Callable[[int, int], None] | None = None
 ) -> Strips:
-    """Return the strips of O boundaries; those without a lift or a converged solution are omitted.
+    """Return the strips of O boundaries; bodies without a conformal lift or a solution are omitted.
 
     `progress` is called with the counts of processed and of omitted boundaries. Raises InputError: no
     boundary could be used, or one is not an O boundary.
@@ -80,8 +80,9 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
 class StripTargets:
     """Inputs (n, CHANNELS, COLUMNS) and (n, SCALARS), and wanted outputs (n, 2 Q, COLUMNS) of mean square 1.
 
-    An output times `scale` gives the coefficients of R / size^2 in `basis` (Q, LEVELS - 2), the proper
-    orthogonal decomposition across the strip in the H1 inner product.
+    R is Winslow's solution minus the harmonic base. An output times `scale` gives the coefficients of
+    R / size^2 in `basis` (Q, LEVELS - 2), the proper orthogonal decomposition across the strip in the H1
+    inner product.
     """
 
     channels: Floats

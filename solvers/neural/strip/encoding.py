@@ -17,15 +17,15 @@ SLOPE = 0.3  # factor of slopes, which are larger than values by about their wav
 
 
 def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
-    """Return the network's input for a batch of strips with modes `wall`, `far` (batch, 2 MODES + 1) of F.
+    """Return the network's input for strips with boundary values F on wall and far field.
 
-    The input consists of three arrays:
+    `wall`, `far` (batch, 2 MODES + 1) are the Fourier modes of F. The input consists of three arrays:
 
     - channels (batch, CHANNELS, COLUMNS): the harmonic base and its slope along theta at the depths `DEPTHS`,
       both divided by the size;
     - scalars (batch, SCALARS): the logarithm of the size, the height of the strip and its shear, each shifted
       so that its magnitude is about one;
-    - size (batch,): the root mean square deviation of the walls from straight lines; R grows with its square.
+    - size (batch,): the root mean square deviation of the walls from straight lines.
     """
     mean = (far - wall)[:, 0]
     a, b = (xp.concatenate([xp.zeros_like(side[:, :1]), side[:, 1:]], 1) for side in (wall, far))
