@@ -123,7 +123,7 @@ def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
 def turned(points: Floats, place: Floats, cant: Floats) -> Floats:
     """Return `points` (..., 3) rotated about lines parallel to x by `cant` (...), in radians from z to y.
 
-    The lines pass through y and z of `place` (..., 2).
+    `place` (..., 2) has y and z of the lines.
     """
     c, s = cos(cant), sin(cant)
     away, along = points[..., 1] - place[..., 0], points[..., 2] - place[..., 1]

@@ -86,7 +86,7 @@ def thomas_middlecoff(boundary: Boundary) -> Controls:
 def step_ratios(edge: Floats, *, periodic: bool) -> Floats:
     """Return log(step after / step before) (n,) at each node of an edge (n, 2), within ±`STEEPEST`.
 
-    The ends of an open edge get the values of their neighbours.
+    The ends of an open edge get the values of the neighbouring nodes.
 
     >>> edge = np.array([[0.0, 0.0], [1.0, 0.0], [3.0, 0.0], [7.0, 0.0]])
     >>> np.exp(step_ratios(edge, periodic=False)).tolist()

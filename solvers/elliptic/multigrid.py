@@ -141,7 +141,7 @@ class Multigrid:
 
 
 def relax(nodes: Floats, sweeps: int) -> None:
-    """Relax the inner nodes of planar `nodes` (ni, nj, 2) in place by `sweeps`, on this level alone."""
+    """Relax the inner nodes of planar `nodes` (ni, nj, 2) in place by `sweeps` sweeps, on one level."""
     xi, eta = (uniform(n, False).differences for n in nodes.shape[:2])
     scratch = np.empty(multigrid_scratch(nodes.shape[0] - 1, nodes.shape[1] - 1))
     MultigridLevel(nodes[..., 0], nodes[..., 1], xi, eta, False, scratch, False).smooth(False, sweeps)

@@ -126,7 +126,7 @@ def first_heights(lines: Floats) -> Floats:
 def leaning(lines: Floats, tangent: Floats) -> Floats:
     """Return the cosine (n,) of the angle between the unit `tangent` (n, 2) of a wall and `lines` (n, m, 2).
 
-    The direction of a line at the wall is that of the parabola through its first three nodes.
+    At the wall, a line is tangent to the parabola through the first three nodes of the line.
     """
     a, b, c = lines[:, 0], lines[:, 1], lines[:, 2]
     first, second = np.hypot(*(b - a).T), np.hypot(*(c - b).T)

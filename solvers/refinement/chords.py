@@ -63,7 +63,7 @@ class Chords:
         return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, images)
 
     def of_refined(self, layout: Layout) -> Chords:
-        """Return the edges of `layout`, whose blocks are the same; numbers of cells may differ."""
+        """Return the chords of `layout`, which has the same blocks with other numbers of cells."""
         return replace(Chords.of(layout), chord=self.chord, count=self.count)
 
     @cached_property

@@ -103,7 +103,7 @@ class StackRequest(VolumeRequest):
 
 
 def stack_request(**parameters: Any) -> StackRequest:
-    """Return a `StackRequest` with the parameters as its fields; ``wall_spacing`` is ``first_cell``.
+    """Return a `StackRequest` with the parameters as fields; ``wall_spacing`` also means ``first_cell``.
 
     Raises InputError: as `StackRequest`; an unknown parameter.
     """

@@ -53,7 +53,7 @@ class Level:
             winslow_smooth(x, self.right if forced else None, factor, self.threads, self.room)
 
     def norm(self, x: Floats, forced: bool) -> float:
-        """Return the norm of the residual of x (3, ni, nj, nk), which is stored in `residual`."""
+        """Return the norm of the residual at x (3, ni, nj, nk); the field `residual` gets the residual."""
         right = self.right if forced else None
         return float(np.sqrt(winslow_residual(x, right, self.residual, self.threads, self.room)))
 

@@ -87,7 +87,7 @@ def _terms(weights: HexWeights) -> dict[str, float]:
 def optimum(
     faces: SixFaces, most: int | None = None, weights: HexWeights = OPTIMAL
 ) -> tuple[Floats, int]:  # fmt: skip
-    """Return the minimum (3, ni, nj, nk) inside evenly spaced `faces`, and the finest level's iterations.
+    """Return optimal nodes (3, ni, nj, nk) inside evenly spaced `faces`, and the finest level's iterations.
 
     Coarser copies are solved first. A grid that cannot be untangled is returned folded.
     """

@@ -86,7 +86,7 @@ class AirfoilGrids:
 def conformal(south: Tensor, north: Tensor, nj: int, *, failed: Failed = "raise") -> Tensor:
     """Return the nodes (..., ni, nj, 2) of converged conformal O grids around airfoils.
 
-    Gradients are those of the solution, by one linear system for each backward pass.
+    Gradients are those of the converged solution; each backward pass solves one linear system.
 
     Parameters
     ----------
@@ -102,8 +102,8 @@ def conformal(south: Tensor, north: Tensor, nj: int, *, failed: Failed = "raise"
     InputError
         Tensors of other shapes, of unequal counts or of different dtypes; `nj` below 2.
     SolverError
-        A body of the batch has no conformal lift or a coordinate that is not finite, or its equations do not
-        converge. The message and the attribute ``members`` have the indices of such bodies.
+        A body of the batch has no conformal lift or a coordinate that is not finite, or the equations for a
+        body do not converge. The message and the attribute ``members`` have the indices of such bodies.
     """
     return AirfoilGrids("base", "converged", str(south.device))(south, north, nj, failed=failed)
 

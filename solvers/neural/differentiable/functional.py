@@ -30,9 +30,9 @@ class Functional:
     smoothness: Tensor  # (batch,) weights β of the lengths' term
 
     def value(self, nodes: Tensor, aspect: Tensor) -> Tensor:
-        """Return the value E (batch,) for `nodes` (batch, 2, ni, nj) without folded cells.
+        """Return the value E (batch,) of the functional for `nodes` (batch, 2, ni, nj) without folded cells.
 
-        `aspect` (batch,) is the ratio of the steps along eta to those along xi (`aspect_of`).
+        `aspect` (batch,) is the ratio of steps along eta to steps along xi (`aspect_of`).
         """
         g, h, jacobian = _measures(*_corners(nodes))
         along, across = self._harmonic(aspect)

@@ -38,7 +38,7 @@ def winslow(
 ) -> Tensor:  # fmt: skip
     """Return the nodes (..., ni, nj, 2) that solve Winslow's equations, to rounding.
 
-    Gradients are those of the solution, by one linear system for each backward pass.
+    Gradients are those of the converged solution; each backward pass solves one linear system.
 
     Parameters
     ----------
@@ -67,8 +67,8 @@ def variational(
 ) -> Tensor:  # fmt: skip
     """Return the nodes (..., ni, nj, 2) at the optimum of the variational functional, to rounding.
 
-    The compiled solver computes the initial grids on the CPU. Gradients are those of the optimum, by one
-    linear system for each backward pass; they treat the weights that the solver chose as constants.
+    The compiled solver computes the initial grids on the CPU. Gradients are those of the optimum; each
+    backward pass solves one linear system. Weights that the solver chose are constants in gradients.
 
     Parameters
     ----------

@@ -56,7 +56,10 @@ class Task(nn.Module):
 
 @dataclass(frozen=True)
 class Run:
-    """A training task, the `recipe` stored in the model file, and what a resumed run must have in common."""
+    """A training task and its settings.
+
+    `recipe`: settings stored in the model file; `identity`: further settings that a resumed run must repeat.
+    """
 
     task: Task
     recipe: Mapping[str, Any]

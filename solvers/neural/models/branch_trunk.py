@@ -76,8 +76,8 @@ class DeepONet(Architecture):
 class MIONet(DeepONet):
     """Two branches, for x and y of the sensors, whose features are multiplied, and one trunk.
 
-    ``x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b``, y by [k:]. Jin, Meng & Lu, SIAM Journal
-    on Scientific Computing 44 (2022) A3490.
+    ``x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b``, and y likewise with ``[k:]``. Jin, Meng
+    & Lu, SIAM Journal on Scientific Computing 44 (2022) A3490.
     """
 
     def shapes(self, frame: Frame) -> Shapes:

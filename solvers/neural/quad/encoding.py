@@ -55,7 +55,7 @@ def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
 
     `step`: like `z`, the last Picard step (`picard.approach`); `around`: whether `z` are unrolled O grids
     (batch, m + 1, n), whose last column is the first plus one period. For these the result is (batch, m, n,
-    FEATURES), and positions are relative to those with equal steps. Features are in the order of
+    FEATURES), and positions are relative to nodes at equal steps. Features are in the order of
     `symmetry.SEEN`.
     """
     n = z.shape[-1]

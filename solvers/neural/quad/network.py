@@ -173,7 +173,10 @@ class Network:
         return np.asarray(moved.view(np.complex128)[..., 0])
 
     def moves(self, near: Complexes, step: Complexes, head: int) -> Complexes:
-        """Return the displacements (batch, m, n) that one head predicts for grids `near`."""
+        """Return the displacements (batch, m, n) that one head predicts for grids `near`.
+
+        `step`: the last Picard step towards `near`; `head`: index of the head.
+        """
         if self.around:
             return self(features(near, step, np, around=True), head)
         seen = np.empty((*near.shape, FEATURES), self.dtype)

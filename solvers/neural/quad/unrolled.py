@@ -23,8 +23,8 @@ def middles(walls: Any, xp: Any = np) -> Any:
 def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
     """Return the strips i log(z - centre) of O grids `z` (batch, m + 1, n), and a mask (batch,).
 
-    `centres` (batch,) are complex. The first index of `z` runs around the body and repeats
-    the first node. The mask is true for grids that wind once around their centre; other strips are useless.
+    `centres` (batch,) are complex. The first index of `z` runs around the body and repeats the first node.
+    The mask is true for grids that wind once around their centre; other strips are useless.
     """
     off = z - centres[:, None, None]
     with np.errstate(divide="ignore", invalid="ignore"):
