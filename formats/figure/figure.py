@@ -77,9 +77,7 @@ def draw(
         ax.set(xlim=view[:2], ylim=view[2:])
         steps = [pair for pair, _ in lines]
         each = sorted({step for pair in steps for step in pair})
-        xi, eta = map(_ordinal, steps[0])
-        both = len(steps) == 1 and len(each) > 1
-        note(ax, f"every {xi}xi and {eta}eta line" if both else step_words(each))
+        note(ax, _drawn_lines(*steps[0]) if len(steps) == 1 and len(each) > 1 else step_words(each))
     if bar is not None and mesh is not None and colouring:
         below = any(bool((values < limits[0]).any()) for values in colouring.parts)
         above = any(bool((values > limits[1]).any()) for values in colouring.parts)
@@ -188,6 +186,11 @@ def note(ax: Axes, text: str) -> None:
     paper = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 2.0}
     place: dict[str, Any] = {"transform": ax.transAxes, "ha": "right", "va": "bottom", "zorder": 5}
     ax.text(0.985, 0.015, text, size=7, color=INK, bbox=paper, **place)
+
+
+def _drawn_lines(xi: int, eta: int) -> str:
+    """Return the steps of the drawn lines along xi and eta as text."""
+    return f"every {_ordinal(xi)}xi and {_ordinal(eta)}eta line"
 
 
 def _ordinal(k: int) -> str:
