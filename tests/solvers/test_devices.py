@@ -66,7 +66,7 @@ def test_a_device_without_enough_memory_is_told(monkeypatch: pytest.MonkeyPatch)
     def full(*_: Any, **__: Any) -> None:
         raise torch.OutOfMemoryError("CUDA out of memory.\nMore of it.")
 
-    monkeypatch.setattr("meshonet.solvers.neural.devices._nodes", full)
+    monkeypatch.setattr("meshonet.solvers.neural.devices._grids", lambda *_: full)
     with pytest.raises(MemoryError, match=r"^CUDA out of memory\.$"):
         infer_many(domains(), "quad-general", device="cpu")
 
