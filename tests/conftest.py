@@ -44,25 +44,11 @@ def eager_threads(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    _share_cores()
     gc.disable()  # tests are collected in three quarters of the time without searches for cycles
     config.addinivalue_line("markers", "client(program): runs a program that is not from PyPI")
     config.addinivalue_line("markers", "solver(program): runs a program that Debian does not have either")
     config.addinivalue_line("markers", "slow: takes a second or more; make test-fast leaves it out")
     config.addinivalue_line("markers", "browser: opens pages in Chromium")
-
-
-def _share_cores() -> None:
-    """Give each of several workers of pytest-xdist its own cores.
-
-    Kernels would have as many threads as there are cores in every worker, and wait for those of the others: a
-    tenth of the time. Tests of threads say how many these are.
-    """
-    worker, count = (os.environ.get(f"PYTEST_XDIST_WORKER{part}", "") for part in ("", "_COUNT"))
-    if worker and hasattr(os, "sched_setaffinity"):
-        own = sorted(os.sched_getaffinity(0))[int(worker.removeprefix("gw")) :: int(count)]
-        if own:
-            os.sched_setaffinity(0, own)
 
 
 @pytest.hookimpl(tryfirst=True)
