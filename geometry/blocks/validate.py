@@ -38,7 +38,7 @@ def check_edges(boundary: Boundary) -> None:
         return
     lines = _lines(boundary)
     path = np.concatenate(lines)
-    joints = np.cumsum([len(line) for line in lines[:-1]], dtype=np.intp) - 1  # segments between two lines
+    joints = np.cumsum(list(map(len, lines[:-1])), dtype=np.intp) - 1  # segments between two lines
     ends = path[np.concatenate([[0], joints, joints + 1, [-1]])]
     crossings = find_crossings(path, closed=False, limit=_MOST)
     for crossing in sorted(crossings, key=attrgetter("first", "second")):
