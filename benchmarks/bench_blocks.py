@@ -236,14 +236,13 @@ VALID = """
 BESIDE = """
 ## Gmsh at equal cell count
 
-A part of these domains is also meshed by Gmsh (number: column *domains*); its geometry has one spline between
-two neighbouring corners. It uses one thread and the options for quadrilaterals only. The time of Gmsh is the
-time of `generate(2)`; the time of meshonet is the time of the whole process.
+Gmsh meshes a sample of these domains; the column *domains* gives their number. The outline between two
+neighbouring corners is one spline. Gmsh uses one thread and the options for quadrilaterals only. Its time is
+the time of `generate(2)`; the time of meshonet is the time of the whole process.
 
-*algorithm*: Gmsh's number; 11 is for quasi-structured quadrilaterals, 8 Delaunay for quadrilaterals, 9
-packing of parallelograms. *meshed*: number of domains that Gmsh meshes; *with triangles*: number of these
-meshes that contain triangles. The other columns give two medians over these domains, for meshonet and for
-Gmsh.
+*algorithm*: Gmsh's number; 11 makes quasi-structured quadrilaterals. *meshed*: number of domains that Gmsh
+meshes; *with triangles*: number of these meshes that contain triangles. The other columns give medians over
+these domains, meshonet / Gmsh.
 
 | algorithm | domains | meshed | with triangles | irregular | mean | 99 % | CPU time, s | cells |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""

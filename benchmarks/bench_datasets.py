@@ -59,8 +59,8 @@ PARTS = """
 ## Number of parts
 
 Here each part has only ten grids. The table gives the time to write the index file, the size of this file,
-and the times to open it and to read the last sample in a new process. Each dataset was written once, so the
-times to write also show disturbances by other programs.
+and the times to open it and to read the last sample in a new process. Each dataset was written and read once,
+so the times also show disturbances by other programs.
 """
 ZARR = """
 ## Comparison with Zarr
@@ -70,14 +70,13 @@ Times are medians over five new processes, each of which imports the package, op
 last grid. The script omits this table if Zarr is not installed (`pip install zarr`).
 """
 TAIL = """
-HDF5 reads the list of all parts when a virtual dataset is opened, and searches it at each read. This
+When `nodes` of an index file is opened, HDF5 reads the list of all parts, and searches it at each read. This
 takes about ten milliseconds for a thousand parts and grows with their number. Parts are therefore large: up
-to 1,000 inputs or 256 MiB. A part holds at most 500 grids of 200 x 100 nodes, so a million of them are
-2,000 parts.
+to 1,000 grids or 256 MiB. A part holds 500 grids of 200 x 100 nodes, so a million such grids are 2,000 parts.
 
-Once the packages are imported, both formats take milliseconds. meshonet uses HDF5 virtual datasets for two
-reasons: the same ten lines of h5py, MATLAB or Julia read an index file, a part and a dataset in one file; and
-meshonet needs no further package.
+Once the packages are imported, both formats take milliseconds. meshonet uses HDF5 for two reasons. The same
+ten lines of h5py, MATLAB or Julia read an index file, a part and a dataset in one file. And meshonet needs no
+further package.
 """
 READER = """
 import json, sys, time, h5py

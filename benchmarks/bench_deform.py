@@ -49,7 +49,7 @@ The deformations are random (seed {seed}).
 The columns and methods of the table are:
 
 - *deformations*: kind, with the number of deformations in brackets. Random deformations that give an
-  invalid outline are left out: {refused} here.
+  invalid outline are left out; their number is {refused}.
 - *folded*: number of grids with folded cells and, if there are any, the largest number of folded cells in
   one grid.
 - *first cell*: largest relative change of a first-cell height, over all wall nodes and deformations.

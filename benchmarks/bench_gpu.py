@@ -40,17 +40,16 @@ HEAD = """
 Use this page to find the speed of training and of batches of grids on a GPU. [Threads and
 GPUs](../guide/threads-and-gpu.md) explains how to use a GPU.
 
-The page is made by `python benchmarks/bench_gpu.py --page
-docs/benchmarks/gpu.md`, which ends within eight minutes; the tables say which measurements were not made for
-lack of time.
+`python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md` measures for at most eight minutes and writes
+this page. Rows that were not measured for lack of time are marked.
 
 - **Layers**: the functions of `meshonet.layer`, which are exact solvers, and for comparison the network
   `quad-general`. The sides of the domains are in the memory of the GPU. The table gives the grids per second
   without and with gradients, the peak memory, whether two runs give bitwise equal nodes, and the largest
   distance from the nodes that the CPU computes. Grids of 65 x 65 nodes are made in batches, larger grids
   singly. In rows with `coarse=65`, the equations are solved on 65 x 65 nodes and the grid is interpolated.
-  The aims are 100,000 grids of 65 x 65 nodes per second, one grid of 800 x 800 nodes in 3 ms, and one of
-  3200 x 3200 nodes in 40 ms, for which [the paper](paper/index.md) reports 278 ms on an RTX 4090.
+  The aims are 100,000 grids of 65 x 65 nodes per second, one grid of 800 x 800 nodes in 3 ms, and one of 3200
+  x 3200 nodes in 40 ms. For the last size [the MeshONet paper](paper/index.md) reports 278 ms on an RTX 4090.
 - **Operators**: grids per second and peak memory of `infer --device cuda` with the networks `airfoil-o`,
   `quad-general` and `hole-o`, for 256 grids of 65 x 65 and of 200 x 200 nodes.
 - **Training**: shapes per second and peak memory of the networks `meshonet` (of the paper), `fno2d` and

@@ -42,20 +42,21 @@ HEAD = """# Volumes marched from surfaces: quality and time
 Use this page to find the quality and the CPU time of volume grids that are marched from surfaces. For the
 method see [marching from surfaces](../guide/marching-surfaces.md).
 
-- *surface*: the first four are read from files, the others are computed. *patches, nodes*: numbers of
-  patches and of nodes of the surface. *levels*: number of node layers from the surface to the far field.
+- *surface*: the first four are read from files (a blended wing body, the wing ONERA M6, two spheres), the
+  others are computed. *patches, nodes*: their numbers on the surface. *levels*: number of node layers from
+  the surface to the far field.
 - *first cell, distance*: prescribed first-cell height, and distance of the far field, in the unit of the
   surface.
-- *tries*: number of marches until the grid was valid, each with other smoothing parameters.
+- *tries*: number of marches, each with other smoothing parameters, until the grid was valid.
 - *folded*: number of cells in which a corner Jacobian, or a Bezier coefficient of the Jacobian, is not
   positive.
-- *first cell*: largest relative error of the first-cell height over all wall nodes.
+- *error*: largest relative error of the first-cell height.
 - *quality*: the smallest divided by the largest Jacobian at the eight corners of a cell, in the worst
   cell. The marching program pyHyp prints the same measure. *SJ*: minimum scaled Jacobian at the corners.
 - *off the normal*: angle in degrees between grid lines and the normals of the node layers, mean / 99th
   percentile / maximum.
-- *growth*: three growth ratios, each minus 1: the prescribed ratio; the largest ratio along a grid line
-  after the march; the largest ratio after nodes are redistributed along the grid lines.
+- *growth*: three growth ratios, each minus 1: prescribed, and largest along a grid line after the march /
+  after nodes are redistributed along the grid lines.
 - *CPU*: CPU time in seconds to march and to test the volume, without reading and writing, best of 3. *us a
   node*: the same time in microseconds per node of the volume. *process*: CPU time of the whole command,
   including reading and writing; only for surfaces that are read from files. One thread of {machine}, while
@@ -63,7 +64,7 @@ method see [marching from surfaces](../guide/marching-surfaces.md).
 
 """
 COLUMNS = (
-    "surface", "patches", "nodes", "levels", "first cell, distance", "tries", "folded", "first cell",
+    "surface", "patches", "nodes", "levels", "first cell, distance", "tries", "folded", "error",
     "quality", "SJ",
     "off the normal", "growth", "CPU", "us a node", "process",
 )  # fmt: skip

@@ -247,18 +247,22 @@ programs used the machine. *ms* is the CPU time to generate the grid, including 
 writing and repair. Each time is the median over the shapes, with one run for each shape; the last digits
 are not significant. Bold rows are the networks and the default of `infer`.
 
-**Methods.** `infer, default`: the command without options.
+**Methods.** `infer, default` is the command without options; *infer, after repair* its grid after repair. The
+other rows:
 
 | row | how the grid is made |
 | --- | --- |
-| Winslow, coarse 65 | Winslow's equations on 65 x 65 nodes; the solution is interpolated and smoothed |
-| harmonic base | harmonic extension of the boundary nodes; around airfoils in the conformal strip |
+| TFI | transfinite interpolation |
+| multigrid Winslow | Winslow's equations on all nodes, to an iteration error below the discretisation error |
+| variational | minimum of the variational functional on all nodes |
+| Winslow (variational), coarse 65 | the same on 65 x 65 nodes; the solution is interpolated and smoothed |
+| harmonic base | harmonic extension of the boundary nodes; around airfoils in the conformal image, a strip |
 | base + 1 Picard step | harmonic base; then one fixed-point step for Winslow's equations in the strip |
-| network alone | the network `airfoil-o` corrects the harmonic base |
+| network alone; operator (airfoil) | the network `airfoil-o` corrects the harmonic base |
 | network + 1 Picard step | one Picard step after the network |
 | network, polish auto | Picard steps after the network, until they hardly change the grid |
-| quad-general, 5 steps | the network for variational grids, then 5 steps of minimisation |
-| quad-winslow, 2 cycles | the network for Winslow's grids, then 2 cycles of multigrid |
+| quad-general (5 steps) | the network for variational grids (then 5 steps of minimisation) |
+| quad-winslow (2 cycles) | the network for Winslow's grids (then 2 cycles of multigrid) |
 | MeshONet | the network of the paper; its boundary nodes approximate the given nodes |
 | MeshONet-hard | a similar network, whose boundary nodes are exactly the given nodes |
 
@@ -280,13 +284,12 @@ Remarks:
 
 - The nodes of a TFI grid are distributed differently in the interior, so its distance says little about
   its quality.
-- Multigrid Winslow stops by default when the error of the iteration is below the discretisation error.
-- The conformal map cannot resolve the wall cells of some bodies. For these bodies `infer` uses multigrid
-  or the model `hole-o`, and the distances in the row of `infer` are largest.
-- In the tables of distances, the nodes of a boundary are every fourth node of a finer boundary (every
-  second node for 800x800 nodes). A corner of a blunt trailing edge may not be among these nodes; this
-  changes the largest angle by a few percent. In the table of folded cells the boundaries are sampled
-  directly.
+- The conformal map cannot resolve the wall cells of some bodies. For these bodies `infer` uses multigrid or
+  the model `hole-o`; its distances are then largest.
+- In the tables of distances, the nodes of a boundary are every fourth node of a finer boundary (every second
+  node for 800x800 nodes). A corner of a blunt trailing edge may not be among these nodes; this changes the
+  largest angle by a few percent. In the table of grids without folded cells the boundaries are not taken from
+  finer ones.
 - For walls with uniform spacing the reference is accurate only to about 1e-4, because Winslow's solution
   converges only with order 1.4 at trailing edges. The network also differs from the reference by design:
   its grid lines bisect the angle at the trailing edge.
@@ -298,14 +301,14 @@ variational methods and `quad-general` is the converged variational grid."""
 FAMILIES_NOTE = """
 ## The six families of the MeshONet paper, 101x101, test members
 
-Each row is for six test members of a family. The table gives the median relative L2 distance of all nodes
-to Winslow's converged solution and, in brackets, the number of grids with folded cells. Winslow's own
-grids of the wrench have folded cells. The operator is `quad-winslow` for the first four families,
-`airfoil-o` for the airfoil and `hole-winslow` for the plate with a hole. None of these networks was
-trained on these shapes. The paper's models, MeshONet and MeshONet-hard, were trained on 30 members of each
-family; *interpolation* is inside and *extrapolation* outside the range of training. The values of the
-paper's models are from [the reproduction of the paper](paper/index.md); their reference is the grid of the
-PDE solver.
+Each row is for six test members of a family. The table gives the median relative L2 distance of all nodes to
+Winslow's converged solution and, in brackets, the number of grids with folded cells. Winslow's own grids of
+the wrench have folded cells. The operator is `quad-winslow` for the first four families, `airfoil-o` for the
+airfoil and `hole-winslow` for the plate with a hole, without training on these shapes. *Polish* adds 2
+multigrid cycles, for the airfoil `infer` without options. The paper's models, MeshONet and MeshONet-hard,
+were trained on 30 members of each family; *interpolation* is inside and *extrapolation* outside the range of
+training. The values of the paper's models are from [the reproduction of the paper](paper/index.md); their
+reference is the grid of the PDE solver.
 """
 TIMES_HEAD = """
 ## CPU time to generate the grid in milliseconds, float64, best of 3
@@ -316,10 +319,9 @@ WHICH = """
 - **O grids around airfoils**: the default is the conformal map with Picard iteration, without the network.
   With the network a grid takes more time; its distance to the solution and its angles are about the same.
   `--model airfoil-o` or `--polish off` selects the network.
-- **Four-sided domains**: the default is the variational method. If fewer nodes resolve all sides, the
-  method solves on fewer nodes and interpolates. For a single grid this solver is better than any network.
-  For batches, `--model quad-general` is many times faster than any solver
-  ([measurements](quad-operator.md)).
+- **Four-sided domains**: the default is the variational method, on fewer nodes with interpolation if these
+  resolve all sides. For a single grid it is better than any network. For batches, `--model quad-general` is
+  many times faster than any solver ([measurements](quad-operator.md)).
 - **C grids**: the default is hyperbolic marching from the wall and the wake, or the variational method if
   marching fails. The network for four-sided domains generates worse C grids than TFI
   ([measurements](body-operator.md#c-grids-no-model)).

@@ -39,9 +39,9 @@ HEAD = """# Blade rows
 Use this page to find the quality of grids of blade rows, and the CPU time to generate them. [Blade
 rows](../guide/blade-rows.md) explains how to make such grids.
 
-Rotor 37 is NASA's transonic compressor rotor, with its tip gap of 0.356 mm. Its grids have first-cell
-heights of 1e-4 chords and a growth ratio of 1.2. The blade of a random row is interpolated between two
-real airfoils, one at the hub and one at the casing. These properties are random:
+Rotor 37 is NASA's transonic compressor rotor, with its tip gap of 0.356 mm. Its two grids differ in
+`--cells`; the first-cell height is 1e-4 chords and the growth ratio 1.2. The blade of a random row is
+interpolated between two real airfoils, one at the hub and one at the casing. These properties are random:
 
 | property | range |
 | --- | --- |
@@ -52,9 +52,9 @@ real airfoils, one at the hub and one at the casing. These properties are random
 | gap | 0 to 3 % of the span, in two of three rows; the others have no gap |
 
 Grids of random rows have about {cells} cells, or more if their layers need more, and first-cell heights of
-{first:g} chords. Radial rows are of four kinds: centrifugal impellers, radial turbines, mixed-flow pumps
-and vaned diffusers (`tests/radial_rows.py`). About half of the rows of the first three kinds have a tip
-gap. The last two lines of the table are for groups of rows; there, *nodes* and *CPU s* are medians.
+{first:g} chords. Radial rows are centrifugal impellers, radial turbines, mixed-flow pumps (about half of
+these three with a tip gap) and vaned diffusers. The last two lines of the table are for groups of rows: "30
+of 30" have a valid grid, and *nodes* and *CPU s* are medians.
 
 - *folded*: number of cells with a corner Jacobian of zero or less / number of cells in which a Bezier
   coefficient of the Jacobian is zero or less.

@@ -151,7 +151,7 @@ def bodies(res: str) -> str:
             around: dict[str, Way] = {"TFI": lambda b: Solution(tfi(b), "tfi")}
             around["winslow"] = lambda b: winslow(thinned(b, b.ni, b.nj))
             if topology == "o":
-                around["operator"] = Best().solve_one
+                around["infer, default"] = Best().solve_one
             around["**variational**"] = variational
             for way, solver in around.items():
                 seconds, nodes = best(solver, boundary, 3)
@@ -216,39 +216,39 @@ HEAD = """# Four-sided domains: TFI, Winslow and variational grids
 
 <!-- made by python benchmarks/bench_variational.py --page docs/benchmarks/variational.md -->
 
-Use this page to choose between `tfi`, `solve-pde --method winslow` and `solve-pde --method variational`.
-The option `--coarse N` solves on N x N nodes and interpolates; the tables show how much time this saves
-and how much the angles change. [Elliptic grids](../theory/elliptic.md) and [variational
-grids](../theory/variational.md) describe the methods. The neural operator has [its own
-page](quad-operator.md).
+Use this page to choose between `tfi`, `solve-pde --method winslow` and `solve-pde --method variational`. The
+option `--coarse N` solves on N x N nodes and interpolates; the tables show how much time this saves and how
+much the angles change. [Elliptic grids](../theory/elliptic.md), [variational grids](../theory/variational.md)
+and [the neural operator](quad-operator.md) have their own pages. Rows of the variational method are bold.
+*bump*: a square with a half disc cut off. *infer, default*: conformal map.
 
 - *angle*: largest included angle of each cell, in degrees: maximum, 99th percentile and mean over the
   cells. The maximum cannot be below the largest corner angle of the boundary (arch 147.5, hexagon 135).
 - *deviation at walls*: mean deviation from 90 degrees of the angle between the four sides and the grid
   lines that leave them.
 - *distance to full solve*: relative L2 distance to the grid that the same method solves on all nodes, the
-  first row of the method in the table. The neural operator is compared with the variational grid. On 3200
-  x 3200 nodes the variational method does not solve on all nodes; there, `variational --coarse 33` takes
-  its place.
+  first row of the method in the table. The neural operator is compared with the variational grid. On 3200 x
+  3200 nodes, where the variational method is not run on all nodes, distances are to the grid of `variational
+  --coarse 33`.
 - *folded*: number of folded cells in the solution, before repair.
 - *worse than Winslow's*: number of domains for which the maximum or the mean angle is larger than in
   Winslow's grid.
 - *CPU ms*: CPU time of one thread, best of several runs, while other programs used the machine.
 - *copy of the grid in memory*: time to copy the finished grid once, for comparison.
 
-Around a notch the variational method on all nodes takes many iterations on fine grids; `--coarse auto`
-solves on fewer nodes if the grid is fine. The distance between a solution on 33 x 33 nodes and the
-solution on all nodes is the discretisation error of the coarse solution, which is of second order. It is
-not an iteration error: it does not change if both solutions are converged to 1e-6.
+Around the notch of the wrench the variational method takes many iterations on fine grids; `--coarse auto`
+then solves on fewer nodes. The distance between a solution on 33 x 33 nodes and the solution on all nodes is
+the discretisation error of the coarse solution, which is of second order. It is not an iteration error: it
+does not change if both solutions are converged to 1e-6.
 
 ![Grids by five methods, coloured by the largest included angle](../img/quad-grids.png)
 """
 PAPER = """
 ## What the MeshONet paper reports
-Xiao et al., arXiv 2501.11937, compare methods by colour maps of the largest included angle, without
-numbers. On arches and hexagons, they report, MeshONet gives better angles than their PDE solver and TFI.
-On wrenches it is equal to TFI, and on semicircles not always better. The table gives their times in
-seconds. Their programs are in Python and ran on another machine, MeshONet on a GPU.
+Xiao et al., arXiv 2501.11937, compare methods by colour maps of the largest included angle, without numbers.
+They report that MeshONet's angles are better than those of their PDE solver and TFI on arches and hexagons,
+equal to TFI's on wrenches, and not always better on semicircles. The table gives their times in seconds.
+Their programs are in Python and ran on another machine, MeshONet on a GPU.
 
 | nodes | PDE | TFI | MeshONet |
 | --- | --- | --- | --- |

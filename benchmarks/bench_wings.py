@@ -46,18 +46,16 @@ HEAD = """# Volumes from sections: wings, blades, pipes
 
 <!-- made by python benchmarks/bench_wings.py --airfoils FOLDER --page docs/benchmarks/wings.md -->
 
-Use this page to find for how many random wings meshonet generates a valid volume grid, the quality of
-these grids, and the CPU time. [Wings](../guide/wings.md) and [pipes](../guide/pipes.md) explain how to
-make such grids.
+Use this page to find for how many random wings meshonet generates a valid volume grid, the quality of these
+grids, and the CPU time. For commands see [wings](../guide/wings.md) and [pipes](../guide/pipes.md).
 
 Each of the {count} wings has two sections, drawn at random from {files} airfoil files with sharp and blunt
 trailing edges. The taper is 0.25 to 1 and the twist -8 to 4 degrees. The tip is displaced by -0.2 to 0.8
-spans downstream (sweep) and by -0.1 to 0.25 spans upwards (dihedral). The far field is at 15 chords, in
-the first row of the table at 12 chords. The {count} blades are drawn in the same way; they stand between two
-walls.
+spans downstream (sweep) and by -0.1 to 0.25 spans upwards (dihedral). The far field is at 15 chords, in the
+first row of the table at 12 chords. The {count} blades are drawn in the same way; they stand between two
+walls. First-cell heights are in chords; *81 around* is the number of nodes around a section.
 
-- *valid*: grids without a folded cell, tested by the Jacobians at the eight corners of every cell and by
-  the Bezier coefficients of the Jacobian.
+- *valid*: grids without a folded cell, by the corner Jacobians.
 - *first cell error*: largest relative error of the first-cell height over all wall nodes; for blades, over
   the wall nodes of the two given sections.
 - *minimum scaled Jacobian* (*SJ*), *largest angle* (of cell faces, degrees): median / worst over the

@@ -26,8 +26,8 @@ RIM = 0.1
 """Part of the rows along a side of a four-sided domain that counts as near it."""
 
 _RIVALS = """
-In these cases a method without a network makes at least as many valid grids as a network, is as close to the
-reference near the wall, and takes no more time:
+These methods without a network make at least as many valid grids as the networks with which they are
+compared, are as close to the reference near the wall, and take no more time:
 """
 
 

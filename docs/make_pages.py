@@ -121,12 +121,12 @@ FAMILIES_HEAD = """# The six test families
 <!-- made by python docs/make_pages.py -->
 
 Use these families of shapes to train and compare neural operators. They are the test cases of the MeshONet
-paper ([results](../benchmarks/paper/index.md)). The shapes of a family depend on one parameter.
-*arch*, *hexagon* and *wrench* change the edges of a square of side 1. *semicircle* is a channel, 2 long and 1
+paper ([results](../benchmarks/paper/index.md)). The shapes of a family depend on one parameter. *arch*,
+*hexagon* and *wrench* are squares of side 1 with other top edges. *semicircle* is a channel, 2 long and 1
 high, with a semicircle on its floor. *hole* is a plate with a round hole, 2 by 2 around the origin.
 
-`sample-boundary --family NAME --count N` makes N shapes. Their parameters lie in the range given below, or in
-the range A to B with `--range A:B`. `solve-pde` makes the grids.
+`sample-boundary --family NAME --count N` makes N shapes with parameters in the range below, or from A to B
+with `--range A:B`. `solve-pde` makes their grids.
 """
 
 

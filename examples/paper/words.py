@@ -20,8 +20,8 @@ STANDS = """
 """
 
 LOWEST = """The paper claims that MeshONet's loss is orders of magnitude below the losses of four other networks, the
-baselines. Here all networks are trained on the same shapes, equally often, with the same learning-rate
-schedule. Values are mean and spread over the random seeds.
+baselines. Here all networks are trained on one *budget*: the same shapes, equally often, with the same
+learning-rate schedule. Values are mean and spread over the random seeds.
 
 """
 
@@ -88,8 +88,8 @@ All models are trained on all families and splits with one budget: 300 epochs (9
 the same schedule and the same random points in each step. The tables of quality
 above have fifty times this budget (ten times for `meshonet-hard` on the airfoil). Settings are the defaults of each model.
 
-Values are relative L2 distances of the network's output from the test grids: the median over the grids, then mean ± spread
-over the random seeds 0 and 1. The least value of each row is bold.
+For each random seed (0 and 1) the median of the relative L2 distances of the network's output from the test
+grids is taken; the table gives mean ± spread of the two medians. The least value of each row is bold.
 """
 
 AGAINST = """The paper compares MeshONet's loss with those of four baselines on one case; it only cites WNO, KNO and
@@ -107,8 +107,9 @@ solver but do not generalise.
 TIME = """
 ## Mesh refinement
 
-The table gives seconds from boundary nodes in memory to grid nodes in memory, for square grids. The shape is an arch that was not used in
-training. Our times are those of one thread on {machine}. The paper's MeshONet ran on an RTX 4090.
+The table gives seconds from boundary nodes in memory to grid nodes in memory. The shape is an arch that was
+not used in training. Grids of more than 512² nodes `solve-pde` solves on 257² nodes and interpolates. Our
+times are those of one thread on {machine}, the paper's MeshONet ran on an RTX 4090.
 """
 
 MAPS = """
@@ -123,7 +124,8 @@ SETTINGS = """
 The optimiser is Adam with a learning rate of 0.001, which is multiplied by 0.9 after each fifteenth of the
 epochs. `meshonet-hard` on wrenches uses 0.003 with a cosine schedule. A step uses 30 shapes, with 1000 random
 points inside and 200 on the boundary (a quarter of these for `meshonet-hard` with the setting `modes`). The
-loss of `meshonet` has the weights 900 and 1000. The table gives the epochs and times of each run.
+loss of `meshonet` weights the mean square errors inside by 900, on the boundary by 1000. Runs *one* are the
+physics-informed networks. Seconds count from the last start of a run.
 """
 
 SECONDS = {
@@ -135,7 +137,7 @@ SECONDS = {
 TIMED = {
     "tfi": "TFI (`tfi`)",
     "pde": "PDE (`solve-pde`, multigrid)",
-    "coarse": "PDE on 65 x 65, splined (`solve-pde --coarse 65`)",
+    "coarse": "PDE on 65 x 65, interpolated (`solve-pde --coarse 65`)",
     "meshonet": "MeshONet (`infer`)",
     "meshonet-hard": "MeshONet-hard (`infer`)",
 }

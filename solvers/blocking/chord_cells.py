@@ -1,4 +1,4 @@
-"""Numbers of cells along the chords of a layout, and initial positions of their nodes, for target sizes."""
+"""Numbers of cells along the chords of a layout for target cell sizes, and initial positions of the nodes."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Numbers of cells along chords for which sides of a domain have the prescribed numbers of cells.
+"""Numbers of cells along chords, such that sides of a domain have the prescribed numbers of cells.
 
 Sides with certain names have given numbers of cells, and two periodic sides have equal numbers.
 """

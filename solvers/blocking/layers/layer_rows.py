@@ -1,4 +1,4 @@
-"""Layers in a ring: cell sizes that its front requires, and rows below the nodes of the front."""
+"""Cell sizes that the front of a ring of layers requires, and the rows of layers below its nodes."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""One frame of each cross, continuous across all edges but those of a cut; the cut; the sizes of frames."""
+"""One frame (two directions) of each cross, continuous except across a cut; the cut; the frames' sizes."""
 
 from dataclasses import dataclass
 

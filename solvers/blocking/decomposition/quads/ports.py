@@ -1,4 +1,4 @@
-"""The directions in which lines leave the singular vertices and corners of a seamless map."""
+"""The directions in which coordinate lines leave the singular vertices and corners of a seamless map."""
 
 from dataclasses import dataclass
 
