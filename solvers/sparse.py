@@ -74,8 +74,7 @@ class SparseMatrix:
     """A symmetric matrix A."""
 
     pattern: SparsePattern
-    values: Floats
-    """Values of the distinct entries, in the internal order of the pattern."""
+    values: Floats  # values of the distinct entries, in the internal order of the pattern
 
     def times(self, x: Floats) -> Floats:
         """Return the product A x, where x is (n,) or (n, k)."""

@@ -36,8 +36,7 @@ class Stage:
     done: Callable[[], int] = lambda: 0  # number of steps so far; another thread may call it
 
 
-Timings = dict[str, float]
-"""Seconds by stage."""
+Timings = dict[str, float]  # seconds by stage
 Watcher = Callable[[Stage], None]
 _watchers: ContextVar[tuple[Watcher, ...]] = ContextVar("stages", default=())
 

@@ -22,8 +22,7 @@ OPTIONS: dict[str, bool | int | float | str] = {
     "mip_max_nodes": 2000,
 }
 """Options of HiGHS: one thread, a fixed seed and no time limit, so that results are reproducible."""
-STEPS = (1.0, 1.05, 1.1, 1.2, 1.4, 1.6, 2.0, 2.0, np.inf)
-"""Factors of each step up or down, by at least 1."""
+STEPS = (1.0, 1.05, 1.1, 1.2, 1.4, 1.6, 2.0, 2.0, np.inf)  # factors of each step up or down, by at least 1
 Row = tuple[Mapping[int, float], float, float]
 """Coefficients of a sum of numbers, and its lower and upper bound."""
 

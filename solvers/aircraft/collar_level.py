@@ -25,12 +25,10 @@ from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
 from meshonet.solvers.stacking.tip import least_sine
 
 _CORNER = 4  # smallest number of nodes from the middle of nose or trailing edge to a corner of the rectangle
-FEWEST = 6
-"""Smallest number of cells between a collar and the plane of symmetry."""
+FEWEST = 6  # smallest number of cells between a collar and the plane of symmetry
 _AHEAD = 1.2  # largest ratio of a collar's outermost cell to that of constant growth
 _EVEN = 1.15  # largest ratio of neighbouring outermost cells of a collar
-WIDEST = 1.25
-"""Growth of cells from a collar to nose, tail, keel and crown."""
+WIDEST = 1.25  # growth of cells from a collar to nose, tail, keel and crown
 # weights of straight lines, tried in turn: elliptic grids may fold at thin, eccentric trailing edges
 _STRAIGHT = 0.0, 0.3, 0.6, 1.0
 _SINE, _LINES = 0.15, 0.05  # smallest sines: in a collar, and between its lines before nodes are placed

@@ -11,8 +11,7 @@ from meshonet.solvers.rows.span_spacing import smooth_arcs
 
 _FINE = 65  # number of places on a line at which its length is measured
 
-Points: TypeAlias = Callable[[Floats], Floats]
-"""Function from places (..., 3) to points (..., 3) in space."""
+Points: TypeAlias = Callable[[Floats], Floats]  # function from places (..., 3) to points (..., 3) in space
 
 Side: TypeAlias = tuple[Floats, Floats]
 """Nodes (n, 3) of s, theta, zeta from keel to crown beside a column, and the cell lengths (n,) there in s."""

@@ -22,17 +22,14 @@ from meshonet.solvers.stages import Timings, stage
 OPTIMISED = 6000
 """Largest number of cells that are optimised; finer grids are splines through the nodes of a coarser one."""
 ITERATIONS = 150  # of the optimisation at the most; it usually ends earlier, when its gain is small
-CUT_OFF = 7e-4
-"""Fraction of the area that cells may cut off along walls before the walls get more cells."""
+CUT_OFF = 7e-4  # fraction of the area that cells may cut off along walls before the walls get more cells
 ROUNDS, STEP, MORE = 7, 1.12, 1.19
 """Largest number of refinements at walls, their factor, and the largest ratio of cells to requested cells."""
 MOST_CUT_OFF = 9.5e-4
 """Fraction of the area, cut off less added, above which wall nodes are placed closer at bends."""
-MOST_HALVED = 8
-"""Largest number of times that cells are halved without an optimisation in between."""
+MOST_HALVED = 8  # largest number of times that cells are halved without an optimisation in between
 RECOUNTS = 4  # iterations for the total number of cells if numbers along some sides are prescribed
-HELD_BACK = 0.6
-"""Factor by which the largest turn of a wall along one edge is reduced in each round."""
+HELD_BACK = 0.6  # factor by which the largest turn of a wall along one edge is reduced in each round
 
 
 def fine_layout(

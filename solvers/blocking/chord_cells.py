@@ -9,12 +9,9 @@ from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.refinement.size_metric import SizeMetric
 
 _PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are evaluated
-SAMPLES = 64
-"""Number of intervals of an edge in which sizes are sampled."""
-ROUNDS = 4
-"""Number of times opposite edges are averaged."""
-STEEPEST = 8.0
-"""Largest ratio of the largest to the smallest cell along an edge."""
+SAMPLES = 64  # number of intervals of an edge in which sizes are sampled
+ROUNDS = 4  # number of times opposite edges are averaged
+STEEPEST = 8.0  # largest ratio of the largest to the smallest cell along an edge
 
 
 class WantedCounts:

@@ -33,12 +33,9 @@ if TYPE_CHECKING:
     from meshonet.solvers.layers.layer_settings import LayerSettings
 
 METHOD = "blocks"
-GROWTH = 1.2
-"""Default ratio of neighbouring layers."""
-MORE = 1.2
-"""Ratio of the number of cells to the requested one above which a note says so."""
-CUT_OFF = 1e-3
-"""Fraction of the area that cells may cut off along walls without a note."""
+GROWTH = 1.2  # default ratio of neighbouring layers
+MORE = 1.2  # ratio of the number of cells to the requested one above which a note says so
+CUT_OFF = 1e-3  # fraction of the area that cells may cut off along walls without a note
 
 
 def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:

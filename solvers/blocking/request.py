@@ -14,15 +14,11 @@ from meshonet.geometry.spacing.first_cell import FirstCell
 if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
 
-CELLS = 2500
-"""Default number of cells."""
-LAYERED_CELLS = 20_000
-"""Default number of cells of grids with layers."""
+CELLS = 2500  # default number of cells
+LAYERED_CELLS = 20_000  # default number of cells of grids with layers
 MOST_HALVINGS = 8  # 65,536 times as many cells
-MOST_ALONG = 100_000
-"""Largest number of cells along a side."""
-LARGEST_PITCH = 1e12
-"""Largest pitch in the unit of the blade, so that squares of coordinates do not overflow."""
+MOST_ALONG = 100_000  # largest number of cells along a side
+LARGEST_PITCH = 1e12  # largest pitch in the unit of the blade, so that squares of coordinates do not overflow
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,7 @@ from meshonet.geometry.spacing.y_plus import first_cell_note
 from meshonet.solvers.blocking.layers.marched import BLUNT
 from meshonet.solvers.blocking.layers.wall_rows import has_sharp_edge
 
-WIDEST = 150.0
-"""Angle in degrees of a cell at a sharp edge above which a note says how to avoid it."""
+WIDEST = 150.0  # angle in degrees of a cell at a sharp edge above which a note says how to avoid it
 
 
 def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) -> str:

@@ -11,17 +11,12 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.spacing.gradual_sizes import limited_sizes
 
-TURN_DEG = 12.0
-"""Largest angle by which a curve turns along a cell, with spacing by curvature."""
-_FINEST = 0.02
-"""Smallest ratio of cells where the curvature is large to cells elsewhere."""
-_SHORT = 4.0
-"""Number of cells along a short edge; cells of the neighbouring edges are adapted to these."""
-_GRADE = 0.2
-"""Largest change of the cell size along an edge per distance."""
+TURN_DEG = 12.0  # largest angle by which a curve turns along a cell, with spacing by curvature
+_FINEST = 0.02  # smallest ratio of cells where the curvature is large to cells elsewhere
+_SHORT = 4.0  # number of cells along a short edge; cells of the neighbouring edges are adapted to these
+_GRADE = 0.2  # largest change of the cell size along an edge per distance
 _SAMPLES = 257
-CORNER_DEG = 30.0
-"""Smallest turn, in degrees, of a loop at a vertex that is a corner of the face."""
+CORNER_DEG = 30.0  # smallest turn, in degrees, of a loop at a vertex that is a corner of the face
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,12 +22,9 @@ from meshonet.solvers.cad.edges import edge_laws, place_on
 from meshonet.solvers.cad.sides import FacePlan, cell_counts, planned
 from meshonet.solvers.solution import Solution, timed
 
-CELLS = 40
-"""Default number of cells along the longest extent of a file."""
-_CORE = 0.5
-"""Ratio of the size of a disc's core to the size of the disc."""
-_OFF = 1e-8
-"""Largest distance of edges from their faces, divided by the size of the file, without a note."""
+CELLS = 40  # default number of cells along the longest extent of a file
+_CORE = 0.5  # ratio of the size of a disc's core to the size of the disc
+_OFF = 1e-8  # largest distance of edges from their faces, divided by the size of the file, without a note
 
 
 class _FaceLine(NamedTuple):

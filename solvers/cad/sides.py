@@ -23,10 +23,8 @@ from meshonet.solvers.cad.edges import CORNER_DEG, corner_turns, length_of, plac
 from meshonet.solvers.whole_numbers import Row, difference, whole_numbers
 
 _REFUSED = 5  # faces named in an error
-_ACROSS = 8
-"""Smallest number of cells across a base, and across the nose opposite to it."""
-_BASE = 0.7
-"""Largest ratio of the base to the opposite side."""
+_ACROSS = 8  # smallest number of cells across a base, and across the nose opposite to it
+_BASE = 0.7  # largest ratio of the base to the opposite side
 
 
 @dataclass(frozen=True)

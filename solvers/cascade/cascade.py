@@ -26,17 +26,12 @@ from meshonet.solvers.refinement.size_metric import SizeMetric
 
 PLAIN_ROWS, PLAIN_GROWTH = 6.0, 1.1
 """Number of rows within this thickness and their growth ratio, if no first-cell height is given."""
-GAP_PART = 0.25
-"""Largest fraction of the narrowest gap between blades that layers fill."""
+GAP_PART = 0.25  # largest fraction of the narrowest gap between blades that layers fill
 _SAMPLES = 400  # points of the blade at which the gap is measured
-ACROSS = 12.0
-"""Smallest number of cells per pitch, before the requested number of cells is distributed."""
-COARSEST = 20.0
-"""Largest factor by which cells along the blade may become longer."""
-MORE = 10.0
-"""Largest ratio of the number of cells to the requested number, for a long inlet or outlet."""
-SHORTEST = 0.08
-"""Smallest distance in pitches from the blade with its layers to inlet or outlet."""
+ACROSS = 12.0  # smallest number of cells per pitch, before the requested number of cells is distributed
+COARSEST = 20.0  # largest factor by which cells along the blade may become longer
+MORE = 10.0  # largest ratio of the number of cells to the requested number, for a long inlet or outlet
+SHORTEST = 0.08  # smallest distance in pitches from the blade with its layers to inlet or outlet
 
 
 @dataclass(frozen=True)

@@ -38,13 +38,10 @@ MOST_OPTIMISED = 4000
 """Largest number of cells that are optimised directly; finer grids are splines through these."""
 CORNERS = ("at first", "later", "nowhere")
 """Whether nodes are moved to the corners of the blade before the optimisation, in the order of attempts."""
-LEAST = 4
-"""Smallest number of cells along the side of an optimised block."""
+LEAST = 4  # smallest number of cells along the side of an optimised block
 FIRST, ITERATIONS, PASSES = 150, 120, 2  # iterations of the template and of each sized optimum; their number
-WEIGHTS = 0.95, 1e-3
-"""Weights w and β of the functional; with a smaller β rounding errors move nodes by 1 %."""
-ROW_GROWTH = 1.1
-"""Growth ratio of cells towards inlet and outlet."""
+WEIGHTS = 0.95, 1e-3  # weights w and β of the functional; with a smaller β rounding errors move nodes by 1 %
+ROW_GROWTH = 1.1  # growth ratio of cells towards inlet and outlet
 _BISECTIONS = 14  # of a range of 400 to 1: the scale to 0.04 %
 
 

@@ -25,8 +25,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.layers.attach import Rows, attach
 
-BLADE, INLET, OUTLET = 0, 1, 2
-"""Numbers of the loops of a passage whose blocks end at the layers."""
+BLADE, INLET, OUTLET = 0, 1, 2  # numbers of the loops of a passage whose blocks end at the layers
 NEAR = 0.3
 """Distance in pitches, upstream and downstream of a blade, at which blocks end and straight rows start."""
 STRETCH_NAMES = ("periodic1", "outlet", "periodic2", "inlet")

@@ -27,18 +27,14 @@ from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.solvers.cascade.passage import BLADE, INLET, OUTLET, Passage
 from meshonet.solvers.cascade.passage_flow import PassageFlow
 
-CELLS = 6
-"""Number of cells across the ring, and smallest number along each side of a block."""
-LONG = np.pi / 12.0
-"""Length of cells along the channel in the plane G."""
-LONGEST = 72
-"""Largest number of cells along the channel."""
+CELLS = 6  # number of cells across the ring, and smallest number along each side of a block
+LONG = np.pi / 12.0  # length of cells along the channel in the plane G
+LONGEST = 72  # largest number of cells along the channel
 ASIDE, AHEAD = 0.45, 0.12
 """Distances of the ring's outer side from the slit, beside it and at its ends; the period is π."""
 
 _SAME = 1e-9  # distance in the plane G at which nodes are one
-_FEET = 1e3
-"""Positions in the plane G of the nodes on the blade, which have no meaning."""
+_FEET = 1e3  # positions in the plane G of the nodes on the blade, which have no meaning
 
 
 def template(passage: Passage, *, at_corners: bool) -> Layout:

@@ -25,8 +25,7 @@ class DeformationDerivative:
     step.
     """
 
-    grid: Grid
-    """The deformed grid."""
+    grid: Grid  # the deformed grid
     walls: Mapping[str, Indices]
     """Node indices of each moved wall, in order; a closed wall repeats its first node."""
 

@@ -21,14 +21,10 @@ Equations = Callable[[Floats], Floats]
 class Jacobian:
     """Entries of the derivative of the equations at inner nodes with respect to all nodes' coordinates."""
 
-    rows: Indices
-    """(m,) row of each entry: flat index of the equation in (2, ni, nj)."""
-    columns: Indices
-    """(m,) column of each entry: flat index of the coordinate in (2, ni, nj)."""
-    values: Floats
-    """(m,) value of each entry."""
-    size: int
-    """Number of coordinates, 2 ni nj."""
+    rows: Indices  # (m,) row of each entry: flat index of the equation in (2, ni, nj)
+    columns: Indices  # (m,) column of each entry: flat index of the coordinate in (2, ni, nj)
+    values: Floats  # (m,) value of each entry
+    size: int  # number of coordinates, 2 ni nj
 
     def times(self, x: Floats) -> Floats:
         """Return the product J x for x (size,)."""

@@ -18,8 +18,7 @@ from meshonet.solvers.energy.functional import Weights, aspect_of
 from meshonet.solvers.sparse import Factor, SparseMatrix, SparsePattern
 
 STEPS = 20  # of Newton's method, to the optimum itself
-STILL = 1e-11
-"""Largest displacement of a node, relative to its shortest edge, at which the iteration ends."""
+STILL = 1e-11  # largest displacement of a node, relative to its shortest edge, at which the iteration ends
 _NEAR = 0.5  # displacement of a node, in its shortest edges, above which the grid is too far from the optimum
 _SHIFT = 1e-9  # subtracted from the zero diagonal of the augmented system, so that it can be factored
 _REFINED = 3  # steps of iterative refinement that make up for that
@@ -40,8 +39,7 @@ class OptimumDerivative:
     SolverError: the grid is far from the solution.
     """
 
-    grid: Grid
-    """The converged solution."""
+    grid: Grid  # the converged solution
 
     def __init__(self, grid: Grid, method: str = "variational", weights: Weights | None = None) -> None:
         if grid.topology not in ("quad", "c"):
@@ -184,8 +182,7 @@ class _System:
 
     matrix: SparseMatrix
     factor: Factor
-    scale: Floats | None
-    """(n,) scaling of the equations; None for a symmetric system."""
+    scale: Floats | None  # (n,) scaling of the equations; None for a symmetric system
 
     def solve(self, right: Floats, *, transposed: bool) -> Floats:
         """Return the solution (n,) of A x = right, or of Aᵀ x = right."""

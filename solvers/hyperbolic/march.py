@@ -35,11 +35,9 @@ from meshonet.solvers.solution import Solution, timed
 from meshonet.solvers.stages import filling
 
 FADE_ROWS = 12.0  # rows over which the correction of the first cell fades out
-NEAREST, FARTHEST = 1.001, 1.025
-"""Accepted distances of the last level, relative to the far field."""
+NEAREST, FARTHEST = 1.001, 1.025  # accepted distances of the last level, relative to the far field
 
-MOST_GROWTH = 1.5
-"""Largest growth ratio that is tried; with larger ones levels do not get away from the wall."""
+MOST_GROWTH = 1.5  # largest growth ratio that is tried; with larger ones levels do not get away from the wall
 
 SPARE_WAY = 1.6
 """If the number of rows is free, the ratio of the distance that they could reach to the distance."""

@@ -32,22 +32,17 @@ from meshonet.solvers.layers.growth_limit import (
 from meshonet.solvers.least_squares import NormalEquations
 from meshonet.solvers.sparse import SparsePattern
 
-MOVE = 1e-2
-"""σ."""
-EVEN = math.log(1.24)
-"""Logarithm of the ratio by which neighbouring cells along fronts may differ."""
+MOVE = 1e-2  # σ
+EVEN = math.log(1.24)  # logarithm of the ratio by which neighbouring cells along fronts may differ
 FEW_STEPS = 2.0
 """Steps by which nodes may move along fronts of passages, and of fine grids that no optimisation follows."""
-FRONTS = 0.2
-"""μ along fronts: fewer nodes move, so that angles beside them are better."""
-MARGIN = 0.006
-"""Margin by which ratios, in logarithms, should be below the limit."""
+FRONTS = 0.2  # μ along fronts: fewer nodes move, so that angles beside them are better
+MARGIN = 0.006  # margin by which ratios, in logarithms, should be below the limit
 STEPS = 24  # largest number of Gauss-Newton steps; the weight reaches its largest value in 15
 MOST, RELAXED, TRIES = 6.0, 1.5, 6
 """Largest displacement of a place in steps; factor on the limit if it is exceeded; number of tries."""
 
-FINER = 8
-"""Number of points per column at which measures are tabulated."""
+FINER = 8  # number of points per column at which measures are tabulated
 SLACK = np.array([2.0, 1.0, 0.9])
 """Logarithms of ratios along fronts, at walls, and in the level next to these, by that of the limit."""
 
@@ -185,12 +180,9 @@ def _spread(layout: Layout, loop: int, shift: Floats) -> Floats:
 class _Line:
     measures: Measures
     closed: bool
-    free: Indices
-    """(f,) numbers of the places that move."""
-    triples: Indices
-    """(r, 3) numbers of places, of the two steps of each ratio."""
-    stiffness: Floats
-    """(f,) σ / s²."""
+    free: Indices  # (f,) numbers of the places that move
+    triples: Indices  # (r, 3) numbers of places, of the two steps of each ratio
+    stiffness: Floats  # (f,) σ / s²
     links: PlaceLinks
     change: float
 

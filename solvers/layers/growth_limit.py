@@ -20,10 +20,8 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats, Indices
 from meshonet.solvers.least_squares import Residuals
 
-EXCESS, RISE, MOST_WEIGHT = 10.0, 1.6, 1e4
-"""Initial w, its factor in each step, and its largest value."""
-CHANGE = 1.0
-"""μ, if none is given."""
+EXCESS, RISE, MOST_WEIGHT = 10.0, 1.6, 1e4  # initial w, its factor in each step, and its largest value
+CHANGE = 1.0  # μ, if none is given
 NEARLY = 0.05
 """Difference from the limit, in logarithms, within which ratios are treated as if they exceeded it."""
 LINEAR = 0.1

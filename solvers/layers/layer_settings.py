@@ -16,14 +16,12 @@ from meshonet.geometry.spacing.growth import cells_for_growth
 from meshonet.solvers.layers.layer_law import STEEPER, layer_arcs
 from meshonet.solvers.refinement.size_metric import GRADING
 
-JOIN = 1.1
-"""Ratio of the first cell outside a ring to the last one inside."""
+JOIN = 1.1  # ratio of the first cell outside a ring to the last one inside
 NOMINAL, STEEPEST = 0.9, 0.97
 """Mean and largest growth of layers as fractions of the limit, in logarithms: later steps use the rest."""
 ELSEWHERE, MOST_GROWTH = 1.21, 1.25
 """Largest growth along walls over the limit, in logarithms; the ratio that is always allowed there."""
-SPREAD = 0.65
-"""Largest growth of edge lengths per distance, divided by the growth from one cell to the next."""
+SPREAD = 0.65  # largest growth of edge lengths per distance, divided by the growth from one cell to the next
 
 
 @dataclass(frozen=True)

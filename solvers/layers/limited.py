@@ -12,10 +12,8 @@ from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.quality.growth import ratios
 from meshonet.geometry.spacing.gradual_sizes import limited_sizes
 
-PASSES = 8
-"""Largest number of passes; chords of a bent line differ from its arcs, less so in each pass."""
-SPARE = 1.08
-"""Smallest ratio of the length that the cells can reach to the length of the line."""
+PASSES = 8  # largest number of passes; chords of a bent line differ from its arcs, less so in each pass
+SPARE = 1.08  # smallest ratio of the length that the cells can reach to the length of the line
 LEFT = 1e-6
 """Margin below the growth limit, as a fraction of growth - 1, so that rounded files satisfy it too."""
 HALVINGS = 60  # of the interval of a line's factor

@@ -35,8 +35,7 @@ _FEWER = 0.8
 FLAT, SMOOTH, MARGIN = 0.95, 1e-3, 0.93
 """Weights w and beta of the functional, and the fraction of the limit of growth from which on growth counts.
 """
-STEEP, STEEPEST = 0.7, 6.0
-"""Smallest and largest weight of the growth of cells."""
+STEEP, STEEPEST = 0.7, 6.0  # smallest and largest weight of the growth of cells
 UNEVEN = 3.3, 3.9
 """Logarithms of growth, over that of its limit, at which the weight begins to rise and is largest."""
 

@@ -25,8 +25,7 @@ from meshonet.solvers.rows.middle_section import coarse_section
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.span_lines import key_heights
 
-KEYS = 9
-"""Number of sections that are computed as plane cascades."""
+KEYS = 9  # number of sections that are computed as plane cascades
 _PART = 0.6  # of the least room before or behind the blade that is left to blocks
 _HALVINGS = 3
 _SAME = 0.98  # ratio of thicknesses of layers from which on they are the same

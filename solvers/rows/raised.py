@@ -19,8 +19,7 @@ from meshonet.solvers.rows.zones import Zone
 
 LEAN = 1.5
 """Largest tangent between first cells and the blade's normal at narrow gaps, 0.4 of OpenFOAM's skewness."""
-NARROW = 0.4
-"""Cells along the span next to a gap, in first cells of the blade, below which layers rise."""
+NARROW = 0.4  # cells along the span next to a gap, in first cells of the blade, below which layers rise
 _MOST = 0.12  # largest move of nodes, as a fraction of the width of the gap
 _DEEP, _PART = 2.0, 0.25  # how far nodes move below the blade's end: in gap widths, and at most in spans
 _STEP = 1e-5  # steps of u and of the height from which tangents of the blade are computed

@@ -25,8 +25,7 @@ from meshonet.solvers.layers.layer_settings import LayerSettings
 
 _AROUND = 400  # number of points of a section
 _SHARES = np.array([-1.0, 0.0, 1.0, 2.0])
-STEEPEST = 45.0
-"""Largest angle to the axis in degrees at which lines follow a wake; cells are skewed by it."""
+STEEPEST = 45.0  # largest angle to the axis in degrees at which lines follow a wake; cells are skewed by it
 ON_SIDE = read_only(np.linspace(0.0, 0.5, 201))
 """Places on the upper side for which the places opposite them across the channel are computed."""
 _EDGE = 3  # of these at both edges have nothing opposite them

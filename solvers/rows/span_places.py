@@ -20,8 +20,7 @@ from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.upright import upright
 from meshonet.solvers.rows.wall_places import even_wall_places
 
-BASE = 7
-"""Smallest number of cells between the two corners of a blunt edge."""
+BASE = 7  # smallest number of cells between the two corners of a blunt edge
 _NEAR_EDGE = 0.1  # places from an edge up to which corners are its own
 
 

@@ -16,8 +16,7 @@ from meshonet.solvers.rows.span_lines import SpanLines, integrals_at_keys, key_h
 _NEWTON = 12
 _FLATTEST, _FARTHEST = 1e-9, (-30.0, 30.0)  # of Newton's method: least slope, steps of the logarithm
 _LENGTHS = 33  # of lines for which nodes are spaced; others lie between
-SAMPLES = 17
-"""Number of heights at which positions along a line must be known."""
+SAMPLES = 17  # number of heights at which positions along a line must be known
 _MOST_BENT = 60.0  # of the logarithm of sizes, at which cells in the middle are a million times larger
 MOST_CELLS = 1000
 

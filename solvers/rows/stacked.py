@@ -21,8 +21,7 @@ from meshonet.solvers.rows.span_lines import SpanLines
 from meshonet.solvers.rows.span_spacing import LineArcs, Spacing
 from meshonet.solvers.rows.zones import Zone
 
-DEGREE = 5
-"""Degree of the polynomials along the span; optima of neighbouring sections contain noise."""
+DEGREE = 5  # degree of the polynomials along the span; optima of neighbouring sections contain noise
 _AT_ONCE = 1 << 16  # number of nodes that are computed together, so that they fit into the cache
 
 

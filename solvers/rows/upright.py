@@ -14,8 +14,7 @@ from meshonet.geometry.arrays import Bools, Floats, Indices, smooth_step, wrappe
 from meshonet.solvers.rows.across import ChannelLines
 from meshonet.solvers.rows.section_plane import SectionPlane
 
-LEAN = 1.1
-"""Tangent of the largest angle between a line and the normal at which places stay."""
+LEAN = 1.1  # tangent of the largest angle between a line and the normal at which places stay
 _ROUNDS = 3  # places opposite each other are not linear in u
 _RIDGE = 0.05  # weight of displacements, relative to the mean weight of lines
 _OPPOSITE = 0.3  # fraction of the mean weight of lines above which two places count as opposite each other

@@ -12,10 +12,8 @@ from meshonet.solvers.layers.even_line import NO_LINKS, Measures, PlaceLinks, ev
 from meshonet.solvers.rows.across import ChannelLines
 from meshonet.solvers.rows.section_plane import SectionPlane
 
-MARGIN = 0.93
-"""Fraction of the logarithm of the largest growth to which steps are limited; nodes still move."""
-SHEAR = 10.0
-"""Square root of the weight of tangents by which lines lean more than before."""
+MARGIN = 0.93  # fraction of the logarithm of the largest growth to which steps are limited; nodes still move
+SHEAR = 10.0  # square root of the weight of tangents by which lines lean more than before
 _TIMES = 4  # evened again while this changes much
 _SAME = 1e-9
 

@@ -15,8 +15,7 @@ PARTS, PARTS_CELLS = 42.0, 800_000
 _NEEDED, _FEWEST, _ENOUGH = 740.0, 1700, 8000
 _INSIDE = 0.33  # cells inside the outline of the blade in a gap, relative to those of a section
 _LONGER = 1.15  # than across the gap lines may be, which lean
-GAP_ROWS = 17
-"""Smallest number of cells across a gap."""
+GAP_ROWS = 17  # smallest number of cells across a gap
 
 
 @dataclass(frozen=True)

@@ -11,14 +11,10 @@ from meshonet.geometry.arrays import Floats, Indices
 from meshonet.solvers.stacking.span_heights import by_panel, growth_at, largest_growth, span_heights
 from meshonet.solvers.stacking.wing_surface import DEFAULT_SPAN
 
-GROWTH = 1.2
-"""Largest ratio of neighbouring cells along the axis without a note."""
-SLOPE = 0.15
-"""Growth of cell lengths per length, away from short panels."""
-MOST, STEPS = 2, 8
-"""Largest number of cells tried, in default numbers; and how many numbers are tried."""
-WORTH = 1.05
-"""Ratio by which more cells must reduce the growth."""
+GROWTH = 1.2  # largest ratio of neighbouring cells along the axis without a note
+SLOPE = 0.15  # growth of cell lengths per length, away from short panels
+MOST, STEPS = 2, 8  # largest number of cells tried, in default numbers; and how many numbers are tried
+WORTH = 1.05  # ratio by which more cells must reduce the growth
 _SAMPLES = 16  # of each panel
 _BISECTIONS = 50
 _TIE = 1e-9  # so that a half is rounded alike on every processor

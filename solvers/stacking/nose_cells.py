@@ -9,10 +9,8 @@ from meshonet.geometry.elementary import geomspace
 from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
-TURN = math.radians(15.0)
-"""Angle between neighbouring cells at a nose, within the next two bounds."""
-MOST = 0.35
-"""Length of the longest cells at a nose, in mean cells of a side."""
+TURN = math.radians(15.0)  # angle between neighbouring cells at a nose, within the next two bounds
+MOST = 0.35  # length of the longest cells at a nose, in mean cells of a side
 _LEAST = 90.0  # shortest length, in mean cells, times the square of their number: few cells grow little
 _FEWEST = 24  # fewest cells on a side with which nose cells follow the curvature; volumes of fewer could fold
 _ROUND = math.radians(25.0)  # angle between nose cells above which a note names a remedy

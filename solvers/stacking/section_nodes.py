@@ -23,8 +23,7 @@ from meshonet.geometry.spacing.tanh_law import TanhLaw
 from meshonet.solvers.stacking.nose_cells import MOST, nose_cell, nose_note
 
 BASE_CELLS = 8  # across a base
-GAP = 0.005
-"""Smallest height of a base in chords."""
+GAP = 0.005  # smallest height of a base in chords
 _EDGE_CELL = 1.2  # of the mean cell of a base
 LEAST_AROUND, MOST_AROUND = 33, 10_001  # nodes
 

@@ -14,10 +14,8 @@ from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.elementary import cos, power, product, sin
 from meshonet.solvers.sweeping.ring_steps import ring_steps
 
-CORE = 0.5
-"""Fraction of the thickness that the core covers."""
-ROWS = 6
-"""Number of rows of the ring."""
+CORE = 0.5  # fraction of the thickness that the core covers
+ROWS = 6  # number of rows of the ring
 _EVEN = 1.17  # ratio of the last cells of the ring and those of the core, which needs not be 1
 _RATIO = 1.7  # of neighbouring rows of the ring, at the most
 _SWEEPS = 50  # of smoothing around the ring

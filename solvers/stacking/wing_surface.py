@@ -19,13 +19,10 @@ from meshonet.solvers.stacking.tip import Cap
 
 DEFAULT_AROUND, DEFAULT_SPAN = 129, 49  # nodes
 LEAST_SPAN, MOST_SPAN = 5, 10_001  # nodes
-EDGE, MOST_EDGE = 2.2, 2.5
-"""Intended and largest ratio of neighbouring cells at the edge of a tip."""
+EDGE, MOST_EDGE = 2.2, 2.5  # intended and largest ratio of neighbouring cells at the edge of a tip
 _SWEEPS = 20  # of smoothing around the section
-FADE = 8
-"""Number of cells from the tip whose lengths vary around the section."""
-REACH = 0.05
-"""Largest distance of these cells from the tip, in chords of the tip."""
+FADE = 8  # number of cells from the tip whose lengths vary around the section
+REACH = 0.05  # largest distance of these cells from the tip, in chords of the tip
 _NEAR = 1e-3  # part of the last panel over which the slope of grid lines at the tip is measured
 
 

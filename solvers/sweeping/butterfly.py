@@ -18,8 +18,7 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.elementary import tan
 from meshonet.solvers.sweeping.ring_steps import TRIED, fewest_rows, largest_ratio, ring_steps
 
-GROWTH = 1.2
-"""Default of the largest ratio of neighbouring cells away from walls."""
+GROWTH = 1.2  # default of the largest ratio of neighbouring cells away from walls
 _BEND, _BEND_RADIAL = 0.25, 0.4  # of the core's sides, from 0, lines, to 1, arcs; the second for radial lines
 # sizes of the core relative to the section; the first one that the growth limit permits is used
 _SIZES = (0.6, 0.55, 0.5, 0.45, 0.4, 0.35, 0.3, 0.25, 0.2, 0.15, 0.1)

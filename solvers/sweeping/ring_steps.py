@@ -8,8 +8,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import exp
 from meshonet.geometry.spacing.growth import LARGEST
 
-TRIED = 8
-"""Number of row counts that are tried, from the smallest on."""
+TRIED = 8  # number of row counts that are tried, from the smallest on
 _HALVINGS = 60  # of the range that the ratio lies in: to the last digit
 _CLOSE = 1e-9  # of the length, to which steps fill it
 

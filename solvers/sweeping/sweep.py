@@ -20,8 +20,7 @@ from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.reach import check_reach
 
-TURN_DEG = 4.0
-"""Largest turning angle of the path within a cell, unless the number of planes is given."""
+TURN_DEG = 4.0  # largest turning angle of the path within a cell, unless the number of planes is given
 _LONG = 3.0  # mean edges of the section's cells that a cell is long along the path, at the most
 _LOOKED_AT = 1025  # places along the path where it is asked how much it bends
 _UNNAMED = (*SIDES, "outer")

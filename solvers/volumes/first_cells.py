@@ -10,11 +10,9 @@ from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import volume_lines
 from meshonet.solvers.volumes.interpolate import Laws
 
-CROWDED = 0.5
-"""Ratio of the first step to the mean step below which nodes count as clustered at that end."""
+CROWDED = 0.5  # ratio of the first step to the mean step below which nodes count as clustered at that end
 
-REACH = 12.0
-"""Number of steps over which the correction decays by a factor e."""
+REACH = 12.0  # number of steps over which the correction decays by a factor e
 
 
 def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, ...]:

@@ -12,11 +12,9 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import tfi_volume
 
-Laws: TypeAlias = tuple[Floats, Floats, Floats]
-"""Laws of xi, eta and zeta."""
+Laws: TypeAlias = tuple[Floats, Floats, Floats]  # laws of xi, eta and zeta
 
-SAME = 1e-9
-"""Largest difference of laws that count as equal."""
+SAME = 1e-9  # largest difference of laws that count as equal
 
 
 def uniform_laws(counts: tuple[int, int, int]) -> Laws:

@@ -13,8 +13,7 @@ from meshonet.kernels._native import closed_node
 
 Place = tuple[int, int, int]
 
-Ranges = list[tuple[int, int]]
-"""First and end index of nodes along each direction."""
+Ranges = list[tuple[int, int]]  # first and end index of nodes along each direction
 
 
 def closed_place(faces: SixFaces) -> Place | None:

@@ -11,15 +11,11 @@ from meshonet.solvers.energy.hex_functional import OPENING, OPTIMAL, UNFOLDING
 from meshonet.solvers.energy.hexes import NEARLY
 from meshonet.solvers.volumes.planes_descent import PlanesDescent
 
-MARGINS = 5, 8, 11, 14
-"""Numbers of nodes around folded cells in a window, for successive rounds."""
+MARGINS = 5, 8, 11, 14  # numbers of nodes around folded cells in a window, for successive rounds
 LARGEST_CELLS = 40_000  # of a window: two seconds of untangling
-ROUNDS, ROUND = 20, 8
-"""Largest number of rounds of untangling in a window, and iterations of each."""
-FIRST, OPEN, LAST = 15, 8, 10
-"""Iterations of the stages that improve the cells after untangling."""
-ENOUGH = 0.02
-"""Smallest Jacobian above which a window gets the complete functional."""
+ROUNDS, ROUND = 20, 8  # largest number of rounds of untangling in a window, and iterations of each
+FIRST, OPEN, LAST = 15, 8, 10  # iterations of the stages that improve the cells after untangling
+ENOUGH = 0.02  # smallest Jacobian above which a window gets the complete functional
 
 
 def repair(planes: Floats) -> int:

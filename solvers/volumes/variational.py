@@ -20,17 +20,13 @@ from meshonet.solvers.volumes.planes_descent import PlanesDescent
 from meshonet.solvers.volumes.refine import refine_volume
 from meshonet.solvers.volumes.repair import open_flat_cells, repair
 
-COARSE = 33
-"""Default node count along a direction for the optimisation."""
+COARSE = 33  # default node count along a direction for the optimisation
 SPARE = 41
 """Largest node count along a direction for which the nodes of the faces are used instead of coarse ones."""
-EVEN = 1.5
-"""Largest ratio of the steps of an evenly spaced edge."""
+EVEN = 1.5  # largest ratio of the steps of an evenly spaced edge
 COARSEST = 11  # a copy of no more nodes along each direction is solved from the interpolation
-ITERATIONS = 30, 20, 40
-"""Largest numbers of iterations on coarser levels, on the last but one, on the last."""
-FEW = 20
-"""Largest node count of levels on which flat cells are opened first."""
+ITERATIONS = 30, 20, 40  # largest numbers of iterations on coarser levels, on the last but one, on the last
+FEW = 20  # largest node count of levels on which flat cells are opened first
 LEAST = 5  # nodes along a direction of coarse faces
 
 

@@ -11,12 +11,9 @@ from meshonet.solvers.stages import reached
 from meshonet.solvers.volumes.edge_corners import check_corners
 from meshonet.solvers.volumes.multigrid import VolumeMultigrid
 
-CYCLES = 100
-"""Largest number of cycles on all nodes."""
-RATE = 0.4
-"""Assumed convergence factor of a cycle until two cycles have measured it."""
-ENOUGH = 1.0
-"""Allowed iteration error relative to the discretisation error."""
+CYCLES = 100  # largest number of cycles on all nodes
+RATE = 0.4  # assumed convergence factor of a cycle until two cycles have measured it
+ENOUGH = 1.0  # allowed iteration error relative to the discretisation error
 CAREFUL = ((1, 1.0), (2, 0.7))
 """Sweeps before and after coarser levels, and relaxation factors, tried in turn if cycles diverge."""
 

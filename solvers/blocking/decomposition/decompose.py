@@ -37,21 +37,15 @@ from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.refinement.size_metric import SizeMetric
 from meshonet.solvers.stages import Timings, stage
 
-ATTEMPTS = 5
-"""Number of triangulations that are tried, each finer; of 201 domains, two needed a second one."""
+ATTEMPTS = 5  # number of triangulations that are tried, each finer; of 201 domains, two needed a second one
 HELD_ITERATIONS, FIRST_ITERATIONS, BEFORE_PADDING = 10, 60, 25
 """Iterations: to untangle, with fixed wall nodes; with free ones; with free ones before rows are inserted."""
-CELLS = 900
-"""Number of cells of the quad mesh from which blocks are derived."""
-MOST = 9_000
-"""Largest number of blocks before the collapse; more would take too long."""
-COUNT = 1500
-"""Approximate number of points of the triangulation."""
-FEWER = 1
-"""Number of attempts with a reduced number of singularities; later attempts use the smoothest field."""
+CELLS = 900  # number of cells of the quad mesh from which blocks are derived
+MOST = 9_000  # largest number of blocks before the collapse; more would take too long
+COUNT = 1500  # approximate number of points of the triangulation
+FEWER = 1  # number of attempts with a reduced number of singularities; later attempts use the smoothest field
 NEAR_CORNER = 3  # nodes of a periodic side for each quad that a row around its end is away from the corner
-PADDED = 3
-"""Number of attempts in which stretches without singularities are required."""
+PADDED = 3  # number of attempts in which stretches without singularities are required
 
 
 def decompose(

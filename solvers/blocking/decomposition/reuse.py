@@ -20,8 +20,7 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.linear import least_squares
 from meshonet.solvers.sparse import SparsePattern
 
-OFFSETS = 128
-"""Number of points around a loop without corners at which it is compared with another loop."""
+OFFSETS = 128  # number of points around a loop without corners at which it is compared with another loop
 
 
 def carried_over(layout: Layout, domain: Domain) -> Layout:

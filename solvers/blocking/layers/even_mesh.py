@@ -25,16 +25,13 @@ from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
 from meshonet.solvers.least_squares import NormalEquations, Residuals
 
-ANGLE, MOVE = 6.0, 1e-3
-"""ν, σ."""
-MARGIN = 0.008
-"""Margin below the limit, in logarithms, to which ratios are reduced."""
+ANGLE, MOVE = 6.0, 1e-3  # ν, σ
+MARGIN = 0.008  # margin below the limit, in logarithms, to which ratios are reduced
 AROUND, REACH = 5, 1.0
 """Number of cells around ratios above the limit in which nodes move, and its increase with the excess."""
 ROUNDS, STEPS = 8, 3
 """Number of times that the set of moving nodes is determined, and number of steps for each set."""
-RAIL = 1e9
-"""Weight, in units of σ, that keeps sliding nodes on their tangent."""
+RAIL = 1e9  # weight, in units of σ, that keeps sliding nodes on their tangent
 WORTH, FEW = 0.7, 5e-4
 """Fraction of the excess up to which another round follows; fraction of ratios that counts as few."""
 NO_PAIRS = np.empty((0, 2), dtype=np.intp)
@@ -119,29 +116,20 @@ def _touched(nodes: Bools, groups: Indices) -> Bools:
 class _Patch:
     """The nodes that move, and the terms of E that change with them."""
 
-    nodes: Indices
-    """(m,) those that move."""
+    nodes: Indices  # (m,) those that move
     lines: GrowthLines
-    corners: Indices
-    """(c, 3) corners of cells, the nodes after and before them."""
+    corners: Indices  # (c, 3) corners of cells, the nodes after and before them
     growth: GrowthLimit
-    angles: Floats
-    """(c,) θ0."""
-    worst: tuple[Floats, Floats]
-    """(c,) least and largest angle permitted."""
-    start: Complexes
-    """(m,) z0."""
-    stiffness: Floats
-    """(m,) σ / h²."""
-    axes: Complexes
-    """(n,) direction of the first of the two unknowns of each node: the tangent if it slides."""
+    angles: Floats  # (c,) θ0
+    worst: tuple[Floats, Floats]  # (c,) least and largest angle permitted
+    start: Complexes  # (m,) z0
+    stiffness: Floats  # (m,) σ / h²
+    axes: Complexes  # (n,) direction of the first of the two unknowns of each node: the tangent if it slides
     across: Floats
     """(m,) factor on the stiffness of the second unknown, which keeps sliding nodes on the tangent."""
     equations: NormalEquations
-    pairs: Indices
-    """(k, 2) nodes on loops, and those that move with them."""
-    part: Indices
-    """(n,) number of the independent part of the patch that each node is in, -1 for none."""
+    pairs: Indices  # (k, 2) nodes on loops, and those that move with them
+    part: Indices  # (n,) number of the independent part of the patch that each node is in, -1 for none
 
     @classmethod
     def of(

@@ -17,8 +17,7 @@ from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.layers.layer_settings import LayerSettings
 
 FEW_ITERATIONS = 10  # only nodes around folds move
-NEAR_FOLDS = 5
-"""Cells around folded ones that are optimised with them."""
+NEAR_FOLDS = 5  # cells around folded ones that are optimised with them
 
 
 def finished(layout: Layout, settings: LayerSettings, held: Bools, following: Indices = NO_PAIRS) -> Layout:

@@ -44,10 +44,8 @@ from meshonet.solvers.refinement.refine import multiplied, refine
 from meshonet.solvers.stages import Timings, stage
 
 ITERATIONS, STRIDING = 120, 60  # of each optimum, and of one before it on fewer cells
-UNFOLDING = 3
-"""Factor on the number of iterations if cells are folded at first."""
-SWEEPS = 10
-"""Sweeps that smooth target lengths: with twice as many, cells in slots grow too fast."""
+UNFOLDING = 3  # factor on the number of iterations if cells are folded at first
+SWEEPS = 10  # sweeps that smooth target lengths: with twice as many, cells in slots grow too fast
 COUNTINGS = 3
 """Number of rounds in which cells are counted and nodes optimised, before nodes on fronts are fixed."""
 LIMITS = 1.0, 2.0, 4.0

@@ -14,21 +14,16 @@ from meshonet.kernels._native import hyperbolic_march
 from meshonet.solvers.hyperbolic.march import AREA_SMOOTHING
 from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
 
-GAP_PART = 0.38
-"""Largest fraction of the gap in front of a wall that its layers fill."""
-SLOPE = 0.25
-"""Largest change of the thickness of layers per length along the wall."""
+GAP_PART = 0.38  # largest fraction of the gap in front of a wall that its layers fill
+SLOPE = 0.25  # largest change of the thickness of layers per length along the wall
 MARCH_GROWTH = 1.2
 """Ratio of neighbouring levels of the march; the layers are redistributed along its lines later."""
-THINNER = 0.6
-"""Factor on the thickness after every march has folded."""
+THINNER = 0.6  # factor on the thickness after every march has folded
 TRIES = 4  # thicknesses, the last a fifth of the first
-BLUNT = "{base} 0.005"
-"""Option that opens the sharp edge of an airfoil."""
+BLUNT = "{base} 0.005"  # option that opens the sharp edge of an airfoil
 AT_SHARP_EDGE = f"at the sharp edge of an airfoil give {BLUNT}, or {{te}} round in place of a wedge"
 """Remedy where layers fold because a wall turns by nearly 180 degrees."""
-FEWEST_CELLS = 4.0
-"""Smallest thickness of layers in first cells."""
+FEWEST_CELLS = 4.0  # smallest thickness of layers in first cells
 
 
 def marched(

@@ -21,8 +21,7 @@ from meshonet.solvers.layers.layer_settings import LayerSettings
 
 FAR = 4.0
 """Distance of an outer loop, relative to the circle around all bodies, above which it counts as distant."""
-NEAR = 2.2
-"""Radius of the circle that replaces it, relative to the circle around all bodies."""
+NEAR = 2.2  # radius of the circle that replaces it, relative to the circle around all bodies
 _POINTS = 240  # of the circle, a spline through them
 _EVEN = 1.1  # largest ratio of the first cells of neighbouring rows
 _UNLIKE = 1.2  # largest ratio of the first cell of a row to the mean

@@ -19,15 +19,12 @@ from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
 from meshonet.solvers.refinement.size_metric import SizeMetric
 from meshonet.solvers.stages import Timings
 
-PRICE = 0.08
-"""Price of a block in degrees of mean deviation; a tube bank gets 70 blocks, without a price 91."""
-TURN = np.radians(20.0)
-"""Largest angle by which a wall turns along one cell of the quad mesh."""
+PRICE = 0.08  # price of a block in degrees of mean deviation; a tube bank gets 70 blocks, without a price 91
+TURN = np.radians(20.0)  # largest angle by which a wall turns along one cell of the quad mesh
 CELLS_IN_GAP = 2.5  # so that at least two quads cross every gap
 CELLS_AROUND, CELLS_ACROSS = 24.0, 30.0
 """Smallest numbers of cells around a loop, and across a domain far from all features."""
-GRADING = 0.2
-"""Growth of sizes along walls, and with the distance from walls, per length."""
+GRADING = 0.2  # growth of sizes along walls, and with the distance from walls, per length
 CLOSE = "use a larger {growth} or a larger first cell, or open the gap there"
 """Remedy for walls, or fronts of layers, that nearly touch."""
 

@@ -16,8 +16,7 @@ from meshonet.solvers.algebraic.tfi import between
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
 from meshonet.solvers.layers.layer_settings import LayerSettings, exact, spaced
 
-GROWING_COLUMNS = 75
-"""Percentage of the columns of a row that the layers must fill without growing too fast."""
+GROWING_COLUMNS = 75  # percentage of the columns of a row that the layers must fill without growing too fast
 SHORT_COLUMNS = 20
 """Percentage of columns that may be too short for layers; cells there become lower away from the wall."""
 OPENS = 0.15

@@ -20,17 +20,13 @@ from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.layers.layer_settings import LayerSettings
 from meshonet.solvers.refinement.size_metric import SizeMetric
 
-TURN = np.radians(3.5)
-"""Largest angle by which a wall turns along one cell, for the default number of cells."""
+TURN = np.radians(3.5)  # largest angle by which a wall turns along one cell, for the default number of cells
 CELLS_IN_GAP = 15.0  # smallest ratio of the gap in front of a wall to the length of cells along the wall
-ALONG = 0.2
-"""Growth of sizes along walls per length."""
+ALONG = 0.2  # growth of sizes along walls per length
 UNEVEN = 2.0
 """Largest ratio of the thickest to the thinnest layers of a loop, which have the same number of cells."""
-THINNEST = 8.0
-"""Smallest thickness of layers in first cells."""
-SPREAD = 0.1
-"""Growth of the thickness of layers along a wake per distance from the sharp edge."""
+THINNEST = 8.0  # smallest thickness of layers in first cells
+SPREAD = 0.1  # growth of the thickness of layers along a wake per distance from the sharp edge
 AROUND_CORNER = 2.5
 """Ratio of arc length to distance up to which a point of the same wall is around a corner: no gap."""
 

@@ -10,10 +10,8 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.wall_turning import wall_bend
 from meshonet.geometry.spacing.gradual_sizes import graded
 
-TURN = np.radians(4.0)
-"""Largest angle by which the wall turns along one cell."""
-GROWTH = 0.1
-"""Largest difference of neighbouring cells relative to their length."""
+TURN = np.radians(4.0)  # largest angle by which the wall turns along one cell
+GROWTH = 0.1  # largest difference of neighbouring cells relative to their length
 _SAMPLES = 4000  # points around a loop at which sizes are tabulated: 28 in each of the longest cells
 _CORNER_PART = 1.0 / 40.0  # length of a cell at a corner over the largest one
 _PIECE_PART = 1.0 / 3.0  # largest length of a cell at a corner over that of the shorter wall there

@@ -43,8 +43,7 @@ INNER_THICKNESS = 0.075
 """Thickness of layers inside an outer loop in hydraulic diameters: four times area over perimeter."""
 MOST_OPTIMISED = 4000
 """Largest number of cells that are optimised directly; finer grids are splines through these."""
-ROWS = 3
-"""Number of cells across a row of layers during the optimisation."""
+ROWS = 3  # number of cells across a row of layers during the optimisation
 _MARCHES = 4  # largest number of marches of rings that are too close to each other
 _BISECTIONS = 14  # of a range of 240 to 1: the scale to 0.03 %
 
@@ -54,17 +53,12 @@ class WallLayers:
     """The layers at the walls of a domain, and the remaining domain, which is decomposed into blocks."""
 
     domain: Domain
-    rings: Mapping[int, Ring]
-    """Layers around whole loops, by the index of the loop."""
-    near: NearField | None
-    """The circle that replaces a distant outer loop."""
-    rest: Domain
-    """The remaining domain, with the same indices of loops."""
+    rings: Mapping[int, Ring]  # layers around whole loops, by the index of the loop
+    near: NearField | None  # the circle that replaces a distant outer loop
+    rest: Domain  # the remaining domain, with the same indices of loops
     settings: LayerSettings
-    stretches: tuple[Stretch, ...] = ()
-    """Parts of loops whose layers are rows of blocks of the layout."""
-    sheets: tuple[int, ...] = ()
-    """Indices of loops with rows of blocks around them and along their wakes."""
+    stretches: tuple[Stretch, ...] = ()  # parts of loops whose layers are rows of blocks of the layout
+    sheets: tuple[int, ...] = ()  # indices of loops with rows of blocks around them and along their wakes
     sizes: Mapping[int, RowSizes] = field(default_factory=dict)
     """Cell sizes at rows of blocks, by the index of the loop."""
 

@@ -10,10 +10,8 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import cells_for_growth, growing_steps
 
-GROWTH = 1.2
-"""Default growth ratio of cells along a line, if the number of layers is not given either."""
-FAR_FIELD = 15.0
-"""Default distance of the far field, in lengths of the surface."""
+GROWTH = 1.2  # default growth ratio of cells along a line, if the number of layers is not given either
+FAR_FIELD = 15.0  # default distance of the far field, in lengths of the surface
 _LONGER = 1.1  # lines than the far field is away, as a rule
 FEWEST = 3  # layers of nodes: two cells
 
@@ -99,8 +97,7 @@ class Smoothing(NamedTuple):
     relaxations: int = 30
     splay: float = 0.0
     """Relative excess distance of ghost nodes at free edges (`meshonet.solvers.hyperbolic.volume.graph`)."""
-    boost: float = 3.0
-    """Additional smoothing at irregular nodes, as a fraction of the smoothing elsewhere."""
+    boost: float = 3.0  # additional smoothing at irregular nodes, as a fraction of the smoothing elsewhere
 
     def numbers(self, size: float) -> tuple[float, ...]:
         """Return the parameters for the kernels; `size` is half the extent of the surface."""

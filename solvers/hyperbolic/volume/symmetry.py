@@ -13,8 +13,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.surface.planes import FLAT, Plane, edges_in
 from meshonet.geometry.surface.surface import Surface
 
-ROUGH = 1e-3
-"""Largest distance of nodes from a given plane of symmetry, relative to the size of the surface."""
+ROUGH = 1e-3  # largest distance of nodes from a given plane of symmetry, relative to the size of the surface
 _FACING = 0.1  # largest net area that faces a plane of symmetry, as a fraction of the surface
 
 

@@ -30,12 +30,9 @@ class BaseComplex:
     """
 
     mesh: QuadMesh
-    blocks: tuple[Indices, ...]
-    """Lattices (ni, nj) of nodes, right-handed."""
-    bounds: Bools
-    """(e,) mask of the edges that bound blocks."""
-    chord: Indices
-    """(e,) chord of each edge: one for opposite sides of a block and all edges between them."""
+    blocks: tuple[Indices, ...]  # lattices (ni, nj) of nodes, right-handed
+    bounds: Bools  # (e,) mask of the edges that bound blocks
+    chord: Indices  # (e,) chord of each edge: one for opposite sides of a block and all edges between them
     chords: int
 
     @property

@@ -25,15 +25,11 @@ from meshonet.solvers.blocking.decomposition.side_counts import check_sides
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.refinement.size_metric import SizeMetric
 
-VALENCES = (3, 5)
-"""Smallest and largest number of quads around an interior node."""
-FAILURES = 8
-"""Number of consecutive attempts without improvement after which the collapse ends."""
+VALENCES = (3, 5)  # smallest and largest number of quads around an interior node
+FAILURES = 8  # number of consecutive attempts without improvement after which the collapse ends
 
-PER_CHORD = 14
-"""One more chord is collapsed at a time for each this many chords."""
-ITERATIONS = 12
-"""Iterations of the optimisation before a trial is judged."""
+PER_CHORD = 14  # one more chord is collapsed at a time for each this many chords
+ITERATIONS = 12  # iterations of the optimisation before a trial is judged
 
 MOST_WORK = 45_000_000
 """Number of quads times iterations after which the collapse ends; this takes some seconds."""

@@ -20,10 +20,8 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseComplex
 from meshonet.solvers.blocking.decomposition.quads.padding import wrong_count
 
-PRICE = 0.12
-"""Price of a block in degrees of mean deviation."""
-SIZES = 8.0
-"""Price in degrees of mean deviation if all cells are too long or short by a factor e."""
+PRICE = 0.12  # price of a block in degrees of mean deviation
+SIZES = 8.0  # price in degrees of mean deviation if all cells are too long or short by a factor e
 
 
 def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = None) -> float:

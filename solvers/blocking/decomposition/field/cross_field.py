@@ -31,20 +31,15 @@ class CrossField:
 
     surface: Triangulation
     walls: WallDirections
-    crosses: Complexes
-    """(n,) exp(4 i theta) at vertices."""
-    shears: Complexes
-    """(n,) linear maps z - nu conj(z), |nu| < 1, that turn acute corners into right angles."""
-    angles: Floats
-    """(t,) theta in each triangle for one of the four directions, which defines the frame."""
+    crosses: Complexes  # (n,) exp(4 i theta) at vertices
+    shears: Complexes  # (n,) linear maps z - nu conj(z), |nu| < 1, that turn acute corners into right angles
+    angles: Floats  # (t,) theta in each triangle for one of the four directions, which defines the frame
     quarters: Indices
     """(t, 3) number of quarter turns from the frame of a triangle to the frame across each edge."""
     wall_axis: Indices
     """(w,) quarter turns from the frame to each wall edge, in the order of `Triangulation.walls`."""
-    valence: Indices
-    """(n,) number of cells that meet at interior vertices, 0 at wall vertices."""
-    boundary_cells: Indices
-    """(n,) number of cells that meet at wall vertices, 0 at interior ones."""
+    valence: Indices  # (n,) number of cells that meet at interior vertices, 0 at wall vertices
+    boundary_cells: Indices  # (n,) number of cells that meet at wall vertices, 0 at interior ones
 
     @property
     def singular(self) -> Indices:

@@ -22,16 +22,12 @@ class Frames:
     """A direction in each triangle, selected from those of its cross."""
 
     field: CrossField
-    angles: Floats
-    """(t,) angle of the direction u."""
-    turns: Indices
-    """(t, 3) quarter turns k, 0 to 3: coordinates across an edge are i^k times those here."""
-    wall_axis: Indices
-    """(w,) direction d, 0 to 3, of each wall edge in its frame: it runs along i^d."""
+    angles: Floats  # (t,) angle of the direction u
+    turns: Indices  # (t, 3) quarter turns k, 0 to 3: coordinates across an edge are i^k times those here
+    wall_axis: Indices  # (w,) direction d, 0 to 3, of each wall edge in its frame: it runs along i^d
     cut: Bools
     """(t, 3) edges that open the surface to a disc, through all singular vertices; others have no turns."""
-    wedges: Indices
-    """(t, 3) number of each corner's vertex on the opened surface."""
+    wedges: Indices  # (t, 3) number of each corner's vertex on the opened surface
 
 
 def cut_frames(field: CrossField) -> Frames:

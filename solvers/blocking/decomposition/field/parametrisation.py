@@ -9,8 +9,7 @@ from meshonet.solvers.blocking.decomposition.field.frames import Frames
 from meshonet.solvers.blocking.decomposition.surface.surface import NEXT
 from meshonet.solvers.sparse import SparsePattern
 
-_SOFT = 1e-8
-"""Small value instead of zero in the matrix of the constraints, which permits redundant ones."""
+_SOFT = 1e-8  # small value instead of zero in the matrix of the constraints, which permits redundant ones
 _EXACT = 1e-14  # residual over the solution at which refinement ends: round-off
 _REFINEMENTS = 6  # largest number of refinement steps, which remove the effect of `_SOFT`
 _REAL = np.array([1.0, 0.0, -1.0, 0.0])  # real parts of the powers of i

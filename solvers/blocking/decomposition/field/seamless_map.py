@@ -41,8 +41,7 @@ class SeamlessMap:
     surface: Triangulation
     corner_coords: Complexes
     """(t, 3) coordinates w, in the domain's unit of length times sizes of frames, whose median is 1."""
-    turns: Indices
-    """(t, 3) quarter turns k across each edge, 0 to 3; 0 at walls."""
+    turns: Indices  # (t, 3) quarter turns k across each edge, 0 to 3; 0 at walls
     boundary_cells: Indices
     """(b,) number of cells at each boundary vertex: 2 except at corners and singularities on a wall."""
     corner_cells: Indices

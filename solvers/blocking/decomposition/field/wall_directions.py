@@ -18,18 +18,13 @@ _REACH = 0.15
 class WallDirections:
     """Prescribed angles of the field along walls."""
 
-    corner_cells: Indices
-    """(b,) number of cells at boundary vertices that are corners, 0 at others."""
-    vertices: Floats
-    """(n,) angle at each wall vertex, 0 at all others."""
+    corner_cells: Indices  # (b,) number of cells at boundary vertices that are corners, 0 at others
+    vertices: Floats  # (n,) angle at each wall vertex, 0 at all others
     shears: Complexes
     """(n,) near acute corners, nu of the linear map z - nu conj(z) that rotates the walls to these angles."""
-    edges: Floats
-    """(w,) angle of each wall edge, in the order of `Triangulation.walls`."""
-    offsets: Floats
-    """(w,) difference from the edge's own angle."""
-    inside: Floats
-    """(n,) angle between the two walls of a wall vertex."""
+    edges: Floats  # (w,) angle of each wall edge, in the order of `Triangulation.walls`
+    offsets: Floats  # (w,) difference from the edge's own angle
+    inside: Floats  # (n,) angle between the two walls of a wall vertex
 
 
 def wall_directions(surface: Triangulation) -> WallDirections:

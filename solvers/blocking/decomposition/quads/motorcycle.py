@@ -17,10 +17,8 @@ from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessM
 from meshonet.solvers.blocking.decomposition.quads.ports import Ports, ports_of
 from meshonet.solvers.blocking.decomposition.quads.trails import Trails, map_tables, ray_trails, wall_trails
 
-NEAR = 1e-6
-"""Distance relative to an edge within which a ray meets a node, as in domains with right angles."""
-PROBED = 1500
-"""Number of triangles through which a ray is followed to test whether it meets a node."""
+NEAR = 1e-6  # distance relative to an edge within which a ray meets a node, as in domains with right angles
+PROBED = 1500  # number of triangles through which a ray is followed to test whether it meets a node
 
 CANCELLED, AT_NODE, AT_RAY, AT_WALL, TOO_LONG = range(5)  # how rays end, as in kernels/motorcycle
 
@@ -38,14 +36,10 @@ class MotorcycleGraph:
     """
 
     map: SeamlessMap
-    vertex: Indices
-    """(n,) vertex of the triangulation at each node, -1 if a ray ended elsewhere."""
-    quarters: Indices
-    """(n,) number of right angles around each node in the map."""
-    wall: Indices
-    """(n,) number of the trail of the node's wall, -1 inside."""
-    trails: Trails
-    """The rays, then the walls."""
+    vertex: Indices  # (n,) vertex of the triangulation at each node, -1 if a ray ended elsewhere
+    quarters: Indices  # (n,) number of right angles around each node in the map
+    wall: Indices  # (n,) number of the trail of the node's wall, -1 inside
+    trails: Trails  # the rays, then the walls
     stations: tuple[tuple[Station, ...], ...]
     """For each trail the nodes on it, in its direction. Trails of walls are closed."""
 
@@ -53,10 +47,8 @@ class MotorcycleGraph:
 @dataclass(frozen=True, eq=False)
 class _Traced:
     ports: Ports
-    ends: Indices
-    """(r, 3) kind, other, place of ``kernels/motorcycle/trace.h``."""
-    at: Floats
-    """(r, 2) length of the other, own length."""
+    ends: Indices  # (r, 3) kind, other, place of ``kernels/motorcycle/trace.h``
+    at: Floats  # (r, 2) length of the other, own length
     pieces: Indices
     lines: Floats
 

@@ -9,22 +9,17 @@ from meshonet.geometry.elementary import angle, times
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
 
 QUARTER = np.pi / 2  # angle between coordinate lines, radians
-SLACK = 0.5
-"""Angle in radians by which a ray may lie outside of the triangle to which it is assigned."""
+SLACK = 0.5  # angle in radians by which a ray may lie outside of the triangle to which it is assigned
 
 
 @dataclass(frozen=True, eq=False)
 class Ports:
     """Nodes of a motorcycle graph at vertices of the triangulation, and the rays that leave these nodes."""
 
-    vertex: Indices
-    """(n,) vertex of the triangulation at each node."""
-    quarters: Indices
-    """(n,) number of right angles around each node, which is the number of cells."""
-    on_wall: Bools
-    """(n,) whether the vertex is on a wall."""
-    node: Indices
-    """(t, 3) node at each corner of each triangle, or -1."""
+    vertex: Indices  # (n,) vertex of the triangulation at each node
+    quarters: Indices  # (n,) number of right angles around each node, which is the number of cells
+    on_wall: Bools  # (n,) whether the vertex is on a wall
+    node: Indices  # (t, 3) node at each corner of each triangle, or -1
     port: Indices
     """(t, 3, 4) number of the direction from that node through the triangle along each axis, or -1.
 

@@ -16,10 +16,8 @@ from meshonet.solvers.blocking.decomposition.quads.t_mesh import Face, Side, TMe
 from meshonet.solvers.refinement.size_metric import SizeMetric
 from meshonet.solvers.whole_numbers import difference, whole_numbers
 
-SHORTEST = 0.05
-"""Smallest target number of cells of an arc."""
-LOOP = 4
-"""Smallest number of cells along a closed wall."""
+SHORTEST = 0.05  # smallest target number of cells of an arc
+LOOP = 4  # smallest number of cells along a closed wall
 
 
 def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None = None) -> QuadMesh:
@@ -84,12 +82,10 @@ def _within(mesh: TMesh, trail: Indices, length: Floats) -> tuple[Floats, Floats
 class _Nodes:
     """The nodes on arcs of a T-mesh."""
 
-    points: Complexes
-    """(n,) in the plane."""
+    points: Complexes  # (n,) in the plane
     loop: Indices
     arc: Floats
-    on: tuple[list[int], ...]
-    """The nodes of each arc, both ends included."""
+    on: tuple[list[int], ...]  # the nodes of each arc, both ends included
 
 
 def _on_arcs(mesh: TMesh, counts: Indices) -> _Nodes:

@@ -26,10 +26,8 @@ class TMesh:
     """
 
     graph: MotorcycleGraph
-    nodes: Indices
-    """(a, 2) nodes at the start and the end of each arc."""
-    trail: Indices
-    """(a,) trail of the arc."""
+    nodes: Indices  # (a, 2) nodes at the start and the end of each arc
+    trail: Indices  # (a,) trail of the arc
     span: Floats
     """(a, 2) lengths of that trail at both ends; the last arc of a closed trail ends beyond its length."""
     faces: tuple[Face, ...]

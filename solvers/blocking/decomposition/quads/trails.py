@@ -25,24 +25,17 @@ def map_tables(seamless: SeamlessMap) -> Tables:
 class Trails:
     """Lines of constant u or v, each a sequence of pieces (p,), one per triangle."""
 
-    first: Indices
-    """(k + 1,) first piece of each trail."""
-    face: Indices
-    """(p,) triangle of the piece."""
-    edge: Indices
-    """(p,) edge of the triangle that contains the piece, at walls; -1 elsewhere."""
+    first: Indices  # (k + 1,) first piece of each trail
+    face: Indices  # (p,) triangle of the piece
+    edge: Indices  # (p,) edge of the triangle that contains the piece, at walls; -1 elsewhere
     length: Floats
     """(p + k,) length of the trail in the map at the start of each piece, and at the end of the trail."""
-    begin: Complexes
-    """(p,) start in the plane."""
-    end: Complexes
-    """(p,) end in the plane."""
-    loop: Indices
-    """(k,) number of the loop, for walls; -1 for rays."""
+    begin: Complexes  # (p,) start in the plane
+    end: Complexes  # (p,) end in the plane
+    loop: Indices  # (k,) number of the loop, for walls; -1 for rays
     arc: Floats
     """(p, 2) arc length on the loop at the start of the piece, and length of the piece; 0 for rays."""
-    vertex: Indices
-    """(p,) vertex at the start of the piece, at walls; -1 elsewhere."""
+    vertex: Indices  # (p,) vertex at the start of the piece, at walls; -1 elsewhere
 
     def total(self, trail: int) -> float:
         """Return the length of a trail in the map."""

@@ -13,39 +13,28 @@ from meshonet.kernels._native import wall_gaps, wall_growth
 
 GROWTH = 0.35
 """Largest change of the size per length; 0.15 and 0.7 give 22 domains 450 and 455 blocks, not 431."""
-PER_GAP = 3.5
-"""Edges across a gap; half and twice as many give 22 domains 459 and 423 blocks, not 431."""
+PER_GAP = 3.5  # edges across a gap; half and twice as many give 22 domains 459 and 423 blocks, not 431
 PER_RADIUS = 0.45
 """Edge length over the radius of curvature; half and twice as much give 446 and 428 blocks, not 431."""
-PER_PIECE = 4.0
-"""Smallest number of edges between two corners."""
-FLOOR = 1.0 / 25.0
-"""Smallest size at walls, relative to the largest size, or to `OF_LOOP` times the loop."""
+PER_PIECE = 4.0  # smallest number of edges between two corners
+FLOOR = 1.0 / 25.0  # smallest size at walls, relative to the largest size, or to `OF_LOOP` times the loop
 OF_LOOP = 1.0 / 16.0  # of its length, the largest edge on a loop: 16 make a circle round
-MOST = 2.0
-"""Largest ratio of nodes on walls to requested nodes; long narrow gaps then get fewer."""
-CONE = 0.6
-"""Cosine of the angle to the normal within which another wall counts as being opposite."""
+MOST = 2.0  # largest ratio of nodes on walls to requested nodes; long narrow gaps then get fewer
+CONE = 0.6  # cosine of the angle to the normal within which another wall counts as being opposite
 
 
 @dataclass(frozen=True, eq=False)
 class WallSizes:
     """Edge lengths at samples of all loops; each sample is the midpoint of an interval of its loop."""
 
-    largest: float
-    """Largest size."""
+    largest: float  # largest size
     smallest: Floats
     """(loops,) smallest size due to the walls of a loop; `finer` points may have smaller ones."""
-    loop: Indices
-    """(n,) number of the loop."""
-    piece: Indices
-    """(n,) number of the piece between two corners, counted through all loops."""
-    arc: Floats
-    """(n,) arc length on the loop."""
-    length: Floats
-    """(n,) length of the interval around the sample."""
-    size: Floats
-    """(n,) size at the sample."""
+    loop: Indices  # (n,) number of the loop
+    piece: Indices  # (n,) number of the piece between two corners, counted through all loops
+    arc: Floats  # (n,) arc length on the loop
+    length: Floats  # (n,) length of the interval around the sample
+    size: Floats  # (n,) size at the sample
 
 
 class _Samples(NamedTuple):

@@ -26,18 +26,12 @@ class Triangulation:
     """
 
     domain: Domain
-    points: Floats
-    """(n, 2) vertices, in the domain's unit."""
-    triangles: Indices
-    """(t, 3) vertex at each corner, counter-clockwise."""
-    loop: Indices
-    """(b,) loops of the first b vertices, which are those on the walls."""
-    arc: Floats
-    """(b,) their arc lengths, ascending in each loop."""
-    neighbours: Indices
-    """(t, 3) triangle across each edge, -1 at walls."""
-    neighbour_edge: Indices
-    """(t, 3) number of that edge in the neighbour, -1 at walls."""
+    points: Floats  # (n, 2) vertices, in the domain's unit
+    triangles: Indices  # (t, 3) vertex at each corner, counter-clockwise
+    loop: Indices  # (b,) loops of the first b vertices, which are those on the walls
+    arc: Floats  # (b,) their arc lengths, ascending in each loop
+    neighbours: Indices  # (t, 3) triangle across each edge, -1 at walls
+    neighbour_edge: Indices  # (t, 3) number of that edge in the neighbour, -1 at walls
 
     @property
     def size(self) -> int:

@@ -11,16 +11,14 @@ from meshonet.solvers.blocking.decomposition.surface.sizes import GROWTH, WallSi
 from meshonet.solvers.blocking.decomposition.surface.surface import Triangulation
 
 _BOX = 4  # nodes that the kernel has before ours
-_SIDE = 2.0**29
-"""Number of integer steps along the domain; the kernel's box is twice as wide."""
+_SIDE = 2.0**29  # number of integer steps along the domain; the kernel's box is twice as wide
 _LARGEST = 1.3
 """Size inside over the largest size at walls; 1 and 2 give 22 domains 471 and 467 blocks, not 431."""
 _SMOOTHING, _SMOOTHINGS = 0.7, 3
 """Relaxation factor and number of smoothing steps; no smoothing gives 22 domains 456 blocks, not 431."""
 _JITTER = 1.7e-3
 """Random displacement of nodes over their size: symmetric domains then have no ambiguous diagonals."""
-_NEAREST = 1e-7
-"""Distance of walls, relative to the extent, below which they cannot be distinguished."""
+_NEAREST = 1e-7  # distance of walls, relative to the extent, below which they cannot be distinguished
 
 
 class _Frame:

@@ -11,8 +11,7 @@ from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mir
 
 Images = Sequence[tuple[Mirror, Indices]]
 """For each mirror: the mirror, and for each node of a mesh (n,) the index of its mirror image."""
-SOME = 100
-"""Number of quads whose images are searched for; the images of the others follow from these."""
+SOME = 100  # number of quads whose images are searched for; the images of the others follow from these
 
 
 def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images:

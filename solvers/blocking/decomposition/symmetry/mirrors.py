@@ -16,10 +16,8 @@ from meshonet.geometry.domain.loop import Loop
 
 SAME = 1e-7
 """Largest distance of a symmetric boundary from its mirror image, over the extent; drawings have 1e-12."""
-MOST = 64
-"""Largest number of directions that are examined; a circle has one for each of its points."""
-MOST_MIRRORS = 8
-"""Largest number of mirrors through a centre: a domain with more is a circle, or nearly."""
+MOST = 64  # largest number of directions that are examined; a circle has one for each of its points
+MOST_MIRRORS = 8  # largest number of mirrors through a centre: a domain with more is a circle, or nearly
 _STEPS = 8  # of Newton's method for the nearest point of a curve
 
 

@@ -20,28 +20,21 @@ from meshonet.kernels._native import nearest_points
 from meshonet.solvers.blocking.decomposition.quads.padding import Span
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
 
-_NEAR = 1e-6
-"""Positions nearer than this fraction of a loop, or of the extent, are the same."""
+_NEAR = 1e-6  # positions nearer than this fraction of a loop, or of the extent, are the same
 _SHARPEST = 52.5
 """Smallest angle of half a corner in degrees: a corner of 90 degrees is not cut, one of 120 degrees is."""
-Ray = tuple[Mirror, Floats]
-"""A mirror, and the direction (2,) of the ray on it, from the centre of the part."""
+Ray = tuple[Mirror, Floats]  # a mirror, and the direction (2,) of the ray on it, from the centre of the part
 
 
 @dataclass(frozen=True, eq=False)
 class LoopPart:
     """Part of a loop of the whole domain between two rays (halves of mirror lines), or the centre."""
 
-    loop: int
-    """Index of the loop; -1 for the centre."""
-    arcs: Floats
-    """(n,) ascending arc lengths."""
-    points: Floats
-    """(n, 2) points at these arc lengths."""
-    corners: Indices
-    """Indices of the points that are corners, including those on rays."""
-    breaks: Indices
-    """Indices of the points at which the tangent may jump."""
+    loop: int  # index of the loop; -1 for the centre
+    arcs: Floats  # (n,) ascending arc lengths
+    points: Floats  # (n, 2) points at these arc lengths
+    corners: Indices  # indices of the points that are corners, including those on rays
+    breaks: Indices  # indices of the points at which the tangent may jump
     straight: Bools
     """(n,) whether the line to the next point is straight, as it is from the last point along a ray."""
 

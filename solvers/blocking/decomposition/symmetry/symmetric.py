@@ -26,17 +26,13 @@ from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.refinement.chords import Chords
 from meshonet.solvers.refinement.refine import refine
 
-WORTH = 2.0
-"""Largest increase of the score without prices (degrees) that symmetric blocks may have."""
+WORTH = 2.0  # largest increase of the score without prices (degrees) that symmetric blocks may have
 AT_CENTRE = 6
 """Largest number of quads around the centre of three or more mirrors; or the number of mirrors, if larger."""
-EVEN = 4
-"""Number of cells along the sides of all blocks in the search for images."""
-FindPart = Callable[[DomainPart], QuadMesh]
-"""Returns the mesh of a part of a domain."""
+EVEN = 4  # number of cells along the sides of all blocks in the search for images
+FindPart = Callable[[DomainPart], QuadMesh]  # returns the mesh of a part of a domain
 Optimised = Callable[[QuadMesh], QuadMesh]
-Way = Callable[[], QuadMesh]
-"""Returns a mesh that may be symmetric."""
+Way = Callable[[], QuadMesh]  # returns a mesh that may be symmetric
 Score = Callable[[BaseComplex, bool], float]
 """Returns the score of blocks, with or without the price of their number; lower is better."""
 
