@@ -77,11 +77,11 @@ def _compared(grid: Grid, slide: bool, pictures: Path | None) -> bool:
 
 
 def _figures(grid: Grid) -> tuple[float, float, float, float]:
-    found, blocks = faces(grid), block_figures(grid)
+    result, blocks = faces(grid), block_figures(grid)
     across = blocks.lines.growth_across
     return (
-        found.non_orthogonality.max if found.non_orthogonality else 0.0,
-        found.face_skewness.max if found.face_skewness else 0.0,
+        result.non_orthogonality.max if result.non_orthogonality else 0.0,
+        result.face_skewness.max if result.face_skewness else 0.0,
         blocks.deviation.mean,
         across.max if across else 1.0,
     )

@@ -110,9 +110,9 @@ def by_gmsh(path: Path, algorithm: str, environment: dict[str, str]) -> Row:
     row = timed([*command, str(out)], "gmsh", environment)
     if not out.exists():
         return row | {"status": row["status"] or 1}
-    with np.load(out) as found:
-        nodes, quads = found["nodes"], found["quads"]
-        row |= {"cpu": float(found["seconds"]), "triangles": int(found["triangles"])}
+    with np.load(out) as result:
+        nodes, quads = result["nodes"], result["quads"]
+        row |= {"cpu": float(result["seconds"]), "triangles": int(result["triangles"])}
     if not len(quads):
         return row | {"status": 1, "said": "no quads"}
     z = nodes[quads] @ np.array([1.0, 1j])

@@ -52,7 +52,7 @@ def main() -> None:
 
 def bodies(ni: int, nj: int, count: int) -> list[Boundary]:
     """Return random boundaries with ni x nj nodes on which Winslow's equations have a solution."""
-    found: list[Boundary] = []
+    boundaries: list[Boundary] = []
     for k in range(count):
         edges = random_body(np.random.default_rng([SEED, k]), ni, nj)
         try:
@@ -60,8 +60,8 @@ def bodies(ni: int, nj: int, count: int) -> list[Boundary]:
             variational(edges, max_cycles=1)
         except SolverError:
             continue
-        found.append(edges)
-    return found
+        boundaries.append(edges)
+    return boundaries
 
 
 def tables(edges: list[Boundary], model: str, twin: str) -> list[str]:
@@ -112,16 +112,16 @@ def holes(model: str, twin: str) -> str:
         goals = [winslow(one, tol=1e-8, max_cycles=60).grid for one in edges]
         cells = []
         for polish in (0, 2):
-            grids = [found.grid for found in load(twin).solve(edges, polish)]
+            grids = [result.grid for result in load(twin).solve(edges, polish)]
             errors = [compare(grid, goal).relative_l2 for grid, goal in zip(grids, goals, strict=True)]
             cells.append(f"{np.median(errors):.1e} ({sum(count_folded(grid.nodes) > 0 for grid in grids)})")
         judgements = [
             [figures(partial(operate, model, polish), one) for one in edges] for polish in (0, 5)
         ] + [[figures(winslow, one) for one in edges]]
         angles = ["{:.1f} / {:.1f}".format(*np.array(rows)[:, 1:3].mean(axis=0)) for rows in judgements]
-        told = [published(f"hole.random.{kind}") for kind in ("meshonet.raw", "meshonet-hard.raw")]
-        told = told if name == "random" else ["", ""]
-        lines.append(f"| {name} | {' | '.join([*cells, *told, *angles])} |")
+        paper = [published(f"hole.random.{kind}") for kind in ("meshonet.raw", "meshonet-hard.raw")]
+        paper = paper if name == "random" else ["", ""]
+        lines.append(f"| {name} | {' | '.join([*cells, *paper, *angles])} |")
     return "\n".join(lines)
 
 

@@ -160,16 +160,16 @@ def of_files(paths: list[Path]) -> dict[str, list[Case]]:
         ("sharp files", sharp, "exact", "o"),
     )
     return {
-        f"{len(found)} {kind}": [Case(path.stem, reader(str(path)), te, topology) for path in found]
-        for kind, found, te, topology in kinds
-        if found
+        f"{len(result)} {kind}": [Case(path.stem, reader(str(path)), te, topology) for path in result]
+        for kind, result, te, topology in kinds
+        if result
     }
 
 
 def angles(case: Case) -> str:
     """Return the largest and the mean deviation of one shape at 250x100, first cell 1e-5."""
-    found = measured(case, 250, 100, 1e-5)
-    return f"{found[2]:.1f} / {found[4]:.2f}"
+    result = measured(case, 250, 100, 1e-5)
+    return f"{result[2]:.1f} / {result[4]:.2f}"
 
 
 def row(name: str, cases: list[Case], ni: int, nj: int, first: float) -> str:
@@ -215,10 +215,10 @@ def defaults(case: Case, name: str, n: int) -> list[float]:
     )
     spent = 1e3 * (time.process_time() - begun)
     wake = edges.wake + 1
-    found = figures(nodes, 1.0, wake)
+    result = figures(nodes, 1.0, wake)
     wall = nodes[wake - 1 : n - wake + 1, :2]
     heights = np.hypot(*(wall[:, 1] - wall[:, 0]).T) / edges.chord
-    return [found[0], found[2], *found[4:], heights.min(), heights.max(), spent]
+    return [result[0], result[2], *result[4:], heights.min(), heights.max(), spent]
 
 
 def line(name: str, table: Floats, ni: int, nj: int, first: float) -> str:

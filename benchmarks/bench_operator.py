@@ -184,8 +184,8 @@ def families(kept: Kept) -> str:
             title = f"{name}, {split}"
             shapes = members(name, split, 101)
             ways: dict[str, Way] = {"airfoil": ring, "hole": plate}.get(name, quad)
-            found = rows(kept, title, shapes, 2, ways)
-            cells = [f"{np.median(one[:, 2]):.1e} ({(one[:, 0] > 0).sum()})" for one in found.values()]
+            result = rows(kept, title, shapes, 2, ways)
+            cells = [f"{np.median(one[:, 2]):.1e} ({(one[:, 0] > 0).sum()})" for one in result.values()]
             cells += [published(f"{name}.{split}.{kind}.raw") for kind in ("meshonet", "meshonet-hard")]
             lines.append(f"| {title} | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
@@ -207,11 +207,11 @@ def times(kept: Kept) -> str:
     ):
         for way, make in ways.items():
             sizes = [n for n in SIZES if n <= LARGEST.get(way, n)]
-            found = [
+            results = [
                 kept.row(("times", label, way, str(n)), lambda n=n, do=make, of=shape: best(do, of(n, n)))
                 for n in sizes
             ]
-            cells = [f"{spent:.1f}" for spent in found] + [""] * (len(SIZES) - len(sizes))
+            cells = [f"{spent:.1f}" for spent in results] + [""] * (len(SIZES) - len(sizes))
             lines.append(f"| {label}: {way} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 

@@ -176,8 +176,8 @@ def batches(model: str, clock: bool) -> str:
         many = 4 * boundaries
         solve = partial(load(model).solve, many, 0, dtype="float32")
         rates = [rate(partial(solve, threads=n), len(many)) for n in (1, 2)]
-        told = "\nBy the clock, float32: {:.0f} grids a second in one thread, {:.0f} in two."
-        lines.append(told.format(*rates))
+        message = "\nBy the clock, float32: {:.0f} grids a second in one thread, {:.0f} in two."
+        lines.append(message.format(*rates))
     return "\n".join(lines)
 
 

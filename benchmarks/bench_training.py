@@ -192,12 +192,12 @@ class Row:
 
     def cell(self, goal: int) -> str:
         """Return the losses of the seeds: their median, least and largest."""
-        found = self.losses.get(goal)
-        if not found:
+        result = self.losses.get(goal)
+        if not result:
             return "-"
-        if len(found) == 1:
-            return f"{found[0]:.2f}"
-        return f"{median(found):.2f} ({min(found):.2f} to {max(found):.2f})"
+        if len(result) == 1:
+            return f"{result[0]:.2f}"
+        return f"{median(result):.2f} ({min(result):.2f} to {max(result):.2f})"
 
 
 def page(rows: list[Row]) -> str:

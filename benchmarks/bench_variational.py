@@ -66,16 +66,16 @@ def main() -> None:
 
 def ways(n: int) -> dict[str, Way]:
     """Return the ways to compare at n x n nodes; full variational solves up to 800."""
-    found: dict[str, Way] = {"TFI": lambda b: Solution(tfi(b), "tfi"), "winslow": winslow}
+    methods: dict[str, Way] = {"TFI": lambda b: Solution(tfi(b), "tfi"), "winslow": winslow}
     counts = [m for m in (33, 65, 129) if m < n]
     for m in counts:
-        found[f"winslow --coarse {m}"] = partial(solve_coarse, solve=winslow, n=m, smooth=True)
+        methods[f"winslow --coarse {m}"] = partial(solve_coarse, solve=winslow, n=m, smooth=True)
     if n <= 800:
-        found["**variational**"] = variational
+        methods["**variational**"] = variational
     for m in counts:
-        found[f"**variational --coarse {m}**"] = partial(solve_coarse, solve=variational, n=m, smooth=True)
-    found["neural operator, quad-general"] = lambda b: load("quad-general").solve([b])[0]
-    return found
+        methods[f"**variational --coarse {m}**"] = partial(solve_coarse, solve=variational, n=m, smooth=True)
+    methods["neural operator, quad-general"] = lambda b: load("quad-general").solve([b])[0]
+    return methods
 
 
 def shapes(n: int, makers: tuple[Callable[[int, int], Boundary], ...] = SHAPES) -> str:
@@ -107,13 +107,13 @@ def row(name: str, nodes: Floats, full: Floats, seconds: float) -> str:
 
 def wall(nodes: Floats) -> float:
     """Return the mean deviation from 90 degrees of the lines that leave the four edges."""
-    found = []
+    angles = []
     for side in (nodes, nodes[:, ::-1], nodes.swapaxes(0, 1), nodes.swapaxes(0, 1)[:, ::-1]):
         along, off = side[2:, 0] - side[:-2, 0], side[1:-1, 1] - side[1:-1, 0]
         cosine = (along * off).sum(axis=-1)
         cosine /= np.linalg.norm(along, axis=-1) * np.linalg.norm(off, axis=-1)
-        found.append(np.degrees(np.arcsin(np.clip(np.abs(cosine), 0, 1))))
-    return float(np.concatenate(found).mean())
+        angles.append(np.degrees(np.arcsin(np.clip(np.abs(cosine), 0, 1))))
+    return float(np.concatenate(angles).mean())
 
 
 def domains(n: int, count: int) -> str:
@@ -136,8 +136,8 @@ def domains(n: int, count: int) -> str:
         worse = sum(a[0] > r[0] + 1e-9 or a[1] > r[1] for a, r in pairs)
         highest, mean = np.mean(angles, axis=0)
         median = 1e3 * np.median(spent)
-        told = worse if reference and name != "winslow" else ""
-        lines.append(f"| {name} | {folded} | {highest:.1f} / {mean:.1f} | {told} | {median:.1f} |")
+        report = worse if reference and name != "winslow" else ""
+        lines.append(f"| {name} | {folded} | {highest:.1f} / {mean:.1f} | {report} | {median:.1f} |")
     return "\n".join(lines)
 
 
@@ -192,12 +192,12 @@ def picture(path: Path) -> None:
 def largest_angles(nodes: Floats) -> Floats:
     """Return the largest included angle of each cell (ni-1, nj-1), in degrees."""
     ring = [nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]]
-    found = []
+    angles = []
     for k in range(4):
         u, v = ring[(k + 1) % 4] - ring[k], ring[k - 1] - ring[k]
         cross = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
-        found.append(np.degrees(np.arctan2(cross, (u * v).sum(axis=-1))) % 360)
-    return np.asarray(np.max(found, axis=0))
+        angles.append(np.degrees(np.arctan2(cross, (u * v).sum(axis=-1))) % 360)
+    return np.asarray(np.max(angles, axis=0))
 
 
 def best(way: Way, boundary: Boundary, repeats: int) -> tuple[float, Floats]:

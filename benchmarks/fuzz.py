@@ -108,13 +108,15 @@ def apart(name: str, seconds: float, seed: int) -> dict[str, object]:
 
 def through_the_command_line() -> dict[str, object]:
     """Give every file of the corpus to ``meshonet convert`` and return the figures."""
-    files = [(name, told, data) for name in READABLE for told, data in corpus(name)]
-    files += [(name, told, data) for name in ("airfoil", "points", "vts", "hdf5") for told, data in foreign()]
+    files = [(name, report, data) for name in READABLE for report, data in corpus(name)]
+    files += [
+        (name, report, data) for name in ("airfoil", "points", "vts", "hdf5") for report, data in foreign()
+    ]
     with TemporaryDirectory() as folder:
         outcomes = [_converted(Path(folder) / str(k), name, data) for k, (name, _, data) in enumerate(files)]
     wrong = [
-        f"{name}: {told}: {outcome}"
-        for (name, told, _), outcome in zip(files, outcomes, strict=True)
+        f"{name}: {report}: {outcome}"
+        for (name, report, _), outcome in zip(files, outcomes, strict=True)
         if outcome not in ("read", "refused")
     ]
     passed = Counter(outcome for outcome in outcomes if outcome in ("read", "refused"))
@@ -173,13 +175,13 @@ def main() -> None:
         return
     bad = False
     if not given.skip_corpus:
-        told = through_the_command_line()
-        print(json.dumps(told), flush=True)
-        bad = bool(told["failures"])
+        report = through_the_command_line()
+        print(json.dumps(report), flush=True)
+        bad = bool(report["failures"])
     with ThreadPoolExecutor(given.jobs) as pool:
-        for told in pool.map(lambda name: apart(name, 60 * given.minutes, given.seed), given.readers):
-            print(json.dumps(told), flush=True)
-            bad = bad or bool(told["failures"])
+        for report in pool.map(lambda name: apart(name, 60 * given.minutes, given.seed), given.readers):
+            print(json.dumps(report), flush=True)
+            bad = bad or bool(report["failures"])
     sys.exit(int(bad))
 
 

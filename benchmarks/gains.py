@@ -92,5 +92,5 @@ def published(name: str) -> str:
     path = ROOT / "docs" / "benchmarks" / "paper" / "results" / f"{name}.json"
     if not path.exists():
         return "not run"
-    told = json.loads(path.read_text())["summary"]
-    return f"{told['relative_l2']['median']:.1e} ({told['folded']['members']})"
+    report = json.loads(path.read_text())["summary"]
+    return f"{report['relative_l2']['median']:.1e} ({report['folded']['members']})"

@@ -66,11 +66,11 @@ def curves(loop: Loop) -> list[int]:
     corners = sorted(loop.corners) or [0]
     if len(corners) == 1:
         corners = sorted([corners[0], (corners[0] + n // 2) % n])
-    found = []
+    lines = []
     for first, last in zip(corners, [*corners[1:], corners[0] + n], strict=True):
         along = [points[k % n] for k in range(first, last + 1)]
-        found.append(gmsh.model.geo.addLine(*along) if len(along) == 2 else gmsh.model.geo.addSpline(along))
-    return found
+        lines.append(gmsh.model.geo.addLine(*along) if len(along) == 2 else gmsh.model.geo.addSpline(along))
+    return lines
 
 
 if __name__ == "__main__":

@@ -182,7 +182,7 @@ def _add_json(record: Record, place: str, value: Any, *, worded: bool) -> None:
 def differences(before: Record, after: Record, tolerance: float) -> Iterator[Difference]:
     """Yield what differs: what is gone or other has failed, what is new counts as words.
 
-    Of a command that ends otherwise than before, only that is told, with the last line of its messages.
+    If the exit codes differ, only these are listed, with the last line of messages.
     """
     ends = [f"{one.numbers['exit']} {_last_line(one)}" for one in (before, after)]
     if before.numbers["exit"] != after.numbers["exit"]:

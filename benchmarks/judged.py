@@ -37,12 +37,12 @@ def rows(kept: Kept, table: str, shapes: list[Shape], k: int, ways: Mapping[str,
     Shapes without a converged solution are left out. `k`: how many times the cells the finer of the two
     grids of the converged solution has.
     """
-    found: dict[str, list[Any]] = {way: [] for way in ways}
+    results: dict[str, list[Any]] = {way: [] for way in ways}
     for shape in shapes:
         row = kept.row((table, shape.name), lambda shape=shape: _row(kept, shape, k, ways))
         for way in ways if row else ():
-            found[way].append(row[way])
-    return {way: np.array(figures, dtype=float) for way, figures in found.items()}
+            results[way].append(row[way])
+    return {way: np.array(figures, dtype=float) for way, figures in results.items()}
 
 
 def _row(kept: Kept, shape: Shape, k: int, ways: Mapping[str, Way]) -> dict[str, list[float]] | None:
@@ -117,10 +117,10 @@ TABLE = (
 )
 
 
-def table(title: str, found: Mapping[str, Floats], told: str = "") -> str:
+def table(title: str, result: Mapping[str, Floats], message: str = "") -> str:
     """Return a table of what `rows` returned, and which ways without a network are as good as ours."""
-    lines = [f"\n## {title}\n", *([told + "\n"] if told else []), *TABLE]
-    for way, figures in found.items():
+    lines = [f"\n## {title}\n", *([message + "\n"] if message else []), *TABLE]
+    for way, figures in result.items():
         folds, near, whole, largest, mean, spent = figures.T
         cells = (
             way,
@@ -132,18 +132,18 @@ def table(title: str, found: Mapping[str, Floats], told: str = "") -> str:
             f"{np.median(spent):.1f}",
         )
         lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n" + as_good(found)
+    return "\n".join(lines) + "\n" + as_good(result)
 
 
-def as_good(found: Mapping[str, Floats]) -> str:
+def as_good(result: Mapping[str, Floats]) -> str:
     """Return which rivals (of the same goal) come out as good as each of our ways, and in no more time."""
-    told: dict[str, list[str]] = {}
-    for ours, own in found.items():
+    reports: dict[str, list[str]] = {}
+    for ours, own in result.items():
         if "network" not in ours and "quad-" not in ours:
             continue
         rivals = [
             way
-            for way, figures in found.items()
+            for way, figures in result.items()
             if "network" not in way
             and "quad-" not in way
             and _varied(way) == _varied(ours)
@@ -153,7 +153,7 @@ def as_good(found: Mapping[str, Floats]) -> str:
             and np.median(figures[:, 5]) <= 1.05 * np.median(own[:, 5])
         ]
         if rivals:
-            told.setdefault("`, `".join(rivals), []).append(ours)
-    pairs = (("`, `".join(ours), rivals) for rivals, ours in told.items())
+            reports.setdefault("`, `".join(rivals), []).append(ours)
+    pairs = (("`, `".join(ours), rivals) for rivals, ours in reports.items())
     lines = [f"- `{rivals}`, compared with `{own}`.".replace("**", "") for own, rivals in pairs]
     return "\n".join([_RIVALS, *lines]) + "\n" if lines else ""

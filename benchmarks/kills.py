@@ -84,8 +84,8 @@ def prepared(folder: Path) -> None:
         "sample-boundary --family procedural --count 12 --seed 3 --res 129x5 -o strips.h5 -q",
     ):  # fmt: skip
         process = start(words, folder)
-        _, told = process.communicate()
-        assert process.returncode == 0, told
+        _, report = process.communicate()
+        assert process.returncode == 0, report
 
 
 class Victim:
@@ -106,9 +106,9 @@ class Victim:
         shutil.copytree(inputs, done)
         begun = time.monotonic()
         process = start(words, done)
-        _, told = process.communicate()
+        _, report = process.communicate()
         self.seconds = time.monotonic() - begun
-        assert process.returncode == 0, (name, told)
+        assert process.returncode == 0, (name, report)
         self.new, self.counts, self.wrong = _state(done), Counter[str](), list[str]()
         for path in done.rglob("*"):  # every other round starts over outputs of an earlier run
             if path.is_file() and str(path.relative_to(done)) not in _state(self.before):
@@ -127,14 +127,14 @@ class Victim:
         if stopped:
             target = os.killpg if number == signal.SIGKILL else os.kill
             target(process.pid, number)
-        _, told = process.communicate()
+        _, report = process.communicate()
         self.counts[signal.Signals(number).name if stopped else "finished first"] += 1
         self._look(
-            folder, old, number if stopped else None, process.returncode, told.decode("utf-8", "replace")
+            folder, old, number if stopped else None, process.returncode, report.decode("utf-8", "replace")
         )
         shutil.rmtree(folder)
 
-    def _look(self, folder: Path, old: dict[str, str], number: int | None, code: int, told: str) -> None:
+    def _look(self, folder: Path, old: dict[str, str], number: int | None, code: int, message: str) -> None:
         unfinished = list(folder.rglob(f".*{PART_SUFFIX}"))
         for path in unfinished:
             if number != signal.SIGKILL:
@@ -145,10 +145,12 @@ class Victim:
             if digest not in allowed and not self._resumable(name):
                 self.wrong.append(f"{name} is neither old nor new after {number}")
         self.wrong += [f"{name} is lost after {number}" for name in old if name not in now]
-        if "meshonet_cli" in told and "Traceback" in told:  # Python's own start shows one, which is not ours
-            self.wrong.append(f"traceback after {number}: {told[-300:]}")
+        if (
+            "meshonet_cli" in message and "Traceback" in message
+        ):  # Python's own start shows one, which is not ours
+            self.wrong.append(f"traceback after {number}: {message[-300:]}")
         if number in (signal.SIGINT, signal.SIGTERM) and code not in (0, 130, 143, -number):
-            self.wrong.append(f"exit {code} after {number}: {told[-200:]}")
+            self.wrong.append(f"exit {code} after {number}: {message[-200:]}")
         if unfinished:
             self.counts["left unfinished files"] += 1
             for place in {path.parent for path in unfinished}:
@@ -164,14 +166,14 @@ class Victim:
 
 def _state(folder: Path) -> dict[str, str]:
     """Return a digest of each file: of the nodes where it holds some, else of its bytes."""
-    found = {}
+    digests = {}
     for path in sorted(folder.rglob("*")):
         if path.is_file():
             try:
-                found[str(path.relative_to(folder))] = _digest(path)
+                digests[str(path.relative_to(folder))] = _digest(path)
             except Exception:  # not readable: the placeholder, or neither old nor new
-                found[str(path.relative_to(folder))] = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
-    return found
+                digests[str(path.relative_to(folder))] = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+    return digests
 
 
 def main() -> None:
@@ -192,8 +194,8 @@ def main() -> None:
         for k in range(given.count):
             victims[k % len(victims)].attack(random)
         for victim in victims:
-            told = {"command": victim.name, "seconds": round(victim.seconds, 2), **victim.counts}
-            print(json.dumps({**told, "wrong": victim.wrong}), flush=True)
+            reports = {"command": victim.name, "seconds": round(victim.seconds, 2), **victim.counts}
+            print(json.dumps({**reports, "wrong": victim.wrong}), flush=True)
         total = sum((victim.counts for victim in victims), Counter[str]())
         print(json.dumps({"total": given.count, **total, "wrong": sum(len(v.wrong) for v in victims)}))
         sys.exit(int(any(victim.wrong for victim in victims)))

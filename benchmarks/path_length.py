@@ -43,7 +43,7 @@ finally:
 
 def code_objects(command: list[str]) -> dict[Path, list[tuple[int, str]]]:
     """Return by file line and name of the code objects that a command enters."""
-    found: dict[Path, list[tuple[int, str]]] = defaultdict(list)
+    objects: dict[Path, list[tuple[int, str]]] = defaultdict(list)
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder, "entered")
         environment = {**os.environ, "PYTHONPATH": str(ROOT)}
@@ -52,8 +52,8 @@ def code_objects(command: list[str]) -> dict[Path, list[tuple[int, str]]]:
         for line in place.read_text().splitlines():
             path, number, name = line.split("\t")
             if Path(path).is_relative_to(ROOT) and Path(path).relative_to(ROOT).parts[0] in ROOMS:
-                found[Path(path).relative_to(ROOT)].append((int(number), name))
-    return found
+                objects[Path(path).relative_to(ROOT)].append((int(number), name))
+    return objects
 
 
 def main() -> None:
@@ -62,12 +62,12 @@ def main() -> None:
     parser.add_argument("--list", action="store_true", help="every file with its code objects as well")
     parser.add_argument("command", nargs=argparse.REMAINDER)
     options = parser.parse_args()
-    found = code_objects(options.command or COMMAND)
-    for path, names in sorted(found.items()) if options.list else ():
+    objects = code_objects(options.command or COMMAND)
+    for path, names in sorted(objects.items()) if options.list else ():
         print(f"{len(names):4d} {path}")
         for number, name in sorted(names):
             print(f"        {number}:{name}")
-    print(f"{sum(map(len, found.values()))} code objects in {len(found)} files")
+    print(f"{sum(map(len, objects.values()))} code objects in {len(objects)} files")
 
 
 if __name__ == "__main__":

@@ -64,10 +64,10 @@ def random_domains(count: int, n: int) -> list[Shape]:
     """Return random four-sided domains of n x n nodes, as many as `count` seeds give."""
 
     def make(seed: int, k: int) -> Boundary:
-        found = random_quad(seed, k * (n - 1) + 1, k * (n - 1) + 1)
-        if found is None:
+        result = random_quad(seed, k * (n - 1) + 1, k * (n - 1) + 1)
+        if result is None:
             raise ValueError("no valid domain")
-        return found
+        return result
 
     seeds = [s for s in range(FIRST, FIRST + count) if random_quad(s, n, n) is not None]
     return [Shape(f"domain {seed}", lambda k, seed=seed: make(seed, k)) for seed in seeds]

@@ -306,8 +306,8 @@ def test_boundaries_of_domains_are_named(turned: bool) -> None:
     outer = domain.loops[0]
     middles = {"floor": (2.0, 0.0), "outlet": (4.0, 1.0), "ceiling": (2.0, 2.0), "inlet": (0.0, 1.0)}
     arcs = outer.corner_arcs + np.array([2.0, 1.0, 2.0, 1.0])
-    found = {outer.name_at(float(arc)): tuple(outer.at(np.array([arc]))[0]) for arc in arcs}
-    assert found == middles
+    results = {outer.name_at(float(arc)): tuple(outer.at(np.array([arc]))[0]) for arc in arcs}
+    assert results == middles
     made = meshonet.solve_pde(domain, cells=300)
     assert {patch.name for patch in made.patches} == {*middles, "post"}
     with pytest.raises(meshonet.InputError, match="names of 1 polygons, and 2 polygons; name each of them"):

@@ -72,11 +72,11 @@ def test_the_main_job_does_not_grow(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
     from path_length import code_objects
 
-    found = code_objects(
+    objects = code_objects(
         ["infer", str(airfoil(tmp_path / "a.dat")), "--res", "800", "-o", "g.vts", "--quiet"]
     )
-    assert len(found) <= 112
-    assert sum(map(len, found.values())) <= 500
+    assert len(objects) <= 112
+    assert sum(map(len, objects.values())) <= 500
 
 
 WING = "".join(f'[[sections]]\nairfoil = "naca:0012"\nchord = 1\nz = {z}\n' for z in (0, 1))
@@ -172,19 +172,19 @@ def named_modules(module: str, modules: set[str]) -> set[str]:
     assert spec is not None
     assert spec.origin is not None
     own = {"__name__": module, "__package__": spec.parent or module}
-    found: set[str] = set()
+    imported: set[str] = set()
     for node in ast.walk(ast.parse(Path(spec.origin).read_text())):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             words = [match for word in node.value.split() if (match := NAMED.fullmatch(word))]
-            found |= {word[1] for word in words if "." in word[1]} & modules
-            found |= {f"{own['__package__']}.{word[1]}" for word in words if ":" in word[0]} & modules
+            imported |= {word[1] for word in words if "." in word[1]} & modules
+            imported |= {f"{own['__package__']}.{word[1]}" for word in words if ":" in word[0]} & modules
         elif isinstance(node, ast.JoinedStr) and re.match(
             r"meshonet(_cli)?\.\w", prefix := beginning(node, own)
         ):
-            found |= {name for name in modules if name.startswith(prefix)}
+            imported |= {name for name in modules if name.startswith(prefix)}
         elif isinstance(node, ast.Call) and ast.unparse(node).endswith("import_module('meshonet')"):
-            found.add("meshonet")
-    return found - {module}
+            imported.add("meshonet")
+    return imported - {module}
 
 
 def beginning(text: ast.JoinedStr, own: Mapping[str, str]) -> str:
@@ -321,13 +321,13 @@ def lengths(text: str) -> Iterator[tuple[str, int]]:
 @pytest.mark.parametrize("package", PACKAGES)
 def test_modules_have_300_lines_and_functions_50_at_most(package: str) -> None:
     """As docs/development/architecture.md says; tests, benchmarks and C are read as they are."""
-    found = [
+    outside = [
         f"{path}: {name or 'module'} has {lines} lines"
         for path in sorted((ROOT / package).rglob("*.py"))
         for name, lines in lengths(path.read_text(encoding="utf-8"))
         if lines > (50 if name else 300)
     ]
-    assert not found
+    assert not outside
 
 
 def test_lines_are_counted_without_docstrings() -> None:

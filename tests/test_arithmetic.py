@@ -84,13 +84,13 @@ def places(name: str, source: str, is_one: Callable[[ast.AST], bool]) -> list[st
 
 
 def places_of_each_kind(name: str, source: str) -> dict[Callable[[ast.AST], bool], list[str]]:
-    found: dict[Callable[[ast.AST], bool], list[str]] = {kind: [] for kind in KINDS}
+    uses: dict[Callable[[ast.AST], bool], list[str]] = {kind: [] for kind in KINDS}
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.BinOp | ast.AugAssign | ast.Call):
             for kind in KINDS:
                 if kind(node):
-                    found[kind].append(f"{name}:{node.lineno}: {ast.unparse(node)}")
-    return found
+                    uses[kind].append(f"{name}:{node.lineno}: {ast.unparse(node)}")
+    return uses
 
 
 @cache

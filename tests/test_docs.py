@@ -62,9 +62,9 @@ def test_the_formats_page_is_current() -> None:
 
 
 def test_curves_have_a_row_for_every_epoch_of_their_model() -> None:
-    found = sorted((ROOT / "docs" / "benchmarks" / "curves").glob("*.csv"))
-    assert found
-    for path in found:
+    tables = sorted((ROOT / "docs" / "benchmarks" / "curves").glob("*.csv"))
+    assert tables
+    for path in tables:
         rows = path.read_text(encoding="utf-8").splitlines()
         assert "held_out_loss" in rows[0].split(",")
         first = path.stem == "quad-first"  # the first of two runs, whose model is not kept

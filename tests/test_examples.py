@@ -144,12 +144,12 @@ def test_the_section_that_is_stiffest_in_torsion_is_the_disc(
 ) -> None:
     pytest.importorskip("torch")
     script = str(ROOT / "examples" / "shape-optimisation" / "torsion.py")
-    found = []
+    results = []
     for words in (["3"], ["3", "--finite-differences"], ["12"]):
         monkeypatch.setattr(sys, "argv", [script, "--nodes", "5", "--steps", *words])
         runpy.run_path(script, run_name="__main__")
-        found.append([float(word) for word in re.findall(r"\d\.\d{4,5}", capsys.readouterr().out)])
-    assert found[0] == pytest.approx(found[1], abs=2e-3)  # both ways the same shape
-    stiffness, disc, least, most = found[2]
+        results.append([float(word) for word in re.findall(r"\d\.\d{4,5}", capsys.readouterr().out)])
+    assert results[0] == pytest.approx(results[1], abs=2e-3)  # both ways the same shape
+    stiffness, disc, least, most = results[2]
     assert 0.9 * disc < stiffness < disc  # of a polygon of 16 sides, on 4 x 4 elements
     assert 0.93 < least < most < 1.07

@@ -1,12 +1,16 @@
-"""One word for one thing: no two classes have one name, unless a reason for it is written down."""
+"""One word for one thing: no two classes have one name without a reason; names are nouns."""
 
+import io
 import re
+import tokenize
 from collections import defaultdict
 from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 ROOMS = ("geometry", "formats", "solvers", "meshonet_cli", "meshonet/api", "kernels")
+EVERYWHERE = (*ROOMS, "meshonet", "tests", "benchmarks", "examples", "docs")
+NOT_NOUNS = {"told", "found", "unasked"}
 PAGE = ROOT / "docs" / "development" / "architecture.md"
 
 
@@ -40,3 +44,20 @@ def test_the_classes_are_seen() -> None:
     modules = classes()
     assert modules["Grid"] == ["geometry/blocks/grid.py"]
     assert len(modules) > 300
+
+
+def names(text: str) -> set[str]:
+    return {
+        token.string
+        for token in tokenize.generate_tokens(io.StringIO(text).readline)
+        if token.type == tokenize.NAME
+    }
+
+
+def test_variables_have_nouns_for_names() -> None:
+    """`told` and `found` do not say what a value is."""
+    assert names("found = 1  # not found") == {"found"}
+    texts = {path: path.read_text() for room in EVERYWHERE for path in (ROOT / room).rglob("*.py")}
+    suspects = {path: text for path, text in texts.items() if any(word in text for word in NOT_NOUNS)}
+    used = {str(path.relative_to(ROOT)): names(text) & NOT_NOUNS for path, text in suspects.items()}
+    assert not {path: words for path, words in used.items() if words}

@@ -75,10 +75,10 @@ def test_tables_say_what_the_results_hold(tmp_path: Path) -> None:
     results = tmp_path / "results"
     results.mkdir()
     columns = ("relative_l2", "boundary", "max_angle", "mean_angle", "folded")
-    told = {"summary": {"members": 6, **{name: statistics(0.0123) for name in columns}}}
+    reports = {"summary": {"members": 6, **{name: statistics(0.0123) for name in columns}}}
     raced = [f"arch.interpolation.{model}.race0" for model in ("deeponet", "meshonet", "wno")]
     for name in ("wrench.extrapolation.meshonet.pasted", *raced):
-        (results / f"{name}.json").write_text(json.dumps(told))
+        (results / f"{name}.json").write_text(json.dumps(reports))
     rows = (
         "epoch,seen,loss,interior,boundary,rate,seconds\n1,30,2,1.5,0.5,0.001,0.1\n2,60,1,0.75,0.25,0.001,7\n"
     )

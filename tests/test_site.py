@@ -23,12 +23,12 @@ def path_of(page: Path) -> str:
 
 def listed(page: Path) -> set[Path]:
     """Return the pages of the toctrees of a page."""
-    found: set[Path] = set()
+    pages: set[Path] = set()
     for block in re.findall(r"^```\{toctree\}\n(.*?)^```", page.read_text(), flags=re.DOTALL | re.MULTILINE):
         for line in block.splitlines():
             if line and not line.startswith(":"):
-                found |= set(page.parent.glob(f"{line}.md"))
-    return found
+                pages |= set(page.parent.glob(f"{line}.md"))
+    return pages
 
 
 def prose(page: Path) -> str:
@@ -37,11 +37,11 @@ def prose(page: Path) -> str:
 
 
 def test_every_page_can_be_reached_from_the_start() -> None:
-    reached, found = set(), {DOCS / "index.md"}
-    while found - reached:
-        page = (found - reached).pop()
+    reached, linked = set(), {DOCS / "index.md"}
+    while linked - reached:
+        page = (linked - reached).pop()
         reached.add(page)
-        found |= listed(page)
+        linked |= listed(page)
     assert [path_of(page) for page in PAGES if page not in reached] == []
 
 

@@ -115,8 +115,8 @@ def test_another_program_enters_with_plot3d(tmp_path: Path) -> None:
     words = f"{sys.executable} {program} {FOLDER} {{boundaries}} {{grids}}"
     kinds = ["--kinds", "bumps,star", "--plot3d"]
     subprocess.run([*yardstick, "run", folder, "Straight lines", words, *kinds], check=True)
-    told = subprocess.run([*yardstick, "judge", folder], check=True, capture_output=True, text=True).stdout
-    rows = told.splitlines()
+    report = subprocess.run([*yardstick, "judge", folder], check=True, capture_output=True, text=True).stdout
+    rows = report.splitlines()
     assert rows[0].startswith("| four-sided | Straight lines | 2 of 12 | 0 (0) | ")
     assert rows[1].startswith("| body | Straight lines | 2 of 6 | ")
 

@@ -141,19 +141,19 @@ def _row(folder: Path, own: Path, kinds: list[str]) -> str:
     drawn, grids, seconds = [], {}, 0.0
     for kind in kinds:
         drawn += read_boundaries(folder / f"{kind}.h5")
-        found = next((path for path in (own / f"{kind}.h5", own / kind) if path.exists()), None)
-        grids |= read_grids(found) if found else {}
+        result = next((path for path in (own / f"{kind}.h5", own / kind) if path.exists()), None)
+        grids |= read_grids(result) if result else {}
         record = own / f"{kind}.json"
         seconds += json.loads(record.read_text())["seconds"] if record.exists() else 0.0
-    told = summary(drawn, grids)
-    if "largest" not in told:
+    report = summary(drawn, grids)
+    if "largest" not in report:
         return ""
-    made = told["shapes"] - told["missing"]
+    made = report["shapes"] - report["missing"]
     return " | ".join([
-        (own / "name").read_text(encoding="utf-8"), f"{made} of {told['shapes']}",
-        f"{told['folded_grids']} ({told['folded_cells']})",
-        f"{told['largest_mean']:.1f} / {told['largest']:.1f}",
-        f"{told['smallest']:.1f}", f"{told['skew']:.1f}", f"{told['boundary']:.0e}",
+        (own / "name").read_text(encoding="utf-8"), f"{made} of {report['shapes']}",
+        f"{report['folded_grids']} ({report['folded_cells']})",
+        f"{report['largest_mean']:.1f} / {report['largest']:.1f}",
+        f"{report['smallest']:.1f}", f"{report['skew']:.1f}", f"{report['boundary']:.0e}",
         f"{1e3 * seconds / made:.0f}" if seconds else "-",
     ])  # fmt: skip
 

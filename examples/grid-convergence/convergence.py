@@ -60,12 +60,12 @@ def main(paths: list[str]) -> None:
     values = [capacitance(next(iter(read_grids(path)))) for path in paths]
     print("grid, C, order, extrapolated, GCI")
     for k, (path, value) in enumerate(zip(paths, values, strict=True)):
-        told = [path, f"{value:.8f}"]
+        columns = [path, f"{value:.8f}"]
         if k + 2 < len(values):
             order = math.log2((values[k + 2] - values[k + 1]) / (values[k + 1] - value))
             change = (values[k + 1] - value) / (2**order - 1)
-            told += [f"{order:.3f}", f"{value - change:.8f}", f"{1.25 * abs(change / value):.1e}"]
-        print(", ".join(told))
+            columns += [f"{order:.3f}", f"{value - change:.8f}", f"{1.25 * abs(change / value):.1e}"]
+        print(", ".join(columns))
 
 
 if __name__ == "__main__":

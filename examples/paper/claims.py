@@ -44,11 +44,11 @@ def lowest(results: Path) -> str:
     sentences = []
     for case in raced(results):
         logs = {name: finished(results, case, name) for name in RACERS if name != "meshonet-hard"}
-        last = {name: [read_log(path)[-1]["mean_square"] for path in found] for name, found in logs.items()}
-        last = {name: found for name, found in last.items() if found}
+        last = {name: [read_log(path)[-1]["mean_square"] for path in result] for name, result in logs.items()}
+        last = {name: result for name, result in last.items() if result}
         if "meshonet" not in last:
             continue
-        means = {name: mean(found) for name, found in last.items()}
+        means = {name: mean(result) for name, result in last.items()}
         order = sorted(means, key=means.__getitem__)
         losses = ", ".join(f"{name} {means[name]:.1e} ± {pstdev(last[name]):.0e}" for name in order)
         sentences.append(f"{_on_loss(case, means)} Mean square error: {losses}.")

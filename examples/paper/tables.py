@@ -76,9 +76,9 @@ def quality(results: Path) -> Iterable[str]:
         rows = []
         for split in SPLITS:
             for way, name in WAYS:
-                told = summary(results / f"{family}.{split}.{way}.json")
-                if told:
-                    rows.append([split, name, *figures(told)])
+                report = summary(results / f"{family}.{split}.{way}.json")
+                if report:
+                    rows.append([split, name, *figures(report)])
         if rows:
             head = [
                 "split",
@@ -91,15 +91,15 @@ def quality(results: Path) -> Iterable[str]:
             yield f"### {family}\n\n{words.PAPER[family]}\n\n{table(head, rows)}"
 
 
-def figures(told: dict[str, Any]) -> list[str]:
+def figures(report: dict[str, Any]) -> list[str]:
     """Return a row's figures of a summary."""
-    folded = told["folded"]
+    folded = report["folded"]
     return [
-        f"{told['relative_l2']['median']:.1e} / {told['relative_l2']['max']:.1e}",
-        f"{told['boundary']['max']:.0e}",
-        f"{told['max_angle']['mean']:.1f} / {told['max_angle']['max']:.1f}",
-        f"{told['mean_angle']['mean']:.1f}",
-        f"{folded['sum']:.0f} ({folded['members']} of {told['members']})",
+        f"{report['relative_l2']['median']:.1e} / {report['relative_l2']['max']:.1e}",
+        f"{report['boundary']['max']:.0e}",
+        f"{report['max_angle']['mean']:.1f} / {report['max_angle']['max']:.1f}",
+        f"{report['mean_angle']['mean']:.1f}",
+        f"{folded['sum']:.0f} ({folded['members']} of {report['members']})",
     ]
 
 
@@ -109,8 +109,8 @@ def race(results: Path, pages: Path) -> str:
     for case in raced(results):
         for model in RACERS:
             runs = [read_log(path) for path in finished(results, case, model)]
-            told = [summary(path) for path in sorted(results.glob(f"{case}.{model}.race*.json"))]
-            errors = [one["relative_l2"]["median"] for one in told if one]
+            reports = [summary(path) for path in sorted(results.glob(f"{case}.{model}.race*.json"))]
+            errors = [one["relative_l2"]["median"] for one in reports if one]
             if not runs or not errors:
                 continue
             last = [run[-1]["mean_square"] for run in runs]
@@ -134,20 +134,20 @@ def race(results: Path, pages: Path) -> str:
 
 def shelf(results: Path) -> str:
     """Return the errors of every model on every case, and how MeshONet's compare, in words."""
-    found: dict[tuple[str, str], dict[str, list[float]]] = {}
+    values: dict[tuple[str, str], dict[str, list[float]]] = {}
     for family, split in ((f, s) for f in FAMILIES for s in SPLITS):
         own = {}
         for model in RACERS:
-            told = [one(path) for path in sorted(results.glob(f"{family}.{split}.{model}.shelf*.json"))]
-            if told:
-                own[model] = [run["figures"]["test"]["median"] for run in told]
+            reports = [one(path) for path in sorted(results.glob(f"{family}.{split}.{model}.shelf*.json"))]
+            if reports:
+                own[model] = [run["figures"]["test"]["median"] for run in reports]
         if own:
-            found[family, split] = own
-    models = [model for model in RACERS if any(model in own for own in found.values())]
+            values[family, split] = own
+    models = [model for model in RACERS if any(model in own for own in values.values())]
     if not models:
         return ""
     rows = []
-    for (family, split), own in found.items():
+    for (family, split), own in values.items():
         least = min(mean(errors) for errors in own.values())
         cells = []
         for model in models:
@@ -156,7 +156,7 @@ def shelf(results: Path) -> str:
             cells.append(f"**{text}**" if errors and mean(errors) == least else text)
         rows.append([family, split, *cells])
     counts = [
-        _compared(model, [own for own in found.values() if model in own and "meshonet" in own])
+        _compared(model, [own for own in values.values() if model in own and "meshonet" in own])
         for model in models
     ]
     sentences = "\n".join(f"- {text}" for text in counts if text)
@@ -178,12 +178,12 @@ def physics(results: Path) -> str:
     """Return the table of networks for one geometry."""
     rows = []
     for name, learns in PHYSICS:
-        told, log = summary(results / f"one.{name}.json"), results / f"one.{name}.csv"
-        if told:
+        report, log = summary(results / f"one.{name}.json"), results / f"one.{name}.csv"
+        if report:
             last = read_log(log)[-1] if log.exists() else None
             spent = [f"{last['epoch']:,.0f}", f"{last['seconds']:.0f}"] if last else ["-", "-"]
-            error, away = told["relative_l2"]["median"], told["boundary"]["max"]
-            folded, angle = told["folded"]["sum"], told["max_angle"]["max"]
+            error, away = report["relative_l2"]["median"], report["boundary"]["max"]
+            folded, angle = report["folded"]["sum"], report["max_angle"]["max"]
             rows.append([learns, f"{error:.1e}", f"{away:.0e}", f"{angle:.1f}", f"{folded:.0f}", *spent])
     head = ["learns from", "relative L2", "boundary error", "max angle", "folded cells", "steps", "seconds"]
     return table(head, rows) if rows else ""
@@ -215,8 +215,8 @@ def times(results: Path) -> str:
     sizes = sorted({int(path.name.split(".")[2]) for path in results.glob("time.*.json")})
     rows = []
     for way, paper in TIMED:
-        told = {n: one(results / f"time.{way}.{n}.json") for n in sizes}
-        cells = [f"{found['seconds']['grid']:.4f}" if (found := told[n]) else "-" for n in sizes]
+        reports = {n: one(results / f"time.{way}.{n}.json") for n in sizes}
+        cells = [f"{result['seconds']['grid']:.4f}" if (result := reports[n]) else "-" for n in sizes]
         rows.append([words.TIMED[way], *cells])
         if paper:
             rows.append([f"{paper}, the paper's", *(words.SECONDS[paper].get(n, "-") for n in sizes)])
@@ -228,16 +228,16 @@ def maps(pages: Path) -> str:
     ways = ("tfi", "pde", "meshonet", "meshonet-hard")
     rows = []
     for family in FAMILIES:
-        found = [
+        pictures = [
             f"![{family}]({family}.{way}.png)" if (pages / f"{family}.{way}.png").exists() else "-"
             for way in ways
         ]
-        if any(cell != "-" for cell in found):
-            rows.append([family, *found])
+        if any(cell != "-" for cell in pictures):
+            rows.append([family, *pictures])
     return table(["", "TFI", "PDE", "MeshONet, boundary pasted", "MeshONet-hard"], rows) if rows else ""
 
 
-def budgets(results: Path) -> str:
+def budgets(pictures: Path) -> str:
     """Return what each model was given: the last row of its log."""
     rows = []
     for path in sorted(results.glob("*.csv")):

@@ -198,11 +198,11 @@ cdef class VariationalDescent:
         self.held = (*self.held, stiffness, first, second, turned)
 
     def run(self, z, double aspect, double shape, double smoothness, double epsilon, relief, double still,
-            double reach, int most, told=None):
+            double reach, int most, listener=None):
         """Minimise from the planes z (2, ni, nj), in place; return (functional, smallest Jacobian, iterations).
 
         It stops if no node moves by more than `still` cells in three consecutive iterations, or after `most`
-        iterations. In the first no node moves by more than `reach` cells. `told` is called with the iterations done,
+        iterations. In the first no node moves by more than `reach` cells. `listener` is called with the iterations done,
         the functional and the norm of its gradient, at the start and after each iteration.
         """
         cdef int done = 0, state = GOES_ON
@@ -213,15 +213,15 @@ cdef class VariationalDescent:
         self.state.steps.still, self.state.steps.reach = still, reach
         with nogil:
             descent_start(&self.state)
-        if told is not None:
-            told(0, self.state.steps.value, descent_slope(&self.state))
+        if listener is not None:
+            listener(0, self.state.steps.value, descent_slope(&self.state))
         while done < most and state == GOES_ON:
             PyErr_CheckSignals()
             with nogil:
                 state = steps_take(&self.state.steps)
             done += 1
-            if told is not None:
-                told(done, self.state.steps.value, descent_slope(&self.state))
+            if listener is not None:
+                listener(done, self.state.steps.value, descent_slope(&self.state))
         return self.state.steps.value, self.state.steps.smallest, done
 
 

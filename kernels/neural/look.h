@@ -50,12 +50,12 @@ MESHONET_INLINE void NAME(look_row)(const double *restrict x, const double *rest
             logs[k][j] = JOIN(log_, T)(row[where[k]][j]);
     for (ptrdiff_t j = 0; j < n; j++)
         logs[2][j] = row[13][j] < 0 ? -logs[2][j] : logs[2][j];
-    const T told = (T)(log10(size) + 2.0);
+    const T scale = (T)(log10(size) + 2.0);
     for (ptrdiff_t j = 0; j < n; j++, out += LOOK_FEATURES) {
         for (int k = 0; k < LOOK_FEATURES; k++)
             out[k] = row[k][j];
         out[8] = logs[0][j], out[9] = logs[1][j], out[14] = logs[2][j];
-        out[17] *= logs[3][j], out[18] *= logs[3][j], out[19] = told;
+        out[17] *= logs[3][j], out[18] *= logs[3][j], out[19] = scale;
     }
 }
 

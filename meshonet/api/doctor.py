@@ -83,7 +83,7 @@ def _grid() -> Finding:
     begun = time.perf_counter()
     try:
         grid = infer("naca:0012", res=(41, 11))
-    except Exception as error:  # whatever it is, this is where it is told
+    except Exception as error:  # the report on the installation contains any error
         remedy = "install meshonet again; meshonet infer naca:0012 -o g.vts --debug shows more"
         return Finding("program", "a grid", f"failed: {type(error).__name__}: {error}", False, remedy)
     spent = 1e3 * (time.perf_counter() - begun)

@@ -63,7 +63,7 @@ class Session:
         self._errors: Counter[str] = Counter()
         self.members = self.done = self.failed = self.skipped = self.beyond = self.changed = 0
         self.left_out = 0
-        self._advice: dict[str, None] = {}  # what is told once, at the end of a batch
+        self._advice: dict[str, None] = {}  # printed once, at the end of a batch
         self._begun = time.perf_counter()
         self.live = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
         self._shown = False

@@ -37,8 +37,8 @@ class Outcome:
     @property
     def only(self) -> dict[str, Any]:
         """The one JSON object on standard output."""
-        (told,) = self.objects
-        return told
+        (report,) = self.objects
+        return report
 
 
 Meshonet = Callable[..., Outcome]

@@ -69,13 +69,13 @@ def test_nonsense_gets_a_line(
     for value in NONSENSE:
         before = {path.name for path in tmp_path.iterdir()}
         done = meshonet(command, *INPUTS[command], option, value)
-        told = f"{command} {option} {value!r}: {done.err}"
-        assert "internal error" not in done.err, told
-        assert done.code in (0, 2), told
+        message = f"{command} {option} {value!r}: {done.err}"
+        assert "internal error" not in done.err, message
+        assert done.code in (0, 2), message
         if done.code == 2:
             refused += 1
-            assert done.err.startswith("error: "), told
-            assert done.err.count("\n") == 1, told
-            assert ";" in done.err, told  # what to do comes after what is wrong
-            assert {path.name for path in tmp_path.iterdir()} == before, told
+            assert done.err.startswith("error: "), message
+            assert done.err.count("\n") == 1, message
+            assert ";" in done.err, message  # what to do comes after what is wrong
+            assert {path.name for path in tmp_path.iterdir()} == before, message
     assert refused >= 4, f"{command} {option} takes nearly anything"

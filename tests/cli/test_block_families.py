@@ -25,9 +25,9 @@ def inputs() -> None:
 
 @pytest.mark.parametrize("command", ["solve-pde", "infer"])
 def test_four_levels_of_blocks_are_nested_and_valid(meshonet: Meshonet, inputs: None, command: str) -> None:
-    told = meshonet(command, "plate.wkt", "--cells", 300, "--refine", 3, "--json", "-o", "0.h5").only
+    report = meshonet(command, "plate.wkt", "--cells", 300, "--refine", 3, "--json", "-o", "0.h5").only
     family_is_nested(meshonet)
-    assert told["folded"] == 0
+    assert report["folded"] == 0
     assert cells(grid_of("3.h5")) == pytest.approx(300, rel=0.25)
 
 

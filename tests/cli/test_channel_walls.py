@@ -11,11 +11,11 @@ from meshonet.formats.registry import read_grids
 HEIGHTS = {"south": 1e-4, "north": 2e-3, "west": 5e-3, "east": 1e-3}
 
 
-def refused(meshonet: Meshonet, source: Path, words: tuple[str, ...], told: str) -> None:
+def refused(meshonet: Meshonet, source: Path, words: tuple[str, ...], message: str) -> None:
     """Assert that solve-pde tells of `words` in one line and writes nothing."""
     done = meshonet("solve-pde", source, *words, "-o", "g.vts")
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     assert done.err.count("\n") == 1
     assert not Path("g.vts").exists()
 
@@ -25,22 +25,22 @@ def test_first_cells_off_any_side_are_as_high_as_asked(
     meshonet: Meshonet, duct_h5: Path, method: str
 ) -> None:
     words = [word for side, h in HEIGHTS.items() for word in (f"--spacing-{side}", h)]
-    told = meshonet(
+    report = meshonet(
         "solve-pde", duct_h5, "--res", "65x65", "--method", method, *words, "-o", "g.h5", "--json"
     ).only
-    assert told["folded"] == 0
+    assert report["folded"] == 0
     (grid,) = read_grids("g.h5")
     for side, height in HEIGHTS.items():
         rows = grid.nodes if side in ("west", "east") else np.swapaxes(grid.nodes, 0, 1)
         wall, next_to = (rows[0], rows[1]) if side in ("west", "south") else (rows[-1], rows[-2])
         np.testing.assert_allclose(np.linalg.norm(next_to - wall, axis=1), height, rtol=1e-8)
-    assert "0.0001 off south, 0.001 off east, 0.002 off north, 0.005 off west" in told["notes"][-1]
+    assert "0.0001 off south, 0.001 off east, 0.002 off north, 0.005 off west" in report["notes"][-1]
 
 
 def test_a_body_can_have_an_elliptic_grid_with_layers(meshonet: Meshonet, body_h5: Path) -> None:
     words = ("--method", "winslow", "--wall-spacing", "1e-4", "--res", "81x60")
-    told = meshonet("solve-pde", body_h5, *words, "-o", "g.h5", "--json").only
-    assert (told["method"], told["folded"]) == ("winslow", 0)
+    report = meshonet("solve-pde", body_h5, *words, "-o", "g.h5", "--json").only
+    assert (report["method"], report["folded"]) == ("winslow", 0)
     (grid,) = read_grids("g.h5")
     first = np.linalg.norm(grid.nodes[:, 1] - grid.nodes[:, 0], axis=1)
     np.testing.assert_allclose(first, 1e-4 * grid.provenance["spacing_south"] / 1e-4, rtol=1e-8)
@@ -63,38 +63,38 @@ def test_walls_of_channels_slide(meshonet: Meshonet, tmp_path: Path) -> None:
     words = ("solve-pde", source, "--wall-spacing", "1e-5", "-o", "g.h5", "--json", "--res")
     leans = {}
     for name, more in {"own": ("181x61",), "kept": ("181x61", *kept), "given": ("201x41",)}.items():
-        told = meshonet(*words, *more).only
+        report = meshonet(*words, *more).only
         (grid,) = read_grids("g.h5")
         leans[name] = _roof_lean(grid.nodes)
-        assert (slid in told["notes"]) == (name == "own")
-        assert told["method"] == ("winslow" if name == "own" else "steger-sorenson")
-        assert told["folded"] == 0
+        assert (slid in report["notes"]) == (name == "own")
+        assert report["method"] == ("winslow" if name == "own" else "steger-sorenson")
+        assert report["folded"] == 0
     assert leans["own"] < 1.0
     assert leans["kept"] < 1.0  # sources turn the lines instead
-    told = meshonet(*words, "181x61", "--no-slide", "--method", "winslow").only
+    report = meshonet(*words, "181x61", "--no-slide", "--method", "winslow").only
     (grid,) = read_grids("g.h5")
     assert _roof_lean(grid.nodes) > 10
     for method in ("winslow", "thomas-middlecoff", "variational"):
-        told = meshonet(*words, "201x41", "--method", method, "--slide").only
-        assert slid in told["notes"]
-        assert told["folded"] == 0
+        report = meshonet(*words, "201x41", "--method", method, "--slide").only
+        assert slid in report["notes"]
+        assert report["folded"] == 0
 
 
 @pytest.mark.parametrize("angle", [90, 75])
 def test_steger_sorenson_turns_the_lines_at_walls(meshonet: Meshonet, tmp_path: Path, angle: int) -> None:
     source = dataset(tmp_path / "duct.h5", "quad", duct(121, 61, bump=0.0))
     words = ("--method", "steger-sorenson", "--wall-angle", angle, "--spacing-south", "1e-4")
-    told = meshonet("solve-pde", source, *words, "-o", "g.h5", "--json").only
-    assert (told["method"], told["folded"]) == ("steger-sorenson", 0)
+    report = meshonet("solve-pde", source, *words, "-o", "g.h5", "--json").only
+    assert (report["method"], report["folded"]) == ("steger-sorenson", 0)
     (grid,) = read_grids("g.h5")
     out = grid.nodes[:, 1] - grid.nodes[:, 0]
     np.testing.assert_allclose(np.hypot(*out.T), 1e-4, rtol=1e-8)
     np.testing.assert_allclose(np.degrees(np.arctan2(out[10:-10, 1], out[10:-10, 0])), angle, atol=1.0)
-    assert any(f"lines leave south at {angle} degrees" in note for note in told["notes"])
+    assert any(f"lines leave south at {angle} degrees" in note for note in report["notes"])
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("--wall-angle", "80"), "--wall-angle: method auto sets no angle; use --method steger-sorenson"),
         (("--method", "steger-sorenson", "--wall-angle", "10"), "an angle of 10 degrees at walls; use 30 to"),
@@ -104,9 +104,9 @@ def test_steger_sorenson_turns_the_lines_at_walls(meshonet: Meshonet, tmp_path: 
     ],
 )
 def test_angles_that_make_no_sense_get_a_line(
-    meshonet: Meshonet, duct_h5: Path, words: tuple[str, ...], told: str
+    meshonet: Meshonet, duct_h5: Path, words: tuple[str, ...], message: str
 ) -> None:
-    refused(meshonet, duct_h5, words, told)
+    refused(meshonet, duct_h5, words, message)
 
 
 def test_no_body_slides(meshonet: Meshonet, body_h5: Path) -> None:
@@ -116,19 +116,19 @@ def test_no_body_slides(meshonet: Meshonet, body_h5: Path) -> None:
 def test_growth_in_a_channel_takes_the_rows_it_needs(meshonet: Meshonet, tmp_path: Path) -> None:
     Path("channel.csv").write_text("0,0\n3,0\n3,1\n0,1\n")
     words = ("--topology", "quad", "--wall-spacing", "1e-3", "--growth", "1.2", "-o", "g.h5")
-    told = meshonet("solve-pde", "channel.csv", *words, "--json").only
+    report = meshonet("solve-pde", "channel.csv", *words, "--json").only
     (grid,) = read_grids("g.h5")
     steps = np.linalg.norm(np.diff(grid.nodes, axis=1), axis=-1)
     ratios = steps[:, 1:] / steps[:, :-1]
     assert np.maximum(ratios, 1 / ratios).max() < 1.2001
-    assert 40 < told["nj"] < 60
+    assert 40 < report["nj"] < 60
     done = meshonet("solve-pde", "channel.csv", *words, "--res", "40x30")
     assert done.code == 2
-    assert f"more than 1.2; use {told['nj']} or more" in done.err
+    assert f"more than 1.2; use {report['nj']} or more" in done.err
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("--spacing-south", "0"), "--spacing-south: a first cell of 0; give a positive height"),
         (("--spacing-west", "-1"), "--spacing-west: a first cell of -1; give a positive height"),
@@ -153,14 +153,14 @@ def test_growth_in_a_channel_takes_the_rows_it_needs(meshonet: Meshonet, tmp_pat
     ],
 )
 def test_heights_that_make_no_sense_get_a_line(
-    meshonet: Meshonet, duct_h5: Path, words: tuple[str, ...], told: str
+    meshonet: Meshonet, duct_h5: Path, words: tuple[str, ...], message: str
 ) -> None:
-    refused(meshonet, duct_h5, words, told)
+    refused(meshonet, duct_h5, words, message)
 
 
 def test_a_body_has_one_wall(meshonet: Meshonet, body_h5: Path) -> None:
-    told = "--spacing-north: a height off a single side, around a body (topology o); use"
-    refused(meshonet, body_h5, ("--spacing-north", "1e-3"), told)
+    message = "--spacing-north: a height off a single side, around a body (topology o); use"
+    refused(meshonet, body_h5, ("--spacing-north", "1e-3"), message)
 
 
 @pytest.mark.parametrize("lean", [(-14.0, 14.0), (14.0, 14.0)])
@@ -190,8 +190,8 @@ def test_lines_leave_leaning_walls_of_a_channel_at_right_angles(
         "--wall-spacing",
         "1e-4",
     )
-    told = meshonet(*words, "-o", "g.vts", "--json").only
-    assert told["folded"] == 0
+    report = meshonet(*words, "-o", "g.vts", "--json").only
+    assert report["folded"] == 0
     (grid,) = read_grids("g.vts")
     for wall, near, angle in ((0, 1, lean[0]), (-1, -2, lean[1])):
         cell = grid.nodes[:, near] - grid.nodes[:, wall]

@@ -48,8 +48,8 @@ def test_gates_look_at_blocks(meshonet: Meshonet, disc: Path) -> None:
 def test_metrics_of_every_cell_go_to_a_file_of_blocks(meshonet: Meshonet, disc: Path, tmp_path: Path) -> None:
     meshonet("quality", disc, "--per-cell", tmp_path / "metrics.vtm")
     assert b'Name="skewness"' in (tmp_path / "metrics_blocks" / "block-4.vts").read_bytes()
-    told = meshonet("quality", disc, "--per-cell", tmp_path / "metrics.vts").err
-    assert "a .vts file holds one block, not 5; name it FILE.vtm" in told
+    report = meshonet("quality", disc, "--per-cell", tmp_path / "metrics.vts").err
+    assert "a .vts file holds one block, not 5; name it FILE.vtm" in report
 
 
 def test_blocks_are_drawn(meshonet: Meshonet, disc: Path, tmp_path: Path) -> None:
@@ -79,7 +79,7 @@ def test_smoothed_blocks_are_refined(meshonet: Meshonet, disc: Path, tmp_path: P
 
 
 @pytest.mark.parametrize(
-    ("command", "options", "told"),
+    ("command", "options", "message"),
     [
         ("solve-pde", ("--method", "winslow"), "method winslow makes single blocks"),
         ("solve-pde", ("--initial", "{disc}"), "--initial is of no use"),
@@ -88,11 +88,11 @@ def test_smoothed_blocks_are_refined(meshonet: Meshonet, disc: Path, tmp_path: P
     ],
 )
 def test_what_blocks_cannot_be_gets_a_line(
-    meshonet: Meshonet, disc: Path, tmp_path: Path, command: str, options: tuple[str, ...], told: str
+    meshonet: Meshonet, disc: Path, tmp_path: Path, command: str, options: tuple[str, ...], message: str
 ) -> None:
     words = [word.format(disc=disc) for word in options]
     output = tmp_path / ("b.h5" if command == "sample-boundary" else "x.cgns")
-    assert told in meshonet(command, disc, "-o", output, *words).err
+    assert message in meshonet(command, disc, "-o", output, *words).err
 
 
 def test_unit_size_and_a_turn_keep_connections(meshonet: Meshonet, tmp_path: Path) -> None:

@@ -36,8 +36,8 @@ def test_a_grid_stays_the_same_grid(meshonet: Meshonet, grid_vts: Path, name: st
 
 def test_coarsen_keeps_every_kth_node(meshonet: Meshonet, duct_h5: Path) -> None:
     meshonet("tfi", duct_h5, "-o", "fine.vts")
-    told = meshonet("convert", "fine.vts", "coarse.vts", "--coarsen", "2", "--json").only
-    assert (told["ni"], told["nj"]) == (11, 6)
+    report = meshonet("convert", "fine.vts", "coarse.vts", "--coarsen", "2", "--json").only
+    assert (report["ni"], report["nj"]) == (11, 6)
     (fine,), (coarse,) = read_grids("fine.vts"), read_grids("coarse.vts")
     np.testing.assert_array_equal(coarse.nodes, fine.nodes[::2, ::2])
     assert [part.name for part in coarse.patches] == [part.name for part in fine.patches]
@@ -64,7 +64,7 @@ def test_a_case_of_openfoam_beyond_a_limit_of_checkmesh_has_one_note(
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("--coarsen", "3"), "fine.vts: 21x11 nodes are 20x10 cells, which 3 does not divide; use a number "
                              "that divides 10, or make the grid with 19x10 nodes, say"),
@@ -73,12 +73,12 @@ def test_a_case_of_openfoam_beyond_a_limit_of_checkmesh_has_one_note(
     ],
 )  # fmt: skip
 def test_coarsen_tells_what_would_go(
-    meshonet: Meshonet, duct_h5: Path, words: tuple[str, str], told: str
+    meshonet: Meshonet, duct_h5: Path, words: tuple[str, str], message: str
 ) -> None:
     meshonet("tfi", duct_h5, "-o", "fine.vts")
     done = meshonet("convert", "fine.vts", "coarse.vts", *words)
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     assert done.err.count("\n") == 1
     assert not Path("coarse.vts").exists()
 
@@ -95,9 +95,9 @@ def test_the_output_may_be_an_option(meshonet: Meshonet, grid_vts: Path) -> None
 
 
 def test_json_says_what_was_converted(meshonet: Meshonet, grid_vts: Path) -> None:
-    told = meshonet("convert", grid_vts, "grid.h5", "--json").only
-    assert (told["input"], told["output"], told["ni"], told["nj"]) == ("grid.vts", "grid.h5", 41, 15)
-    assert told["parts"] == ["wall", "farfield"]
+    report = meshonet("convert", grid_vts, "grid.h5", "--json").only
+    assert (report["input"], report["output"], report["ni"], report["nj"]) == ("grid.vts", "grid.h5", 41, 15)
+    assert report["parts"] == ["wall", "farfield"]
 
 
 def test_a_batch_becomes_one_file_each_or_one_for_all(meshonet: Meshonet, three_h5: Path) -> None:
@@ -219,7 +219,7 @@ def test_a_pipe_needs_no_file(meshonet: Meshonet, process: Process, grid_vts: Pa
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("grid.vts",), "convert: there is no file to write; name it: meshonet convert grid.vts OUT"),
         (("grid.vts", "grid.abc"), "its ending '.abc' is not known; choose the format with --to"),
@@ -234,10 +234,12 @@ def test_a_pipe_needs_no_file(meshonet: Meshonet, process: Process, grid_vts: Pa
         (("missing.vts", "grid.p3d"), "missing.vts: no such file"),
     ],
 )
-def test_mistakes_get_a_line(meshonet: Meshonet, grid_vts: Path, words: tuple[str, ...], told: str) -> None:
+def test_mistakes_get_a_line(
+    meshonet: Meshonet, grid_vts: Path, words: tuple[str, ...], message: str
+) -> None:
     done = meshonet("convert", *words)
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     assert done.err.count("\n") == 1
 
 
@@ -279,8 +281,8 @@ def test_the_formats_are_listed(meshonet: Meshonet) -> None:
     done = meshonet("convert", "--list-formats")
     assert (done.code, done.err) == (0, "")
     assert [line.split()[0] for line in done.out.splitlines()] == ["format", *TABLE]
-    told = meshonet("convert", "--list-formats", "--json").objects
-    assert [row["format"] for row in told] == list(TABLE)
+    report = meshonet("convert", "--list-formats", "--json").objects
+    assert [row["format"] for row in report] == list(TABLE)
 
 
 def test_nothing_to_write_is_refused(meshonet: Meshonet) -> None:

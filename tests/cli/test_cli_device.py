@@ -21,8 +21,8 @@ def test_airfoils_are_those_without_torch(meshonet: Meshonet) -> None:
     assert meshonet("sample-boundary", *family).code == 0
     words = ("infer", "bodies.h5", "--model", "airfoil-o", "--polish", "1")
     assert meshonet(*words, "-o", "here.h5").code == 0
-    told = meshonet(*words, "--device", "cpu", "-o", "there.h5", "--json").objects
-    assert [(one["method"], one["model"], one["folded"]) for one in told] == 3 * [
+    report = meshonet(*words, "--device", "cpu", "-o", "there.h5", "--json").objects
+    assert [(one["method"], one["model"], one["folded"]) for one in report] == 3 * [
         ("operator", "airfoil-o", 0)
     ]
     assert same("here.h5", "there.h5")
@@ -49,8 +49,8 @@ def test_bodies_are_those_without_torch(meshonet: Meshonet) -> None:
     assert meshonet("sample-boundary", *family).code == 0
     words = ("infer", "holes.h5", "--model", "hole-o", "--polish", "off")
     meshonet(*words, "-o", "here.h5")
-    told = meshonet(*words, "--device", "cpu", "-o", "there.h5", "--json").objects
-    assert [(one["method"], one["model"]) for one in told] == 3 * [("operator", "hole-o")]
+    report = meshonet(*words, "--device", "cpu", "-o", "there.h5", "--json").objects
+    assert [(one["method"], one["model"]) for one in report] == 3 * [("operator", "hole-o")]
     assert same("here.h5", "there.h5")
 
 
@@ -70,8 +70,8 @@ def test_what_a_device_cannot_do_is_said(meshonet: Meshonet, quad_model: str) ->
 
 
 def test_four_sided_domains_go_to_their_network_when_none_is_named(meshonet: Meshonet, duct_h5: Path) -> None:
-    told = meshonet("infer", duct_h5, "--device", "cpu", "-o", "g.h5", "--json").only
-    assert (told["model"], told["topology"]) == ("quad-general", "quad")
+    report = meshonet("infer", duct_h5, "--device", "cpu", "-o", "g.h5", "--json").only
+    assert (report["model"], report["topology"]) == ("quad-general", "quad")
 
 
 @pytest.mark.skipif(torch.cuda.is_available(), reason="there is a CUDA device")

@@ -1,4 +1,4 @@
-"""Discs that are full, folders that may not be written, readers that go: told in a line."""
+"""Discs that are full, folders that may not be written, readers that go: one line of error."""
 
 import os
 import resource

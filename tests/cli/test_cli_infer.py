@@ -10,17 +10,17 @@ from meshonet.formats.registry import read_grids
 
 
 def test_a_body_becomes_a_valid_o_grid(meshonet: Meshonet, body_h5: Path) -> None:
-    told = meshonet("infer", body_h5, "-o", "grid.vts", "--json").only
-    assert told["folded"] == 0
-    assert told["topology"] == "o"
+    report = meshonet("infer", body_h5, "-o", "grid.vts", "--json").only
+    assert report["folded"] == 0
+    assert report["topology"] == "o"
     (grid,) = read_grids("grid.vts")
     np.testing.assert_array_equal(grid.nodes[:, 0], ellipse()["south"])
     np.testing.assert_array_equal(grid.nodes[-1], grid.nodes[0])
 
 
 def test_base_is_the_conformal_map_without_network(meshonet: Meshonet, body_h5: Path) -> None:
-    told = meshonet("infer", body_h5, "-o", "grid.vts", "--model", "base", "--polish", "off", "--json").only
-    assert (told["method"], told["model"], told["cycles"]) == ("conformal", None, 0)
+    report = meshonet("infer", body_h5, "-o", "grid.vts", "--model", "base", "--polish", "off", "--json").only
+    assert (report["method"], report["model"], report["cycles"]) == ("conformal", None, 0)
 
 
 def test_reports_say_that_an_o_grid_comes_of_a_conformal_map(meshonet: Meshonet, body_h5: Path) -> None:
@@ -38,19 +38,19 @@ def test_reports_say_that_an_o_grid_comes_of_a_conformal_map(meshonet: Meshonet,
 
 
 def test_polish_takes_the_steps_it_is_told(meshonet: Meshonet, body_h5: Path) -> None:
-    told = meshonet("infer", body_h5, "-o", "grid.vts", "--model", "base", "--polish", "2", "--json").only
-    assert told["cycles"] == 2
+    report = meshonet("infer", body_h5, "-o", "grid.vts", "--model", "base", "--polish", "2", "--json").only
+    assert report["cycles"] == 2
 
 
 def test_a_channel_becomes_a_valid_grid_too(meshonet: Meshonet, folding_h5: Path) -> None:
-    told = meshonet("infer", folding_h5, "-o", "grid.vts", "--json").only
-    assert told["folded"] == 0
+    report = meshonet("infer", folding_h5, "-o", "grid.vts", "--json").only
+    assert report["folded"] == 0
     (grid,) = read_grids("grid.vts")
     np.testing.assert_array_equal(grid.nodes[:, 0], wave()["south"])
-    assert told["method"] == "variational"
+    assert report["method"] == "variational"
     winslow = meshonet("solve-pde", folding_h5, "-o", "winslow.vts", "--json").only
     for figure in ("mean", "max"):
-        assert told["quality"]["max_angle"][figure] < winslow["quality"]["max_angle"][figure]
+        assert report["quality"]["max_angle"][figure] < winslow["quality"]["max_angle"][figure]
 
 
 @pytest.mark.parametrize("option", ["--model=base", "--polish=2", "--answer=raw"])
@@ -66,12 +66,12 @@ def test_an_operator_is_refused_where_sources_turn_the_lines(
 
 
 def test_a_designation_needs_no_file(meshonet: Meshonet) -> None:
-    told = meshonet("infer", "naca:2412", "-o", "{stem}.vts", "--res", "80x40", "--json").only
-    assert (told["ni"], told["nj"], told["folded"], told["output"]) == (80, 40, 0, "naca2412.vts")
+    report = meshonet("infer", "naca:2412", "-o", "{stem}.vts", "--res", "80x40", "--json").only
+    assert (report["ni"], report["nj"], report["folded"], report["output"]) == (80, 40, 0, "naca2412.vts")
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("--model", "nothing"), "no model 'nothing'"),
         (
@@ -85,10 +85,10 @@ def test_a_designation_needs_no_file(meshonet: Meshonet) -> None:
         (("--polish", "much"), "--polish: 'much' is not a number of steps; use auto, off or e.g. 2"),
     ],
 )
-def test_mistakes_get_a_line(meshonet: Meshonet, body_h5: Path, words: tuple[str, ...], told: str) -> None:
+def test_mistakes_get_a_line(meshonet: Meshonet, body_h5: Path, words: tuple[str, ...], message: str) -> None:
     done = meshonet("infer", body_h5, "-o", "g.vts", *words)
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     assert done.err.count("\n") == 1
     assert not Path("g.vts").exists()
 
@@ -100,20 +100,22 @@ def test_thin_cells_at_a_sharp_edge_are_marched_from_wall_and_wake(
     meshonet: Meshonet, words: tuple[str, ...], topology: str
 ) -> None:
     given = ("naca:0012", "--wall-spacing", "1e-4", "--res", "140x60", "--json", "-o", "g.vts")
-    told = meshonet("infer", *given, *words).only
-    assert (told["topology"], told["method"], told["folded"]) == (topology, "hyperbolic", 0)
+    report = meshonet("infer", *given, *words).only
+    assert (report["topology"], report["method"], report["folded"]) == (topology, "hyperbolic", 0)
     (grid,) = read_grids("g.vts")
     names = {part.name for part in grid.patches}
     assert names == ({"wall", "wake", "farfield"} if topology == "c" else {"wall", "farfield"})
 
 
 def test_c_grids_without_a_first_cell_are_marched_and_the_report_says_so(meshonet: Meshonet) -> None:
-    told = meshonet("infer", "naca:0012", "--topology", "c", "--res", "120x40", "--json", "-o", "g.vts").only
-    assert told["folded"] == 0
-    assert told["topology"] == "c"
-    assert told["method"] == "hyperbolic"
-    assert any("no shipped model makes c grids" in note for note in told["notes"])
-    assert any("no first cell was asked for" in note for note in told["notes"])
+    report = meshonet(
+        "infer", "naca:0012", "--topology", "c", "--res", "120x40", "--json", "-o", "g.vts"
+    ).only
+    assert report["folded"] == 0
+    assert report["topology"] == "c"
+    assert report["method"] == "hyperbolic"
+    assert any("no shipped model makes c grids" in note for note in report["notes"])
+    assert any("no first cell was asked for" in note for note in report["notes"])
 
 
 def test_repair_is_a_switch_here_too(meshonet: Meshonet, folding_h5: Path) -> None:

@@ -1,4 +1,4 @@
-"""`meshonet infer` on many boundaries with a network: solved together, told of one by one."""
+"""`meshonet infer` on many boundaries with a network: solved together, reported one by one."""
 
 from pathlib import Path
 
@@ -34,8 +34,8 @@ def test_a_dataset_has_the_grids_of_its_members_alone(
     meshonet: Meshonet, arches: Path, quad_model: str, jobs: str
 ) -> None:
     words = ("--model", quad_model, "--polish", "1", "--jobs", jobs, "--json")
-    told = meshonet("infer", arches, *words, "-o", "g.h5").objects
-    assert [(one["method"], one["model"], one["cycles"], one["folded"]) for one in told] == 5 * [
+    report = meshonet("infer", arches, *words, "-o", "g.h5").objects
+    assert [(one["method"], one["model"], one["cycles"], one["folded"]) for one in report] == 5 * [
         ("operator", "random", 1, 0)
     ]
     for one, boundary in zip(read_grids("g.h5"), read_shapes(str(arches)), strict=True):
@@ -88,8 +88,8 @@ def test_large_grids_are_solved_a_few_at_a_time(
 def test_airfoils_go_through_the_network_together(meshonet: Meshonet) -> None:
     words = ("--family", "airfoil", "--count", "3", "--res", "41x21", "-o", "foils.h5")
     assert meshonet("sample-boundary", *words).code == 0
-    told = meshonet("infer", "foils.h5", "--polish", "off", "-o", "g.h5", "--json").objects
-    assert [(one["model"], one["folded"]) for one in told] == 3 * [("airfoil-o", 0)]
+    report = meshonet("infer", "foils.h5", "--polish", "off", "-o", "g.h5", "--json").objects
+    assert [(one["model"], one["folded"]) for one in report] == 3 * [("airfoil-o", 0)]
     assert meshonet("infer", "foils.h5", "--polish", "off", "--jobs", "2", "-o", "apart.h5").code == 0
     for one, other in zip(read_grids("g.h5"), read_grids("apart.h5"), strict=True):
         assert one.name == other.name

@@ -27,9 +27,9 @@ def test_a_model_tells_its_recipe(meshonet: Meshonet) -> None:
 
 
 def test_json_is_one_object_a_model(meshonet: Meshonet) -> None:
-    told = meshonet("models", "--json").objects
-    assert [item["name"] for item in told] == list(shipped())
-    assert all(Path(item["file"]).is_file() and item["use"] and item["error"] for item in told)
+    report = meshonet("models", "--json").objects
+    assert [item["name"] for item in report] == list(shipped())
+    assert all(Path(item["file"]).is_file() and item["use"] and item["error"] for item in report)
     assert [item["name"] for item in meshonet("models", "hole-o", "--json").objects] == ["hole-o"]
 
 

@@ -41,8 +41,13 @@ def test_options_change_the_picture(meshonet: Meshonet, grid_vts: Path) -> None:
 
 
 def test_json_says_what_was_drawn(meshonet: Meshonet, grid_vts: Path) -> None:
-    told = meshonet("plot", grid_vts, "-o", "g.png", "--metric", "none", "--json").only
-    assert (told["input"], told["output"], told["metric"], told["ni"]) == ("grid.vts", "g.png", None, 41)
+    report = meshonet("plot", grid_vts, "-o", "g.png", "--metric", "none", "--json").only
+    assert (report["input"], report["output"], report["metric"], report["ni"]) == (
+        "grid.vts",
+        "g.png",
+        None,
+        41,
+    )
 
 
 def test_a_picture_goes_to_standard_output(meshonet: Meshonet, process: Process, grid_vts: Path) -> None:
@@ -61,7 +66,7 @@ def test_a_batch_becomes_one_picture_each(meshonet: Meshonet, three_h5: Path) ->
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("-o", "g.vts"), "g.vts: vts is no picture; use .png, .svg, .pdf or .html"),
         (("-o", "g.png", "--metric", "beauty"), "--metric: metric 'beauty' is not known; use none or one of"),
@@ -72,10 +77,12 @@ def test_a_batch_becomes_one_picture_each(meshonet: Meshonet, three_h5: Path) ->
         (("-o", "g.png", "--every", "0"), "every 0-th line cannot be drawn; use 1 or more"),
     ],
 )
-def test_mistakes_get_a_line(meshonet: Meshonet, grid_vts: Path, words: tuple[str, ...], told: str) -> None:
+def test_mistakes_get_a_line(
+    meshonet: Meshonet, grid_vts: Path, words: tuple[str, ...], message: str
+) -> None:
     done = meshonet("plot", grid_vts, *words)
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     assert done.err.count("\n") == 1
     assert not list(Path().glob("g.*"))
 

@@ -45,9 +45,9 @@ def test_commands_join_through_pipes(tmp_path: Path, three_h5: Path) -> None:
     assert (first.returncode, second.returncode, third.returncode) == (0, 0, 0)
     assert second.stdout.startswith(b"\x89HDF")
     assert b"3 done" in second.stderr
-    told = [json.loads(line) for line in third.stdout.splitlines()]
-    assert [item["name"] for item in told] == ["flat", "low", "high"]
-    assert all(item["folded"] == 0 for item in told)
+    reports = [json.loads(line) for line in third.stdout.splitlines()]
+    assert [item["name"] for item in reports] == ["flat", "low", "high"]
+    assert all(item["folded"] == 0 for item in reports)
 
 
 @pytest.mark.parametrize("lines", [0, 1])
@@ -68,8 +68,8 @@ def test_a_reader_that_stops_early_is_no_error(tmp_path: Path, lines: int) -> No
     if lines:
         with os.fdopen(output) as stream:
             assert json.loads(stream.readline())["folded"] == 0
-    _, told = running.communicate(timeout=60)
-    assert (running.returncode, told) == (0, b"")
+    _, report = running.communicate(timeout=60)
+    assert (running.returncode, report) == (0, b"")
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
@@ -84,17 +84,17 @@ def test_a_signal_ends_it_without_a_trace(tmp_path: Path, number: int, code: int
     assert running.stderr is not None
     assert b"many.h5[0]" in running.stderr.readline()  # the first report: it is in the middle of its work
     running.send_signal(number)
-    _, told = running.communicate(timeout=30)
+    _, report = running.communicate(timeout=30)
     assert running.returncode == code
-    assert b"Traceback" not in told
+    assert b"Traceback" not in report
     assert (tmp_path / "grids.h5").read_text() == "mine"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["grids.h5", "many.h5"]
 
 
 def test_an_interrupt_while_the_program_is_loaded_shows_no_trace(tmp_path: Path) -> None:
     (tmp_path / "typer.py").write_text("import signal\nsignal.raise_signal(signal.SIGINT)\n")
-    found = {**environment(), "PYTHONPATH": f"{tmp_path}:{ROOT}"}
-    done = subprocess.run(command("models"), capture_output=True, env=found)
+    results = {**environment(), "PYTHONPATH": f"{tmp_path}:{ROOT}"}
+    done = subprocess.run(command("models"), capture_output=True, env=results)
     assert (done.returncode, done.stderr) == (130, b"interrupted\n")
 
 

@@ -90,10 +90,10 @@ def test_folded_cells_are_named(meshonet: Meshonet, folded_vts: Path) -> None:
     done = meshonet("quality", folded_vts)
     assert done.code == 0
     assert "folded at i=" in done.out
-    told = meshonet("quality", folded_vts, "--json").only
-    assert told["folded"] > 10
-    assert len(told["worst_cells"]) == 10
-    assert set(told["worst_cells"][0]) == {"i", "j", "x", "y"}
+    report = meshonet("quality", folded_vts, "--json").only
+    assert report["folded"] > 10
+    assert len(report["worst_cells"]) == 10
+    assert set(report["worst_cells"][0]) == {"i", "j", "x", "y"}
 
 
 @pytest.mark.parametrize(
@@ -187,14 +187,16 @@ def test_a_boundary_is_no_grid(meshonet: Meshonet, duct_h5: Path) -> None:
 
 
 def test_an_airfoil_is_no_grid(meshonet: Meshonet) -> None:
-    told = "naca:0012: is a shape, not a grid; make a grid of it first: meshonet infer naca:0012 -o grid.vts"
+    message = (
+        "naca:0012: is a shape, not a grid; make a grid of it first: meshonet infer naca:0012 -o grid.vts"
+    )
     for words in (
         ("quality", "naca:0012"),
         ("convert", "naca:0012", "g.vts"),
         ("plot", "naca:0012", "-o", "g.png"),
     ):
         done = meshonet(*words)
-        assert (done.code, done.err) == (2, f"error: {told}\n")
+        assert (done.code, done.err) == (2, f"error: {message}\n")
 
 
 def test_per_cell_metrics_are_cell_data(meshonet: Meshonet, folded_vts: Path) -> None:
@@ -210,8 +212,8 @@ def test_per_cell_metrics_are_cell_data(meshonet: Meshonet, folded_vts: Path) ->
     for name in NAMES:
         values = vtk_to_numpy(data.GetArray(name)).reshape(grid.nj - 1, grid.ni - 1).T
         np.testing.assert_array_equal(values, per_cell(grid, name))
-    told = meshonet("quality", folded_vts, "--json").only
-    assert vtk_to_numpy(data.GetArray("folded")).sum() == told["folded"]
+    report = meshonet("quality", folded_vts, "--json").only
+    assert vtk_to_numpy(data.GetArray("folded")).sum() == report["folded"]
 
 
 def test_the_plot_is_a_picture(meshonet: Meshonet, grid_vts: Path) -> None:
@@ -220,7 +222,7 @@ def test_the_plot_is_a_picture(meshonet: Meshonet, grid_vts: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("--per-cell", "cells.h5"), "only .vts and .vtm files hold metrics; name it FILE.vts"),
         (("--plot", "grid.vts"), "vts is no picture; use .png, .svg, .pdf or .html"),
@@ -232,10 +234,12 @@ def test_the_plot_is_a_picture(meshonet: Meshonet, grid_vts: Path) -> None:
         (("--plot", "-", "--json"), "standard output has the table; write to a file"),
     ],
 )
-def test_mistakes_get_a_line(meshonet: Meshonet, grid_vts: Path, words: tuple[str, ...], told: str) -> None:
+def test_mistakes_get_a_line(
+    meshonet: Meshonet, grid_vts: Path, words: tuple[str, ...], message: str
+) -> None:
     done = meshonet("quality", grid_vts, *words)
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     assert done.err.count("\n") == 1
 
 
@@ -247,11 +251,11 @@ def test_compare_measures_the_distance(meshonet: Meshonet, grid_vts: Path) -> No
     moved = grid.nodes.copy()
     moved[3, 4] += [0.03, 0.04]
     write(Path("moved.vts"), Grid.from_nodes(moved))
-    told = meshonet("quality", "moved.vts", "--compare", grid_vts, "--json").only["compare"]
-    assert told["max"] == pytest.approx(0.05)
-    assert told["at"] == [3, 4]
-    assert (told["near_wall"], told["boundary"], told["folded_other"]) == (0, 0, 0)
-    assert told["max_angle_ratio"] > 1
+    report = meshonet("quality", "moved.vts", "--compare", grid_vts, "--json").only["compare"]
+    assert report["max"] == pytest.approx(0.05)
+    assert report["at"] == [3, 4]
+    assert (report["near_wall"], report["boundary"], report["folded_other"]) == (0, 0, 0)
+    assert report["max_angle_ratio"] > 1
     assert (
         "distance to the other grid: max 0.05 at i=3, j=4"
         in meshonet("quality", "moved.vts", "--compare", grid_vts).out
@@ -260,8 +264,8 @@ def test_compare_measures_the_distance(meshonet: Meshonet, grid_vts: Path) -> No
 
 def test_compare_pairs_grids_one_by_one(meshonet: Meshonet, three_h5: Path, grid_vts: Path) -> None:
     meshonet("tfi", three_h5, "-o", "three-grids.h5")
-    told = meshonet("quality", "three-grids.h5", "--compare", "three-grids.h5", "--json").objects
-    assert [item["compare"]["max"] for item in told] == [0, 0, 0]
+    report = meshonet("quality", "three-grids.h5", "--compare", "three-grids.h5", "--json").objects
+    assert [item["compare"]["max"] for item in report] == [0, 0, 0]
     one_with_each = meshonet("quality", "three-grids.h5", "--compare", grid_vts, "--json").objects
     assert [item["compare"]["max"] > 0 for item in one_with_each] == [True, True, True]
     too_few = meshonet("quality", "three-grids.h5", grid_vts, "--compare", "three-grids.h5")
@@ -273,27 +277,27 @@ def test_pair_says_which_goes_with_which(meshonet: Meshonet, three_h5: Path) -> 
     meshonet("tfi", three_h5, "-o", "one.h5")
     meshonet("tfi", three_h5, "-o", "{name}.vts")
     turned = ("quality", "high.vts", "flat.vts", "low.vts", "--compare", "one.h5", "--json")
-    assert [told["compare"]["max"] for told in meshonet(*turned).objects] == [0, 0, 0]
-    assert [told["compare"]["max"] for told in meshonet(*turned, "--pair", "name").objects] == [0, 0, 0]
+    assert [report["compare"]["max"] for report in meshonet(*turned).objects] == [0, 0, 0]
+    assert [report["compare"]["max"] for report in meshonet(*turned, "--pair", "name").objects] == [0, 0, 0]
     by_order = meshonet(*turned, "--pair", "order").objects
-    assert all(told["compare"]["max"] > 0.01 for told in by_order)
+    assert all(report["compare"]["max"] > 0.01 for report in by_order)
 
 
 def test_summary_is_one_table_over_all(meshonet: Meshonet, three_h5: Path) -> None:
     meshonet("tfi", three_h5, "-o", "t.h5")
     meshonet("solve-pde", three_h5, "-o", "s.h5")
     words = ("quality", "t.h5", "--compare", "s.h5")
-    each = [told["compare"] for told in meshonet(*words, "--json").objects]
+    each = [report["compare"] for report in meshonet(*words, "--json").objects]
     done = meshonet(*words, "--summary", "--json")
-    told = done.only["summary"]
-    assert told["members"] == 3
+    report = done.only["summary"]
+    assert report["members"] == 3
     for figure in ("relative_l2", "near_wall", "max", "max_angle_ratio"):
         values = [member[figure] for member in each]
-        assert told[figure]["median"] == pytest.approx(np.median(values), rel=1e-12)
-        assert told[figure]["mean"] == pytest.approx(np.mean(values), rel=1e-12)
-        assert (told[figure]["min"], told[figure]["max"]) == (min(values), max(values))
-    assert told["relative_l2"]["worst"] == "t.h5[high]"
-    assert (told["folded"]["sum"], told["folded_other"]["members"]) == (0, 0)
+        assert report[figure]["median"] == pytest.approx(np.median(values), rel=1e-12)
+        assert report[figure]["mean"] == pytest.approx(np.mean(values), rel=1e-12)
+        assert (report[figure]["min"], report[figure]["max"]) == (min(values), max(values))
+    assert report["relative_l2"]["worst"] == "t.h5[high]"
+    assert (report["folded"]["sum"], report["folded_other"]["members"]) == (0, 0)
     table = meshonet(*words, "--summary").out.splitlines()
     assert [line.split("  ")[0] for line in table] == [
         "grid", "t.h5[flat]", "t.h5[low]", "t.h5[high]", "median of 3", "mean of 3", "p90 of 3", "worst of 3",
@@ -315,8 +319,8 @@ def test_gates_look_at_comparisons(meshonet: Meshonet, three_h5: Path) -> None:
     assert meshonet(*words, "boundary>1e-12").code == 0
     without = meshonet("quality", "t.h5", "--fail-on", "relative_l2>0.01")
     assert (without.code, "metric 'relative_l2' is not known" in without.err) == (2, True)
-    told = meshonet(*words[:-2], "--json", "--fail-on", "max>9").objects[0]["compare"]
-    assert set(COMPARED) <= set(told)
+    report = meshonet(*words[:-2], "--json", "--fail-on", "max>9").objects[0]["compare"]
+    assert set(COMPARED) <= set(report)
 
 
 def test_a_summary_leaves_out_what_failed_and_keeps_gates(meshonet: Meshonet, three_h5: Path) -> None:
@@ -346,16 +350,16 @@ def test_a_batch_becomes_one_page(meshonet: Meshonet, three_h5: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "message"),
     [("q.png", "q.png: --html: a report is a page; name it FILE.html"), ("none/q.html", "none")],
 )
 def test_a_page_that_cannot_be_written_is_refused(
-    meshonet: Meshonet, three_h5: Path, name: str, told: str
+    meshonet: Meshonet, three_h5: Path, name: str, message: str
 ) -> None:
     meshonet("tfi", three_h5, "-o", "grids.h5", "-q")
     done = meshonet("quality", "grids.h5", "--html", name)
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     assert not Path(name).exists()
 
 

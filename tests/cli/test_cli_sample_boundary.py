@@ -118,17 +118,17 @@ def test_the_seed_decides_the_members(meshonet: Meshonet) -> None:
 
 
 def test_a_family_gives_101_nodes_and_names(meshonet: Meshonet) -> None:
-    told = meshonet(
+    report = meshonet(
         "sample-boundary", "--family", "hole", "--count", "2", "-o", "{name}.h5", "--json"
     ).objects
-    assert [(item["ni"], item["nj"], item["output"]) for item in told] == [
+    assert [(item["ni"], item["nj"], item["output"]) for item in report] == [
         (101, 101, "hole-0.h5"),
         (101, 101, "hole-1.h5"),
     ]
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("--family", "tree"), "--family: family 'tree' is not known; use one of arch, hexagon"),
         (("--family", "arch", "--range", "2:1"), "--range: '2:1' is not a range; use A:B with A <= B"),
@@ -145,10 +145,10 @@ def test_a_family_gives_101_nodes_and_names(meshonet: Meshonet) -> None:
         (("--family", "arch", "--count", "0"), "count"),
     ],
 )
-def test_mistakes_get_a_line(meshonet: Meshonet, words: tuple[str, ...], told: str) -> None:
+def test_mistakes_get_a_line(meshonet: Meshonet, words: tuple[str, ...], message: str) -> None:
     done = meshonet("sample-boundary", *words, "-o", "b.h5")
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     assert done.err.count("\n") == 1
     assert not Path("b.h5").exists()
 
@@ -189,19 +189,19 @@ def test_a_split_is_kept_and_goes_on_to_grids(meshonet: Meshonet, family: str, w
 
 
 def test_splits_that_cannot_be_are_refused(meshonet: Meshonet) -> None:
-    for words, told in (
+    for words, report in (
         (("--family", "arch", "--count", "2", "--split", "random"), "--split: 2 members cannot be split"),
         (("--family", "arch", "--count", "9", "--split", "x"), "--split: split 'x' is not known; use interp"),
         (("--family", "procedural", "--count", "9", "--split", "random"), "--split: random shapes have no"),
     ):
         done = meshonet("sample-boundary", *words, "-o", "b.h5")
         assert done.code == 2
-        assert told in done.err
+        assert report in done.err
     meshonet("sample-boundary", "--family", "arch", "--count", "2", "--res", "9", "-o", "b.h5")
     assert "b.h5: no sample is marked 'test'; mark samples" in meshonet("tfi", "b.h5#test", "-o", "g.h5").err
     meshonet("tfi", "naca:0012", "--res", "40x20", "-o", "g.vts")
-    told = meshonet("quality", "g.vts#test").err
-    assert "g.vts: vts files do not say which samples are to test; leave #test out" in told
+    report = meshonet("quality", "g.vts#test").err
+    assert "g.vts: vts files do not say which samples are to test; leave #test out" in report
 
 
 @pytest.mark.parametrize(
@@ -211,5 +211,5 @@ def test_what_only_a_family_needs_is_refused_without(
     meshonet: Meshonet, duct_h5: Path, words: tuple[str, str]
 ) -> None:
     done = meshonet("sample-boundary", duct_h5, *words, "-o", "b.h5")
-    told = f"error: {words[0]} without --family; give --family as well, or drop {words[0]}\n"
-    assert (done.code, done.err) == (2, told)
+    message = f"error: {words[0]} without --family; give --family as well, or drop {words[0]}\n"
+    assert (done.code, done.err) == (2, message)

@@ -12,11 +12,11 @@ from meshonet.solvers.elliptic.solve import solve
 
 
 def test_the_grid_solves_the_equations(meshonet: Meshonet, body_h5: Path) -> None:
-    told = meshonet("solve-pde", body_h5, "-o", "grid.vts", "--tol", "1e-10", "--json").only
-    assert told["method"] == "winslow"
-    assert told["residual"] <= 1e-10
-    assert told["cycles"] >= 1
-    assert told["folded"] == 0
+    report = meshonet("solve-pde", body_h5, "-o", "grid.vts", "--tol", "1e-10", "--json").only
+    assert report["method"] == "winslow"
+    assert report["residual"] <= 1e-10
+    assert report["cycles"] >= 1
+    assert report["folded"] == 0
     residuals = []
     for path in ("grid.vts", str(_interpolated(meshonet, body_h5))):
         nodes = next(read_grids(path)).nodes
@@ -30,9 +30,9 @@ def _interpolated(meshonet: Meshonet, source: Path) -> Path:
 
 
 def test_the_report_says_residual_and_cycles(meshonet: Meshonet, duct_h5: Path) -> None:
-    told = meshonet("solve-pde", duct_h5, "-o", "grid.vts").err
-    assert "method     winslow" in told
-    assert "cycles" in told
+    report = meshonet("solve-pde", duct_h5, "-o", "grid.vts").err
+    assert "method     winslow" in report
+    assert "cycles" in report
 
 
 def test_a_grid_that_needs_no_cycle_says_so(meshonet: Meshonet) -> None:
@@ -53,18 +53,18 @@ def test_thomas_middlecoff_keeps_the_spacing_of_the_sides(meshonet: Meshonet, tm
     for side in ("west", "east"):
         edges[side][:, 1] **= 3
     source = dataset(tmp_path / "layers.h5", "quad", edges)
-    told = meshonet("solve-pde", source, "--method", "thomas-middlecoff", "-o", "g.vts", "--json").only
-    assert (told["method"], told["folded"]) == ("thomas-middlecoff", 0)
+    report = meshonet("solve-pde", source, "--method", "thomas-middlecoff", "-o", "g.vts", "--json").only
+    assert (report["method"], report["folded"]) == ("thomas-middlecoff", 0)
     (grid,) = read_grids("g.vts")
     first = np.diff(grid.y, axis=1)[:, 0]
     meshonet("solve-pde", source, "-o", "plain.vts")
     (plain,) = read_grids("plain.vts")
     assert first.max() < 0.2 * np.diff(plain.y, axis=1)[:, 0].max()
-    told = meshonet(
+    report = meshonet(
         "solve-pde", source, "--method", "thomas-middlecoff", "--coarse", "17", "-o", "c.vts", "--json"
     ).only
     (coarse,) = read_grids("c.vts")
-    assert told["folded"] == 0
+    assert report["folded"] == 0
     np.testing.assert_allclose(coarse.nodes, grid.nodes, atol=5e-3)
 
 
@@ -79,10 +79,10 @@ def test_a_march_needs_a_first_cell_and_takes_no_elliptic_options(meshonet: Mesh
         ("--tol", "1e-6", *given): "--tol is of no use to a grid marched from the wall; drop --tol",
         ("--coarse", "33", *given): "--coarse is of no use to a grid marched from the wall",
     }
-    for words, told in cases.items():
+    for words, report in cases.items():
         done = meshonet("solve-pde", body_h5, *words, "-o", "none.vts")
         assert done.code == 2
-        assert told in done.err
+        assert report in done.err
         assert not Path("none.vts").exists()
 
 
@@ -94,44 +94,46 @@ def test_where_interpolation_folds_it_does_not(meshonet: Meshonet, folding_h5: P
 
 
 def test_max_cycles_stops_it(meshonet: Meshonet, duct_h5: Path) -> None:
-    told = meshonet("solve-pde", duct_h5, "-o", "g.vts", "--tol", "1e-14", "--max-cycles", "1", "--json").only
-    assert told["cycles"] == 1
-    assert told["residual"] > 1e-14
+    report = meshonet(
+        "solve-pde", duct_h5, "-o", "g.vts", "--tol", "1e-14", "--max-cycles", "1", "--json"
+    ).only
+    assert report["cycles"] == 1
+    assert report["residual"] > 1e-14
 
 
 def test_initial_starts_from_a_grid(meshonet: Meshonet, duct_h5: Path) -> None:
     meshonet("solve-pde", duct_h5, "-o", "first.vts", "--tol", "1e-9")
-    told = meshonet(
+    report = meshonet(
         "solve-pde", duct_h5, "-o", "g.vts", "--initial", "first.vts", "--tol", "1e-8", "--json"
     ).only
-    assert told["cycles"] == 0
+    assert report["cycles"] == 0
 
 
 def test_variational_angles_are_better(meshonet: Meshonet, duct_h5: Path) -> None:
     words = ("solve-pde", duct_h5, "--res", "65x33", "--json", "-o", "g.vts")
     winslow = meshonet(*words, "--method", "winslow").only
     for more in ((), ("--coarse", "33")):
-        told = meshonet(*words, "--method", "variational", *more).only
-        assert told["method"] == "variational"
-        assert told["folded"] == 0
-        assert told["quality"]["max_angle"]["mean"] < winslow["quality"]["max_angle"]["mean"]
+        report = meshonet(*words, "--method", "variational", *more).only
+        assert report["method"] == "variational"
+        assert report["folded"] == 0
+        assert report["quality"]["max_angle"]["mean"] < winslow["quality"]["max_angle"]["mean"]
 
 
 @pytest.mark.parametrize("topology", ["o", "c"])
 def test_variational_around_a_body(meshonet: Meshonet, topology: str) -> None:
     words = ("solve-pde", "naca:2412", "--topology", topology, "--res", "100x40", "--method", "variational")
-    told = meshonet(*words, "--json", "-o", "g.vts").only
-    assert (told["method"], told["topology"], told["folded"], told["path"]) == (
+    report = meshonet(*words, "--json", "-o", "g.vts").only
+    assert (report["method"], report["topology"], report["folded"], report["path"]) == (
         "variational",
         topology,
         0,
         [],
     )
-    assert told["quality"]["max_angle"]["mean"] < 93
+    assert report["quality"]["max_angle"]["mean"] < 93
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (
             ("--history", "cycles.txt"),
@@ -153,11 +155,11 @@ def test_variational_around_a_body(meshonet: Meshonet, topology: str) -> None:
         (("--res", "33", "--initial", "start.vts"), "the initial grid has 21x11 nodes, not 33x33"),
     ],
 )
-def test_mistakes_get_a_line(meshonet: Meshonet, duct_h5: Path, words: tuple[str, ...], told: str) -> None:
+def test_mistakes_get_a_line(meshonet: Meshonet, duct_h5: Path, words: tuple[str, ...], message: str) -> None:
     _interpolated(meshonet, duct_h5)
     done = meshonet("solve-pde", "duct.h5", "-o", "g.vts", *words)
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     assert done.err.count("\n") == 1
     assert not Path("g.vts").exists()
 
@@ -165,12 +167,12 @@ def test_mistakes_get_a_line(meshonet: Meshonet, duct_h5: Path, words: tuple[str
 def test_a_wider_repair_moves_more(meshonet: Meshonet, tmp_path: Path) -> None:
     words = ("--family", "wrench", "--count", "1", "--range", "0.3:0.3", "--res", "41", "--quiet")
     assert meshonet("sample-boundary", *words, "-o", "wrench.h5").code == 0
-    told = [
+    reports = [
         meshonet("solve-pde", "wrench.h5", *more, "-o", f"g{k}.vts", "--json").only
         for k, more in enumerate([(), ("--repair-margin", "6"), ("--repair-margin", "12")])
     ]
-    assert [one["folded"] for one in told] == [0, 0, 0]
-    assert all(one["path"] == ["repair"] for one in told)
+    assert [one["folded"] for one in reports] == [0, 0, 0]
+    assert all(one["path"] == ["repair"] for one in reports)
     own, six, twelve = (next(read_grids(f"g{k}.vts")).nodes for k in range(3))
     np.testing.assert_array_equal(own, six)
     assert np.abs(twelve - own).max() > 1e-3
@@ -188,9 +190,9 @@ def test_without_repair_the_grid_is_what_the_equations_have(meshonet: Meshonet, 
     assert "folded" in done.err
     assert not Path("no.vts").exists()
     words = ("--no-repair", "--allow-invalid", "--tol", "1e-6", "--json")
-    told = meshonet("solve-pde", "wrench.h5", *words, "-o", "bare.vts").only
-    assert told["folded"] > 0
-    assert told["path"] == []
+    report = meshonet("solve-pde", "wrench.h5", *words, "-o", "bare.vts").only
+    assert report["folded"] > 0
+    assert report["path"] == []
     repaired = meshonet("solve-pde", "wrench.h5", "--repair", *words[1:], "-o", "whole.vts").only
     assert (repaired["folded"], repaired["path"]) == (0, ["repair"])
     solved = solve(next(read_shapes("wrench.h5")), tol=1e-6).grid.nodes
@@ -203,11 +205,11 @@ def test_lines_of_c_grids_do_not_lean_along_the_wake_unless_winslow_is_asked_for
 ) -> None:
     words = ("solve-pde", "naca:2412", "--topology", "c", "--res", res, "--json", "-o", "g.vts")
     ways = (), ("--method", "variational"), ("--method", "winslow"), ("--tol", "1e-6")
-    told, minimised, winslow, stopped = (meshonet(*words, *more).only for more in ways)
-    methods = [one["method"] for one in (told, minimised, winslow, stopped)]
+    report, minimised, winslow, stopped = (meshonet(*words, *more).only for more in ways)
+    methods = [one["method"] for one in (report, minimised, winslow, stopped)]
     assert methods == ["hyperbolic", "variational", "winslow", "winslow"]
-    assert told["folded"] == minimised["folded"] == 0
-    assert told["quality"]["max_angle"]["max"] < 115
+    assert report["folded"] == minimised["folded"] == 0
+    assert report["quality"]["max_angle"]["max"] < 115
     assert minimised["quality"]["max_angle"]["max"] < 140 < 155 < winslow["quality"]["max_angle"]["max"]
-    for one in told, minimised:
+    for one in report, minimised:
         assert one["quality"]["max_angle"]["mean"] < winslow["quality"]["max_angle"]["mean"] - 5

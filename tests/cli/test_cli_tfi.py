@@ -27,12 +27,12 @@ def test_a_boundary_becomes_a_grid_with_its_nodes(meshonet: Meshonet, duct_h5: P
 
 
 def test_the_report_says_what_happened(meshonet: Meshonet, duct_h5: Path) -> None:
-    told = meshonet("tfi", duct_h5, "-o", "grid.vts").err
-    assert "grid.vts: 21 x 11 nodes, quad grid" in told
-    assert "folded     0 of 200 cells" in told
-    assert "max angle" in told
-    assert "read" in told
-    assert "write" in told
+    report = meshonet("tfi", duct_h5, "-o", "grid.vts").err
+    assert "grid.vts: 21 x 11 nodes, quad grid" in report
+    assert "folded     0 of 200 cells" in report
+    assert "max angle" in report
+    assert "read" in report
+    assert "write" in report
 
 
 def test_quiet_says_nothing(meshonet: Meshonet, duct_h5: Path) -> None:
@@ -41,21 +41,21 @@ def test_quiet_says_nothing(meshonet: Meshonet, duct_h5: Path) -> None:
 
 
 def test_json_has_the_promised_fields(meshonet: Meshonet, body_h5: Path) -> None:
-    told = meshonet("tfi", body_h5, "-o", "grid.vts", "--json").only
-    assert told["input"] == str(body_h5)
-    assert told["output"] == "grid.vts"
-    assert (told["ni"], told["nj"], told["topology"], told["method"]) == (41, 15, "o", "tfi")
-    assert (told["folded"], told["path"], told["residual"], told["cycles"], told["model"]) == (
+    report = meshonet("tfi", body_h5, "-o", "grid.vts", "--json").only
+    assert report["input"] == str(body_h5)
+    assert report["output"] == "grid.vts"
+    assert (report["ni"], report["nj"], report["topology"], report["method"]) == (41, 15, "o", "tfi")
+    assert (report["folded"], report["path"], report["residual"], report["cycles"], report["model"]) == (
         0,
         [],
         None,
         None,
         None,
     )
-    assert set(told["seconds"]) >= {"read", "boundary", "grid", "guard", "write", "total"}
-    stages = [spent for stage, spent in told["seconds"].items() if stage != "total"]
-    assert told["seconds"]["total"] == pytest.approx(sum(stages), abs=1e-5)
-    assert told["quality"]["max_angle"]["max"] >= told["quality"]["max_angle"]["mean"] >= 90
+    assert set(report["seconds"]) >= {"read", "boundary", "grid", "guard", "write", "total"}
+    stages = [spent for stage, spent in report["seconds"].items() if stage != "total"]
+    assert report["seconds"]["total"] == pytest.approx(sum(stages), abs=1e-5)
+    assert report["quality"]["max_angle"]["max"] >= report["quality"]["max_angle"]["mean"] >= 90
 
 
 @pytest.mark.parametrize(("res", "shape"), [("30", (30, 30)), ("30x12", (30, 12)), ("30X12", (30, 12))])
@@ -94,8 +94,8 @@ def test_a_folded_grid_that_is_allowed_is_said_to_be_folded(meshonet: Meshonet, 
 
 
 def test_repair_unfolds_and_says_so(meshonet: Meshonet, folding_h5: Path) -> None:
-    told = meshonet("tfi", folding_h5, "-o", "grid.vts", "--repair", "--json").only
-    assert (told["method"], told["folded"], told["path"]) == ("tfi", 0, ["repair"])
+    report = meshonet("tfi", folding_h5, "-o", "grid.vts", "--repair", "--json").only
+    assert (report["method"], report["folded"], report["path"]) == ("tfi", 0, ["repair"])
     done = meshonet("tfi", folding_h5, "-o", "grid.vts", "--repair")
     assert "method     tfi, then repair" in done.err
 
@@ -137,9 +137,9 @@ def test_a_dataset_becomes_one_file_each(meshonet: Meshonet, three_h5: Path) -> 
 
 
 def test_json_of_a_batch_is_one_object_a_line(meshonet: Meshonet, three_h5: Path) -> None:
-    told = meshonet("tfi", three_h5, "-o", "{name}.vts", "--json").objects
-    assert [item["output"] for item in told] == ["flat.vts", "low.vts", "high.vts"]
-    assert [item["name"] for item in told] == ["flat", "low", "high"]
+    report = meshonet("tfi", three_h5, "-o", "{name}.vts", "--json").objects
+    assert [item["output"] for item in report] == ["flat.vts", "low.vts", "high.vts"]
+    assert [item["name"] for item in report] == ["flat", "low", "high"]
 
 
 def test_a_batch_goes_on_past_failures_and_ends_with_the_worst(
@@ -156,10 +156,10 @@ def test_a_batch_goes_on_past_failures_and_ends_with_the_worst(
 
 
 def test_a_failing_member_of_a_batch_is_in_its_json(meshonet: Meshonet, duct_h5: Path) -> None:
-    told = meshonet("tfi", "missing.h5", duct_h5, "-o", "{stem}.vts", "--json").objects
-    assert (told[0]["input"], told[0]["output"], told[0]["exit_code"]) == ("missing.h5", None, 2)
-    assert "no such file" in told[0]["error"]
-    assert told[1]["output"] == "duct.vts"
+    report = meshonet("tfi", "missing.h5", duct_h5, "-o", "{stem}.vts", "--json").objects
+    assert (report[0]["input"], report[0]["output"], report[0]["exit_code"]) == ("missing.h5", None, 2)
+    assert "no such file" in report[0]["error"]
+    assert report[1]["output"] == "duct.vts"
 
 
 def test_members_of_other_sizes_do_not_fit_a_dataset(
@@ -179,7 +179,7 @@ def test_when_every_member_fails_there_is_no_file(meshonet: Meshonet, folding_h5
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("three.h5", "-o", "one.vts"), "and a vts file holds one; use -o 'one-{index}.vts'"),
         (("three.h5", "duct.h5", "-o", "one.vts"), "several inputs and one vts file, which holds one; use"),
@@ -209,11 +209,11 @@ def test_when_every_member_fails_there_is_no_file(meshonet: Meshonet, folding_h5
     ],
 )  # fmt: skip
 def test_mistakes_get_a_line(
-    meshonet: Meshonet, duct_h5: Path, three_h5: Path, words: tuple[str, ...], told: str
+    meshonet: Meshonet, duct_h5: Path, three_h5: Path, words: tuple[str, ...], message: str
 ) -> None:
     done = meshonet("tfi", *words)
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     errors = [line for line in done.err.splitlines() if line.startswith("error: ")]
     assert errors
     assert len(errors[0]) < 400
@@ -288,8 +288,8 @@ def test_json_stays_valid_when_names_are_odd(meshonet: Meshonet, tmp_path: Path)
 def test_first_cells_are_as_high_as_asked(meshonet: Meshonet, duct_h5: Path) -> None:
     heights = ("--spacing-south", "1e-3", "--spacing-north", "2e-3", "--spacing-west", "4e-3")
     words = ("--spacing-east", "5e-3", "--constant-layers", "2", "--res", "41x41", "-o", "g.h5")
-    told = meshonet("tfi", duct_h5, *heights, *words, "--json").only
-    assert (told["method"], told["folded"]) == ("tfi", 0)
+    report = meshonet("tfi", duct_h5, *heights, *words, "--json").only
+    assert (report["method"], report["folded"]) == ("tfi", 0)
     (grid,) = read_grids("g.h5")
     first = np.linalg.norm(np.diff(grid.nodes, axis=1), axis=-1)
     np.testing.assert_allclose(first[:, 0], 1e-3, rtol=1e-8)

@@ -22,7 +22,7 @@ def strips_h5(meshonet: Meshonet) -> str:
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("-o", "model.pt"), "model.pt: a model file ends in .safetensors; rename the output"),
         (("-o", "nowhere/m.safetensors"), "no folder nowhere; make it first"),
@@ -36,10 +36,10 @@ def strips_h5(meshonet: Meshonet) -> str:
         (("-o", "m.safetensors", "--device", "tpu"), "device"),
     ],
 )
-def test_mistakes_get_a_line(meshonet: Meshonet, words: tuple[str, ...], told: str) -> None:
+def test_mistakes_get_a_line(meshonet: Meshonet, words: tuple[str, ...], message: str) -> None:
     done = meshonet("train", "strips.h5", *words)
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     assert done.err.count("\n") == 1
 
 
@@ -54,9 +54,9 @@ def test_without_torch_it_says_what_to_install(meshonet: Meshonet, monkeypatch: 
 
 @pytest.mark.skipif(not TORCH, reason="needs torch")
 def test_the_same_seed_gives_the_same_model_cut_or_not(meshonet: Meshonet, strips_h5: str) -> None:
-    told = meshonet("train", strips_h5, "-o", "one.safetensors", *SMALL, "--seed", "5", "--json").only
-    assert (told["output"], told["shapes"]) == ("one.safetensors", 12)
-    assert told["figures"]["network"]["median"] > 0
+    report = meshonet("train", strips_h5, "-o", "one.safetensors", *SMALL, "--seed", "5", "--json").only
+    assert (report["output"], report["shapes"]) == ("one.safetensors", 12)
+    assert report["figures"]["network"]["median"] > 0
     meshonet("train", strips_h5, "-o", "two.safetensors", *SMALL, "--seed", "5", "--quiet")
     meshonet("train", strips_h5, "-o", "other.safetensors", *SMALL, "--seed", "6", "--quiet")
     models = [arrays(f"{name}.safetensors") for name in ("one", "two", "other")]
@@ -79,8 +79,8 @@ def test_the_log_has_a_line_an_epoch(meshonet: Meshonet, strips_h5: str) -> None
 def test_a_trained_model_makes_grids(meshonet: Meshonet, strips_h5: str) -> None:
     meshonet("train", strips_h5, "-o", "mine.safetensors", *SMALL, "--quiet")
     words = ("--model", "mine.safetensors", "--res", "80x40", "-o", "g.vts", "--json")
-    told = meshonet("infer", "naca:2412", *words).only
-    assert (told["folded"], told["model"]) == (0, "mine")
+    report = meshonet("infer", "naca:2412", *words).only
+    assert (report["folded"], report["model"]) == (0, "mine")
 
 
 @pytest.mark.skipif(not TORCH, reason="needs torch")
@@ -105,10 +105,10 @@ BRIEF = ("--epochs", "4", "--points", "60", "--batch", "4")
 @pytest.mark.skipif(not TORCH, reason="needs torch")
 def test_from_a_family_to_an_error(meshonet: Meshonet, arches_h5: str) -> None:
     words = ("--model", "meshonet-hard", *BRIEF, "--set", "sensors=20", "--set", "hidden=[16]")
-    told = meshonet("train", arches_h5, "-o", "m.safetensors", *words, "--json").only
-    assert (told["model"], told["shapes"]) == ("meshonet-hard", 8)
-    assert (told["figures"]["train"]["grids"], told["figures"]["test"]["grids"]) == (7, 1)
-    assert told["figures"]["test"]["boundary"] <= 1e-12
+    report = meshonet("train", arches_h5, "-o", "m.safetensors", *words, "--json").only
+    assert (report["model"], report["shapes"]) == ("meshonet-hard", 8)
+    assert (report["figures"]["train"]["grids"], report["figures"]["test"]["grids"]) == (7, 1)
+    assert report["figures"]["test"]["boundary"] <= 1e-12
     answer = (
         "infer",
         "edges.h5#test",
@@ -123,7 +123,7 @@ def test_from_a_family_to_an_error(meshonet: Meshonet, arches_h5: str) -> None:
     made = meshonet(*answer).only
     assert (made["method"], made["model"]) == ("operator", "m")
     graded = meshonet("quality", "own.h5", "--compare", "arches.h5#test", "--json").only
-    assert graded["compare"]["relative_l2"] == pytest.approx(told["figures"]["test"]["median"], rel=1e-5)
+    assert graded["compare"]["relative_l2"] == pytest.approx(report["figures"]["test"]["median"], rel=1e-5)
 
 
 @pytest.mark.skipif(not TORCH, reason="needs torch")
@@ -181,7 +181,7 @@ def test_a_model_of_one_family_is_not_for_another_topology(meshonet: Meshonet, a
 
 @pytest.mark.skipif(not TORCH, reason="needs torch")
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("--model", "perceptron"), "model 'perceptron' is not known; use one of strip, quad, meshonet"),
         (("--split", "halves"), "--split: 'halves' is neither a way to split nor a file"),
@@ -200,12 +200,12 @@ def test_a_model_of_one_family_is_not_for_another_topology(meshonet: Meshonet, a
     ],
 )
 def test_mistakes_about_grids_get_a_line(
-    meshonet: Meshonet, arches_h5: str, words: tuple[str, ...], told: str
+    meshonet: Meshonet, arches_h5: str, words: tuple[str, ...], message: str
 ) -> None:
     Path("words.txt").write_text("train test")
     done = meshonet("train", arches_h5, "-o", "m.safetensors", *BRIEF, *words)
     assert done.code == 2
-    assert told in done.err.splitlines()[-1]
+    assert message in done.err.splitlines()[-1]
     assert not Path("m.safetensors").exists()
 
 
@@ -237,11 +237,11 @@ def test_a_cut_run_goes_on_from_its_checkpoint(
     assert meshonet(*words, "--quiet").code == 0
     whole = arrays("m.safetensors")
     Path("m.safetensors").unlink()
-    report, told = Log.__call__, []
+    report, record = Log.__call__, []
 
     def cut(log: Log, progress: Any) -> None:
-        told.append(progress.epoch)
-        if progress.epoch == 3 and told.count(3) == 1:
+        record.append(progress.epoch)
+        if progress.epoch == 3 and record.count(3) == 1:
             raise KeyboardInterrupt
         report(log, progress)
 
@@ -249,7 +249,7 @@ def test_a_cut_run_goes_on_from_its_checkpoint(
     assert meshonet(*words).code == 130
     assert not Path("m.safetensors").exists()
     assert meshonet(*words, "--resume").code == 0
-    assert told == [1, 2, 3, 3, 4]
+    assert record == [1, 2, 3, 3, 4]
     assert all(np.array_equal(array, whole[name]) for name, array in arrays("m.safetensors").items())
 
 
@@ -332,8 +332,10 @@ def test_datasets_of_one_method_are_trained_on_together(meshonet: Meshonet) -> N
 @pytest.mark.skipif(not TORCH, reason="needs torch")
 def test_a_split_file_decides(meshonet: Meshonet, arches_h5: str) -> None:
     Path("words.txt").write_text("test train " * 4)
-    told = meshonet("train", arches_h5, "-o", "m.safetensors", *BRIEF, "--split", "words.txt", "--json").only
-    assert told["figures"]["test"]["grids"] == 4
+    report = meshonet(
+        "train", arches_h5, "-o", "m.safetensors", *BRIEF, "--split", "words.txt", "--json"
+    ).only
+    assert report["figures"]["test"]["grids"] == 4
 
 
 def arrays(path: str) -> dict[str, np.ndarray]:

@@ -22,14 +22,14 @@ def test_large_quads_are_solved_on_fewer_nodes_unless_told(
         (("--coarse", "auto"), ("--coarse", "off"), ("--coarse", "0"), ("--max-cycles", "20"))
     ):
         meshonet(*words, *more, "-o", f"{k}.vts")
-    found = [next(read_grids(f"{k}.vts")).provenance.get("coarse") for k in range(4)]
-    assert [None if one is None else list(one) for one in found] == [[coarse, nj], None, None, None]
+    results = [next(read_grids(f"{k}.vts")).provenance.get("coarse") for k in range(4)]
+    assert [None if one is None else list(one) for one in results] == [[coarse, nj], None, None, None]
 
 
 def test_a_coarse_solve_is_evaluated_at_the_resolution(meshonet: Meshonet, duct_h5: Path) -> None:
     meshonet("solve-pde", duct_h5, "--res", "80x60", "-o", "full.vts")
-    told = meshonet("solve-pde", duct_h5, "--res", "80x60", "--coarse", "33", "-o", "g.vts", "--json").only
-    assert (told["ni"], told["nj"], told["folded"], told["method"]) == (80, 60, 0, "winslow")
+    report = meshonet("solve-pde", duct_h5, "--res", "80x60", "--coarse", "33", "-o", "g.vts", "--json").only
+    assert (report["ni"], report["nj"], report["folded"], report["method"]) == (80, 60, 0, "winslow")
     (full,), (grid,) = read_grids("full.vts"), read_grids("g.vts")
     assert np.array_equal(grid.nodes[:, 0], full.nodes[:, 0])
     distance = np.abs(grid.nodes - full.nodes).max() / np.ptp(full.nodes[..., 0])

@@ -12,9 +12,9 @@ from command_line import Meshonet
 def test_steps_that_are_counted_follow_the_network(
     meshonet: Meshonet, duct_h5: Path, polish: str, model: str | None
 ) -> None:
-    told = meshonet("infer", duct_h5, "--polish", polish, "-o", "g.vts", "--json").only
-    assert told["model"] == model
-    assert told["cycles"] == {"auto": told["cycles"], "off": 0, "2": 2}[polish]
+    report = meshonet("infer", duct_h5, "--polish", polish, "-o", "g.vts", "--json").only
+    assert report["model"] == model
+    assert report["cycles"] == {"auto": report["cycles"], "off": 0, "2": 2}[polish]
 
 
 C = ("naca:2412", "--topology", "c", "--res", "61x21", "-o", "g.vts")
@@ -32,8 +32,8 @@ C = ("naca:2412", "--topology", "c", "--res", "61x21", "-o", "g.vts")
 )
 def test_c_grids_say_that_no_model_makes_them(meshonet: Meshonet, words: tuple[str, ...]) -> None:
     done = meshonet("infer", *C, *words)
-    told = f"{' '.join(words)} is of no use to a c grid: it is marched, no model makes it; drop {words[0]}"
-    assert (done.code, done.err) == (2, f"error: naca:2412: {told}\n")
+    message = f"{' '.join(words)} is of no use to a c grid: it is marched, no model makes it; drop {words[0]}"
+    assert (done.code, done.err) == (2, f"error: naca:2412: {message}\n")
 
 
 def test_a_model_for_c_grids_is_known_not_to_be(meshonet: Meshonet) -> None:

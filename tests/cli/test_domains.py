@@ -39,14 +39,14 @@ def names(grid: Grid) -> set[str]:
 
 def test_a_polygon_with_holes_becomes_blocks_whose_parts_are_named(meshonet: Meshonet) -> None:
     write("plate.geojson", feature([BOX, *HOLES]))
-    told = meshonet("infer", "plate.geojson", "--cells", 1500, "--json", "-o", "plate.h5").only
+    report = meshonet("infer", "plate.geojson", "--cells", 1500, "--json", "-o", "plate.h5").only
     grid = grid_of("plate.h5")
-    assert told["blocks"] == len(grid.blocks) > 8
-    assert abs(told["cells"] - 1500) < 300
-    assert told["folded"] == 0
-    assert told["interfaces"] == len(grid.connections)
-    assert len(told["quality"]["max_angle"]["worst"]) == 3
-    assert (told["method"], told["ni"], told["topology"]) == ("blocks", None, "blocks")
+    assert report["blocks"] == len(grid.blocks) > 8
+    assert abs(report["cells"] - 1500) < 300
+    assert report["folded"] == 0
+    assert report["interfaces"] == len(grid.connections)
+    assert len(report["quality"]["max_angle"]["worst"]) == 3
+    assert (report["method"], report["ni"], report["topology"]) == ("blocks", None, "blocks")
     assert names(grid) == {"outer", "body", "body2"}
     area = sum(signed_area(block.nodes) for block in grid.blocks)
     assert area == pytest.approx(8 - 0.25 - 0.125, rel=1e-9)
@@ -68,7 +68,7 @@ def test_names_and_corners_of_geojson_are_kept(meshonet: Meshonet) -> None:
 
 
 @pytest.mark.parametrize(
-    ("properties", "told"),
+    ("properties", "message"),
     [
         ({"names": ["a"]}, "property 'names' has 1 entries and the polygon 2 rings; give one entry for each"),
         ({"names": [["a", "b"], "c"]}, "ring 1: 2 names and 4 corners that were found; give one name"),
@@ -79,12 +79,12 @@ def test_names_and_corners_of_geojson_are_kept(meshonet: Meshonet) -> None:
     ],
 )
 def test_properties_that_do_not_fit_are_refused(
-    meshonet: Meshonet, properties: dict[str, object], told: str
+    meshonet: Meshonet, properties: dict[str, object], message: str
 ) -> None:
     write("bad.geojson", feature([BOX, HOLES[0]], **properties))
     done = meshonet("infer", "bad.geojson", "-o", "a.h5")
     assert (done.code, len(done.err.splitlines())) == (2, 1)
-    assert f"bad.geojson: {told}" in done.err
+    assert f"bad.geojson: {message}" in done.err
 
 
 HOSTILE = {
@@ -104,12 +104,12 @@ HOSTILE = {
 @pytest.mark.parametrize("case", HOSTILE)
 @pytest.mark.parametrize("command", ["infer", "layout"])
 def test_loops_that_bound_no_domain_are_one_line(meshonet: Meshonet, case: str, command: str) -> None:
-    text, told = HOSTILE[case]
+    text, report = HOSTILE[case]
     write("bad.geojson", text)
     done = meshonet(command, "bad.geojson", "-o", "a.json" if command == "layout" else "a.h5")
     assert (done.code, len(done.err.splitlines())) == (2, 1), done.err
     assert done.err.startswith("error: bad.geojson: ")
-    assert told in done.err
+    assert report in done.err
     assert "; " in done.err
 
 
@@ -158,12 +158,12 @@ def test_one_block_stays_one_and_single_asks_for_it(meshonet: Meshonet) -> None:
     )
     write("plate.geojson", feature([BOX, *HOLES]))
     done = meshonet("infer", "plate.geojson", "--blocks", "single", "-o", "none.h5")
-    told = "a domain with 2 holes is not one block; let infer or solve-pde find its blocks"
-    assert done.err == f"error: plate.geojson: {told}\n"
+    message = "a domain with 2 holes is not one block; let infer or solve-pde find its blocks"
+    assert done.err == f"error: plate.geojson: {message}\n"
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         ("--cells 0", "--cells: 0 cells; use 1 to"),
         ("--cells 100 --cell-size .1", "--cells and --cell-size both say how many cells there are; give one"),
@@ -183,18 +183,18 @@ def test_one_block_stays_one_and_single_asks_for_it(meshonet: Meshonet) -> None:
         ("--first-cell .01", "a first cell in a domain without holes; name the walls with --walls"),
     ],
 )
-def test_options_that_do_not_go_together_are_refused(meshonet: Meshonet, words: str, told: str) -> None:
+def test_options_that_do_not_go_together_are_refused(meshonet: Meshonet, words: str, message: str) -> None:
     write("step.wkt", STEP)
     done = meshonet("infer", "step.wkt", *words.split(), "-o", "none.h5")
     assert (done.code, len(done.err.splitlines())) == (2, 1), done.err
-    assert told in done.err
+    assert message in done.err
 
 
 def test_a_layout_serves_a_family_of_shapes_and_of_resolutions(meshonet: Meshonet) -> None:
     write("step.wkt", STEP)
     write("tall.wkt", "POLYGON ((0 1, 2.5 1, 2.5 0, 6 0, 6 3, 0 3, 0 1))")
-    told = meshonet("layout", "step.wkt", "-o", "step.json", "--json").only
-    assert (told["blocks"], told["irregular"]) == (3, 0)
+    report = meshonet("layout", "step.wkt", "-o", "step.json", "--json").only
+    assert (report["blocks"], report["irregular"]) == (3, 0)
     for shape, cells in (("step.wkt", 300), ("tall.wkt", 300), ("tall.wkt", 1200)):
         words = (shape, "--layout", "step.json", "--cells", cells, "-o", "a.h5")
         made = meshonet("infer", *words, "--json").only

@@ -546,9 +546,9 @@ def test_every_spelling_of_an_option_has_its_effect(
         runs[command, base] = run("without", base.split())
     without = runs[command, base]
     with_it = run("with", [*base.split(), *more.replace("OPTION", option).split()])
-    told = f"{command} {base} {more}: {without['error']} {with_it['error']}"
-    assert with_it["code"] != 2 or differs in ("code", "error"), told
-    assert with_it[differs] != without[differs], f"{differs} is the same: {told}"
+    message = f"{command} {base} {more}: {without['error']} {with_it['error']}"
+    assert with_it["code"] != 2 or differs in ("code", "error"), message
+    assert with_it[differs] != without[differs], f"{differs} is the same: {message}"
 
 
 def test_what_is_tested_elsewhere_is_there() -> None:

@@ -138,20 +138,20 @@ def test_members_of_a_family_are_called_by_their_number(meshonet: Meshonet) -> N
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("infer", "naca:0012", "--pitch", "1e300,0", "-o", "g.vtm"), "a pitch of length 1e+300; give DX,DY"),
         (("sweep", "circle:0.5", "path.toml", "-o", "g.vtm"), "radius: 4.94066e-324 is out of range"),
     ],
 )
-def test_pythons_warnings_do_not_reach_the_user(tmp_path: Path, words: tuple[str, ...], told: str) -> None:
+def test_pythons_warnings_do_not_reach_the_user(tmp_path: Path, words: tuple[str, ...], message: str) -> None:
     (tmp_path / "path.toml").write_text("[[pieces]]\narc = 90\nradius = 5e-324\ntowards = [0, 1, 0]\n")
     done = subprocess.run(
         [sys.executable, "-m", "meshonet_cli", *words], cwd=tmp_path, capture_output=True, text=True,
         timeout=120, env={**os.environ, "PYTHONPATH": str(ROOT)},
     )  # fmt: skip
     assert done.returncode == 2
-    assert told in done.stderr
+    assert message in done.stderr
     assert done.stderr.count("\n") == 1
 
 

@@ -23,12 +23,12 @@ def growth_off_the_wall(nodes: np.ndarray) -> float:
 @pytest.mark.parametrize("command", LAYER_COMMANDS)
 def test_wall_spacing_is_the_height_of_every_first_cell(meshonet: Meshonet, command: str) -> None:
     words = (command, SECTION, "--res", "120x70", "--wall-spacing", "1e-5", "-o", "g.h5", "--json")
-    told = meshonet(*words).only
-    assert (told["method"], told["folded"], told["path"]) == ("hyperbolic", 0, [])
+    report = meshonet(*words).only
+    assert (report["method"], report["folded"], report["path"]) == ("hyperbolic", 0, [])
     (grid,) = read_grids("g.h5")
     heights = np.linalg.norm(grid.nodes[:, 1] - grid.nodes[:, 0], axis=1)
     np.testing.assert_allclose(heights, 1e-5, rtol=1e-8)
-    assert "first-cell height is 1e-05 at every wall node" in told["notes"][-1]
+    assert "first-cell height is 1e-05 at every wall node" in report["notes"][-1]
 
 
 @pytest.mark.parametrize("command", LAYER_COMMANDS)
@@ -104,7 +104,7 @@ def test_growth_counts_rows_of_walls_along_eta_alone(meshonet: Meshonet) -> None
 
 @pytest.mark.parametrize("command", LAYER_COMMANDS)
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (
             ("--wall-spacing", "1e-5", "--y-plus", "1", "--reynolds", "1e6"),
@@ -140,11 +140,11 @@ def test_growth_counts_rows_of_walls_along_eta_alone(meshonet: Meshonet) -> None
     ],
 )
 def test_first_cells_that_make_no_sense_get_a_line(
-    meshonet: Meshonet, command: str, words: tuple[str, ...], told: str
+    meshonet: Meshonet, command: str, words: tuple[str, ...], message: str
 ) -> None:
     done = meshonet(command, SECTION, *words, "-o", "g.vts")
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     assert done.err.count("\n") == 1
     assert not Path("g.vts").exists()
 
@@ -152,9 +152,9 @@ def test_first_cells_that_make_no_sense_get_a_line(
 @pytest.mark.parametrize("command", LAYER_COMMANDS)
 def test_in_a_channel_the_walls_are_south_and_north(meshonet: Meshonet, duct_h5: Path, command: str) -> None:
     words = ("--wall-spacing", "1e-4", "--res", "61x61", "--constant-layers", "3")
-    told = meshonet(command, duct_h5, *words, "-o", "g.h5", "--json").only
-    assert told["folded"] == 0
-    assert any("0.0001 off south, 0.0001 off north" in note for note in told["notes"])
+    report = meshonet(command, duct_h5, *words, "-o", "g.h5", "--json").only
+    assert report["folded"] == 0
+    assert any("0.0001 off south, 0.0001 off north" in note for note in report["notes"])
     (grid,) = read_grids("g.h5")
     steps = np.linalg.norm(np.diff(grid.nodes, axis=1), axis=-1)
     np.testing.assert_allclose(steps[:, [0, -1]], 1e-4, rtol=1e-8)

@@ -41,8 +41,8 @@ def test_it_is_taken_for_other_layers_and_cells(
 ) -> None:
     rod(1.5, -0.1, 0.1)
     words = ("infer", *BODIES, "--layout", saved, "--first-cell", height, "--cells", count)
-    told = meshonet(*words, "--json", "-o", "g.h5").only
-    assert told["folded"] == 0
+    report = meshonet(*words, "--json", "-o", "g.h5").only
+    assert report["folded"] == 0
     grid = grid_of("g.h5")
     assert cells(grid) == pytest.approx(count, rel=0.2)
     np.testing.assert_allclose(first_cells(grid), height, rtol=1e-6)
@@ -53,9 +53,9 @@ def test_it_is_taken_for_other_shapes_with_the_same_blocks(meshonet: Meshonet, s
     blocks = []
     for at in ((1.5, -0.1, 0.1), (1.6, -0.15, 0.12)):
         rod(*at)
-        told = meshonet(*words, "-o", "g.h5").only
-        assert told["folded"] == 0
-        blocks.append((told["blocks"], told["interfaces"]))
+        report = meshonet(*words, "-o", "g.h5").only
+        assert report["folded"] == 0
+        blocks.append((report["blocks"], report["interfaces"]))
     assert blocks[0] == blocks[1]
 
 

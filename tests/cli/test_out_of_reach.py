@@ -25,7 +25,7 @@ def points(*rows: tuple[float, ...]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("--inlet", "1e300"), "a passage of length 1e+300 takes 7.2e+300 cells, more than 2.5e+04; use a"),
         (("--outlet", "1e7"), "use a shorter --outlet, or more --cells"),
@@ -33,12 +33,12 @@ def points(*rows: tuple[float, ...]) -> None:
     ],
 )
 def test_a_passage_is_not_longer_than_its_cells(
-    meshonet: Meshonet, words: tuple[str, ...], told: str
+    meshonet: Meshonet, words: tuple[str, ...], message: str
 ) -> None:
     points((0.0, 0.0), (1.0, -0.01), (1.0, 0.01))
     done = meshonet("infer", "points.csv", "--pitch", "0,1", *words, "-o", "g.vtm")
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     assert done.err.count("\n") == 1
 
 
@@ -99,8 +99,8 @@ def test_first_cells_off_one_wall_slide_its_nodes(meshonet: Meshonet, duct_csv: 
     words = ("--res", "81x41", f"--spacing-{side}", "1e-3")
     done = meshonet("solve-pde", duct_csv, *words, "-o", "g.vts", "--json")
     assert "wall nodes slid along south and north" in done.only["notes"]
-    told = meshonet("quality", "g.vts", "--json").only
-    off = {wall["name"]: wall["off_square"]["max"] for wall in told["walls"]}
+    report = meshonet("quality", "g.vts", "--json").only
+    off = {wall["name"]: wall["off_square"]["max"] for wall in report["walls"]}
     assert off[side] < 5.0
 
 
@@ -122,11 +122,11 @@ def test_planes_beyond_what_grids_can_have_are_refused_at_once(meshonet: Meshone
 def test_a_note_says_where_lines_lean_in_layers(
     meshonet: Meshonet, duct_csv: Path, words: tuple[str, ...], noted: bool
 ) -> None:
-    told = meshonet(
+    report = meshonet(
         words[0], duct_csv, *words[1:], "--res", "81x41", "--first-cell", "1e-3", "-o", "g.vts", "--json"
     ).only
     assert noted == any(
-        "degrees off the right angle; elliptic methods with --slide" in n for n in told["notes"]
+        "degrees off the right angle; elliptic methods with --slide" in n for n in report["notes"]
     )
 
 
@@ -152,7 +152,7 @@ def duct_csv() -> Path:
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (
             ("naca:0012", "--refine", "8"),
@@ -170,11 +170,11 @@ def duct_csv() -> Path:
     ],
 )
 def test_cells_are_not_halved_beyond_what_grids_can_have(
-    meshonet: Meshonet, words: tuple[str, ...], told: str
+    meshonet: Meshonet, words: tuple[str, ...], message: str
 ) -> None:
     polygon(SQUARE, [(0.4, 0.4), (0.6, 0.4), (0.6, 0.6), (0.4, 0.6)])
     begun = time.process_time()
     done = meshonet("infer", *words, "-o", "g.vts")
     assert (done.code, done.err.count("\n")) == (2, 1)
-    assert told in done.err
+    assert message in done.err
     assert time.process_time() - begun < 2.0

@@ -1,4 +1,4 @@
-"""Bad shapes are told of by the file they stand in, whatever its format, before anything is made of them."""
+"""Messages about bad shapes name the file, whatever its format, before a grid is made."""
 
 from pathlib import Path
 
@@ -52,19 +52,19 @@ def test_a_body_of_too_few_nodes_is_refused(meshonet: Meshonet, body_h5: Path) -
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("--spacing", "tanh"), "--spacing says how a shape becomes edges"),
         (("--model", "hole-o"), "model hole-o makes o grids, and this boundary is quad"),
     ],
 )
 def test_what_the_library_knows_by_its_name_is_told_by_its_file(
-    meshonet: Meshonet, tmp_path: Path, words: tuple[str, ...], told: str
+    meshonet: Meshonet, tmp_path: Path, words: tuple[str, ...], message: str
 ) -> None:
     dataset(tmp_path / "set.h5", "quad", duct(), names=("channel",))
     done = meshonet("infer", "set.h5", *words, "-o", "made.vts")
     assert done.code == 2
-    assert done.err.startswith(f"error: set.h5: {told}")
+    assert done.err.startswith(f"error: set.h5: {message}")
 
 
 @pytest.mark.parametrize("command", ["tfi", "solve-pde", "infer"])

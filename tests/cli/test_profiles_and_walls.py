@@ -39,11 +39,11 @@ def test_each_threshold_is_told_with_its_figure(meshonet: Meshonet, grid_vts: Pa
         assert line.startswith(check.figure)
         assert all(f"{limit.level} {limit.compare} {limit.value:g}" in line for limit in check.limits)
         assert re.search(r"(pass|warn|FAIL)$", line)
-    told = meshonet("quality", grid_vts, "--profile", profile, "--json").only
-    assert told["profile"]["name"] == profile
-    assert [row["figure"] for row in told["profile"]["checks"]] == [c.figure for c in PROFILES[profile]]
-    assert done.code == (0 if told["profile"]["passed"] else 1)
-    assert told["growth"]["eta"]["max"] > told["growth"]["eta"]["mean"] > 1
+    report = meshonet("quality", grid_vts, "--profile", profile, "--json").only
+    assert report["profile"]["name"] == profile
+    assert [row["figure"] for row in report["profile"]["checks"]] == [c.figure for c in PROFILES[profile]]
+    assert done.code == (0 if report["profile"]["passed"] else 1)
+    assert report["growth"]["eta"]["max"] > report["growth"]["eta"]["mean"] > 1
 
 
 def test_a_failed_profile_exits_with_one(meshonet: Meshonet, tmp_path: Path) -> None:
@@ -57,10 +57,10 @@ def test_a_failed_profile_exits_with_one(meshonet: Meshonet, tmp_path: Path) -> 
 
 
 def test_warnings_do_not_fail(meshonet: Meshonet, grid_vts: Path) -> None:
-    told = meshonet("quality", grid_vts, "--profile", "viscous", "--json")
-    verdicts = {row["figure"]: row["verdict"] for row in told.only["profile"]["checks"]}
+    report = meshonet("quality", grid_vts, "--profile", "viscous", "--json")
+    verdicts = {row["figure"]: row["verdict"] for row in report.only["profile"]["checks"]}
     assert verdicts["far_field"] == "warn"
-    assert told.code == (1 if "fail" in verdicts.values() else 0)
+    assert report.code == (1 if "fail" in verdicts.values() else 0)
 
 
 def test_the_choices_are_those_of_the_library() -> None:

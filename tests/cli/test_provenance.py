@@ -11,8 +11,8 @@ from meshonet_cli.batch.provenance import provenance
     "output", [["-o", "x.vts"], ["--output", "x.vts"], ["--output=x.vts"], ["-ox.vts"], ["-o"]]
 )
 def test_the_outputs_name_is_left_out(output: list[str]) -> None:
-    told = provenance(["infer", "a b.dat", *output])
-    assert told["command"] == "meshonet infer 'a b.dat'"
+    report = provenance(["infer", "a b.dat", *output])
+    assert report["command"] == "meshonet infer 'a b.dat'"
 
 
 def test_the_command_of_many_inputs_is_put_together_once(monkeypatch: pytest.MonkeyPatch) -> None:

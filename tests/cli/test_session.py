@@ -39,8 +39,8 @@ def test_an_error_names_the_member_unless_it_knows_better(capsys: pytest.Capture
         raise InputError("is odd", "mend it")
     with session.member("a.dat"):
         raise InputError("is odd", "mend it", source="b.dat", place="line 3")
-    told = capsys.readouterr().err.splitlines()
-    assert told == ["error: a.dat: is odd; mend it", "error: b.dat: line 3: is odd; mend it"]
+    report = capsys.readouterr().err.splitlines()
+    assert report == ["error: a.dat: is odd; mend it", "error: b.dat: line 3: is odd; mend it"]
 
 
 @pytest.mark.parametrize("stop", [KeyboardInterrupt, SystemExit, BrokenPipeError])
@@ -50,7 +50,7 @@ def test_what_stops_the_program_stops_a_batch(stop: type[BaseException]) -> None
 
 
 @pytest.mark.parametrize(
-    ("error", "told"),
+    ("error", "message"),
     [
         (OSError(errno.ENOSPC, "No space left on device", "g.vts"), "g.vts: No space left on device; check"),
         (OSError("odd"), "m: odd; check the path, its permissions and the free space"),
@@ -60,8 +60,8 @@ def test_what_stops_the_program_stops_a_batch(stop: type[BaseException]) -> None
         (NoValidGridError("3 of 9 cells are folded"), "m: 3 of 9 cells are folded"),
     ],
 )  # fmt: skip
-def test_every_error_is_a_line(error: Exception, told: str) -> None:
-    assert explained(error, "m").startswith(told)
+def test_every_error_is_a_line(error: Exception, message: str) -> None:
+    assert explained(error, "m").startswith(message)
     assert "\n" not in explained(error, "m")
 
 
@@ -96,10 +96,10 @@ def test_progress_is_shown_on_a_terminal_and_wiped_off(monkeypatch: pytest.Monke
         session.begin("b.dat", 3)
         session.note("a.dat done")
         session.finish()
-        told = text()
-    assert "[------------------------] 1/3: a.dat" in told
-    assert "[########----------------] 2/3, 0 s left: b.dat" in told
-    assert told.replace("\r\n", "\n").endswith("\r\x1b[2Ka.dat done\n")
+        report = text()
+    assert "[------------------------] 1/3: a.dat" in report
+    assert "[########----------------] 2/3, 0 s left: b.dat" in report
+    assert report.replace("\r\n", "\n").endswith("\r\x1b[2Ka.dat done\n")
 
 
 def test_progress_is_not_shown_when_quiet_or_alone(monkeypatch: pytest.MonkeyPatch) -> None:

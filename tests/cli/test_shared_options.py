@@ -150,10 +150,10 @@ def test_quiet_and_json_keep_standard_error_empty(meshonet: Meshonet, duct_h5: P
     output = "g.png" if command == "plot" else "g.h5"
     quiet = meshonet(command, "grid.vts", "-o", output, "--quiet")
     assert (quiet.code, quiet.out, quiet.err) == (0, "", "")
-    told = meshonet(command, "grid.vts", "-o", output, "--json")
-    assert told.err == ""
-    assert told.only["output"] == output
-    assert told.only["seconds"]["total"] > 0
+    report = meshonet(command, "grid.vts", "-o", output, "--json")
+    assert report.err == ""
+    assert report.only["output"] == output
+    assert report.only["seconds"]["total"] > 0
 
 
 @pytest.mark.parametrize("command", [*BOUNDARY_COMMANDS, "convert", "plot", "quality"])

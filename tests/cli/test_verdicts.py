@@ -92,7 +92,7 @@ def test_an_error_that_all_inputs_end_in_is_told_three_times_and_counted(meshone
     assert errors[0].startswith("error: naca:2410: topology quad is not made from an airfoil")
     assert errors[3] == "error: 7 more inputs: topology quad is not made from an airfoil"
     assert "10 failed" in done.err
-    assert len(meshonet(*words, "--json").objects) == 10  # a program is told each of them
+    assert len(meshonet(*words, "--json").objects) == 10  # a program gets each of them
     missing = meshonet("infer", *(f"{number}.dat" for number in range(5)), "-o", "{stem}.h5")
     assert missing.err.count("no such file") == 5
 

@@ -31,11 +31,11 @@ def table(path: str = "h.csv") -> list[dict[str, str]]:
 
 def test_history_has_every_cycle(meshonet: Meshonet, body_h5: Path) -> None:
     words = ("solve-pde", body_h5, "--res", "101x65", "--tol", "1e-8", "-o", "g.vts")
-    told = meshonet(*words, "--history", "h.csv", "--json").only
+    report = meshonet(*words, "--history", "h.csv", "--json").only
     rows = table()
     assert tuple(rows[0]) == COLUMNS
-    assert [int(row["cycle"]) for row in rows] == list(range(told["cycles"] + 1))
-    assert float(rows[-1]["residual"]) == told["residual"]
+    assert [int(row["cycle"]) for row in rows] == list(range(report["cycles"] + 1))
+    assert float(rows[-1]["residual"]) == report["residual"]
     residuals, seconds = ([float(row[name]) for row in rows] for name in ("residual", "seconds"))
     assert all(after < 0.5 * before for before, after in pairwise(residuals[1:]))
     assert seconds == sorted(seconds)
@@ -63,11 +63,11 @@ def test_history_of_a_minimisation_has_every_iteration(
     meshonet: Meshonet, duct_h5: Path, words: tuple[str, ...]
 ) -> None:
     asked = ("solve-pde", duct_h5, "--method", "variational", *words, "-o", "g.vts")
-    told = meshonet(*asked, "--history", "h.csv", "--json").only
+    report = meshonet(*asked, "--history", "h.csv", "--json").only
     rows = table()
     assert {row["method"] for row in rows} == {"variational"}
-    finest = [row for row in rows if (row["ni"], row["nj"]) == (str(told["ni"]), str(told["nj"]))]
-    assert [int(row["cycle"]) for row in finest] == list(range(told["cycles"] + 1))
+    finest = [row for row in rows if (row["ni"], row["nj"]) == (str(report["ni"]), str(report["nj"]))]
+    assert [int(row["cycle"]) for row in finest] == list(range(report["cycles"] + 1))
     values, slopes = ([float(row[name]) for row in finest] for name in ("functional", "residual"))
     assert all(after <= before for before, after in pairwise(values))
     assert 1 < values[-1] < values[0]
@@ -95,17 +95,17 @@ def test_history_of_refined_grids_has_every_level(meshonet: Meshonet, duct_h5: P
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "message"),
     [
         ("h.txt", "--history: cycles are written as a table of commas; name a file, F.csv"),
         ("-", "--history: cycles are written as a table of commas; name a file, F.csv"),
         ("none/h.csv", "none/h.csv: its folder does not exist"),
     ],
 )
-def test_history_that_cannot_be_is_told(meshonet: Meshonet, duct_h5: Path, name: str, told: str) -> None:
+def test_history_that_cannot_be_is_told(meshonet: Meshonet, duct_h5: Path, name: str, message: str) -> None:
     done = meshonet("solve-pde", duct_h5, "-o", "g.vts", "--history", name)
     assert done.code == 2
-    assert told in done.err
+    assert message in done.err
     assert done.err.count("\n") == 1
     assert not Path("g.vts").exists()
 
@@ -121,17 +121,17 @@ def test_interrupts_leave_no_file_half_written(tmp_path: Path) -> None:
     assert running.stderr is not None
     running.stderr.readline()  # the first report: it is in the middle of its work
     running.send_signal(signal.SIGINT)
-    _, told = running.communicate(timeout=30)
+    _, report = running.communicate(timeout=30)
     assert running.returncode == 130
-    assert told.endswith(b"interrupted\n")
+    assert report.endswith(b"interrupted\n")
     assert (tmp_path / "h.csv").read_text() == "mine"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["h.csv", "many.h5"]
 
 
 def test_the_residual_is_live_on_a_terminal(tmp_path: Path) -> None:
-    told = on_terminal(tmp_path)
-    assert re.search(r"129x129: cycle \d+, residual \d\.\de[-+]\d\d", told)
-    assert told.replace("\r\n", "\n").rstrip().splitlines()[-1].startswith("  time")
+    report = on_terminal(tmp_path)
+    assert re.search(r"129x129: cycle \d+, residual \d\.\de[-+]\d\d", report)
+    assert report.replace("\r\n", "\n").rstrip().splitlines()[-1].startswith("  time")
     assert "cycle" not in on_terminal(tmp_path, "--quiet")
 
 
@@ -148,18 +148,18 @@ def on_terminal(folder: Path, *words: str) -> str:
         stderr=follower, cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT), "TERM": "xterm"},
     )  # fmt: skip
     os.close(follower)
-    told, end = b"", time.monotonic() + 60
+    report, end = b"", time.monotonic() + 60
     while time.monotonic() < end:
         if select.select([leader], [], [], 0.2)[0]:
             try:
-                told += os.read(leader, 65536)
+                report += os.read(leader, 65536)
             except OSError:  # the other end is closed
                 break
         elif running.poll() is not None:
             break
     os.close(leader)
     assert running.wait() == 0
-    return told.decode()
+    return report.decode()
 
 
 def test_the_terminal_is_not_flooded() -> None:

@@ -22,9 +22,9 @@ reader.UpdatePipeline()
 scaled = {"QuadQualityMeasure": "Scaled Jacobian", "HexQualityMeasure": "Scaled Jacobian"}
 quality = MeshQuality(Input=reader, **scaled)
 quality.UpdatePipeline()
-found = reader.GetDataInformation()
+information = reader.GetDataInformation()
 least = quality.CellData["Quality"].GetRange()[0]
-print(json.dumps([found.GetNumberOfCells(), found.GetBounds(), least]))
+print(json.dumps([information.GetNumberOfCells(), found.GetBounds(), least]))
 """
 FILES = {"g.vtm": "vtm", "g.cgns": "cgns", "g.xyz": "plot3d:binary"}
 

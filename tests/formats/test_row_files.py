@@ -124,18 +124,18 @@ def test_gmsh_has_the_rotation_and_the_pairs_of_nodes(passage: Grid, tmp_path: P
     gmsh.open(str(tmp_path / "row.msh"))
     groups = {gmsh.model.getPhysicalName(*group): group for group in gmsh.model.getPhysicalGroups(2)}
     assert set(groups) == NAMES | SIDES
-    found = 0
+    result = 0
     for name in SIDES:
         (entity,) = gmsh.model.getEntitiesForPhysicalGroup(*groups[name])
         partner, own, other, affine = gmsh.model.mesh.getPeriodicNodes(2, int(entity))
         if partner == entity:
             continue
-        found += 1
+        result += 1
         matrix = np.array(affine).reshape(4, 4)
         here, there = (np.array([gmsh.model.mesh.getNode(int(n))[0] for n in part]) for part in (own, other))
         assert there @ matrix[:3, :3].T + matrix[:3, 3] == pytest.approx(here, abs=1e-12)
         assert len(own) == len(np.unique(own)) > 100
-    assert found == 1
+    assert result == 1
 
 
 @pytest.mark.parametrize("ending", ["cgns", "vtm"])

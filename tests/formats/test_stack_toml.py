@@ -1,4 +1,4 @@
-"""Stacks of sections in TOML: what is read, and which line is told of what is not right."""
+"""Stacks of sections in TOML: what is read, and which line an error message names."""
 
 from pathlib import Path
 

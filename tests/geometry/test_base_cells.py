@@ -66,7 +66,7 @@ def test_a_wide_base_has_enough_cells_of_the_size_of_its_neighbours() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "sampling", "told"),
+    ("name", "sampling", "message"),
     [
         ("0012-sharp", Sampling(base_nodes=9), "base_nodes: the trailing edge has no base; leave"),
         ("0012", Sampling(te="round", base_nodes=9), "base_nodes: the trailing edge has no base; leave"),
@@ -84,8 +84,8 @@ def test_a_wide_base_has_enough_cells_of_the_size_of_its_neighbours() -> None:
         ("0012", Sampling(9, spacing="curvature", refined=8), "17 of 9 nodes on .*; use a finer res"),
     ],
 )
-def test_bases_that_cannot_be_had_are_refused(name: str, sampling: Sampling, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_bases_that_cannot_be_had_are_refused(name: str, sampling: Sampling, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         naca(name).boundary(sampling)
 
 

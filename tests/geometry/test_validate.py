@@ -1,4 +1,4 @@
-"""Edges that cross or touch are told of with the place, for every topology; others pass."""
+"""Edges that cross or touch are refused with the place, for every topology; others pass."""
 
 import numpy as np
 import pytest

@@ -23,12 +23,12 @@ def _correction(walls: Complexes, fars: Complexes, _: object) -> Complexes:
     The filter applies once to the whole change, in place of once to each step.
     """
     back = 1.0 - across().smooth[:, None]
-    found = []
+    results = []
     for wall, far in zip(walls, fars, strict=True):
         start = c = harmonic(wall, far, across().eta)
         for _ in range(MOST):
             before, c = c, picard(c, 1)[0] + back * (start - c)
             if np.abs(c - before).max() < STILL:
                 break
-        found.append(c - start)
-    return np.array(found)
+        results.append(c - start)
+    return np.array(results)

@@ -31,9 +31,9 @@ def first_cells(nodes: Floats) -> Floats:
 def deviation(nodes: Floats) -> Floats:
     """Degrees off 90 of all four corners of every cell."""
     corners = [nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]]
-    found = []
+    results = []
     for k, at in enumerate(corners):
         u, v = corners[(k + 1) % 4] - at, corners[k - 1] - at
         cosine = (u * v).sum(axis=-1) / np.hypot(*np.moveaxis(u, -1, 0)) / np.hypot(*np.moveaxis(v, -1, 0))
-        found.append(np.abs(np.degrees(np.arccos(cosine)) - 90.0))
-    return np.stack(found)
+        results.append(np.abs(np.degrees(np.arccos(cosine)) - 90.0))
+    return np.stack(results)

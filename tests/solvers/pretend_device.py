@@ -53,8 +53,8 @@ class There(torch.Tensor):
         args, kwargs = tree_map(lambda one: one.held if isinstance(one, There) else one, (args, kwargs))
         if func in PHYSICAL:
             func, args = PHYSICAL[func], (torch.as_tensor(args[0]),)  # from a number, in slopes
-        found = func(*args, **kwargs)
-        return tree_map(lambda one: There(one) if there and isinstance(one, torch.Tensor) else one, found)
+        result = func(*args, **kwargs)
+        return tree_map(lambda one: There(one) if there and isinstance(one, torch.Tensor) else one, result)
 
 
 class _Made(TorchDispatchMode):
@@ -71,10 +71,10 @@ class Pretended(TorchFunctionMode):
         self._below.__enter__()
         return super().__enter__()
 
-    def __exit__(self, *told: Any) -> None:
+    def __exit__(self, *message: Any) -> None:
         """Leave."""
-        super().__exit__(*told)
-        self._below.__exit__(*told)
+        super().__exit__(*message)
+        self._below.__exit__(*message)
 
     def __torch_function__(self, func: Any, types: Any, args: Any = (), kwargs: Any = None) -> Any:
         """Make tensors from values here, then take them there."""

@@ -21,14 +21,14 @@ torch.set_num_threads(1)  # tests run side by side
 
 def bodies(ni: int, nj: int) -> list[Boundary]:
     """Return two random bodies, and an angle whose centroid is outside it."""
-    found = [boundary(np.random.default_rng([1, k]), ni, nj) for k in range(2)]
+    results = [boundary(np.random.default_rng([1, k]), ni, nj) for k in range(2)]
     corners = np.array([0j, 1j, 0.2 + 1j, 0.2 + 0.2j, 1 + 0.2j, 1 + 0j, 0j])
     wall = np.interp(np.linspace(0, 6, ni), np.arange(7), corners) * np.exp(0.3j)
     far = 0.5 + 0.5j + 4.0 * np.exp(-1j * np.linspace(3.9, 3.9 + 2 * np.pi, ni))
     wall[-1], far[-1] = wall[0], far[0]
     south, north = (np.stack([edge.real, edge.imag], 1) for edge in (wall, far))
     cut = straight(south[0], north[0], nj)
-    return [*found, Boundary(south, north, cut, cut, topology="o")]
+    return [*results, Boundary(south, north, cut, cut, topology="o")]
 
 
 def walls(boundaries: list[Boundary]) -> list[Any]:
@@ -39,18 +39,18 @@ def walls(boundaries: list[Boundary]) -> list[Any]:
 @pytest.mark.parametrize(("ni", "nj"), [(65, 33), (129, 17), (40, 50), (9, 2)])
 def test_torch_equals_numpy(model: str, ni: int, nj: int) -> None:
     boundaries = bodies(ni, nj)
-    found = BodyGrids(model)(*walls(boundaries), nj).numpy()
-    for one, solution in zip(found, load(model).solve(boundaries, "off"), strict=True):
+    result = BodyGrids(model)(*walls(boundaries), nj).numpy()
+    for one, solution in zip(result, load(model).solve(boundaries, "off"), strict=True):
         expected = solution.grid.nodes
         np.testing.assert_allclose(one, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
 
 
 def test_walls_are_the_given_ones_and_the_cut_is_closed() -> None:
     south, north = walls(bodies(97, 21))
-    found = BodyGrids()(south, north, 21)
-    assert torch.equal(found[:, :, 0], south)
-    assert torch.equal(found[:, :, -1], north)
-    assert torch.equal(found[:, 0], found[:, -1])
+    result = BodyGrids()(south, north, 21)
+    assert torch.equal(result[:, :, 0], south)
+    assert torch.equal(result[:, :, -1], north)
+    assert torch.equal(result[:, 0], result[:, -1])
 
 
 @pytest.mark.parametrize("model", ["hole-o", "hole-winslow"])
@@ -68,17 +68,17 @@ def test_gradients_are_those_of_finite_differences(model: str) -> None:
 
     leaves = [edge.clone().requires_grad_() for edge in given]
     (weights * grids(*leaves, 21)).sum().backward()
-    found = sum(float((leaf.grad * move).sum()) for leaf, move in zip(leaves, moves, strict=True))
+    result = sum(float((leaf.grad * move).sum()) for leaf, move in zip(leaves, moves, strict=True))
     h = 1e-6
     expected = float(8 * (summed(h) - summed(-h)) - (summed(2 * h) - summed(-2 * h))) / (12 * h)
-    assert found == pytest.approx(expected, rel=1e-6)
+    assert result == pytest.approx(expected, rel=1e-6)
 
 
 def test_single_precision_is_near_double() -> None:
     given = walls(bodies(65, 33))
-    found = BodyGrids(dtype=torch.float32)(*(edge.float() for edge in given), 33)
-    assert found.dtype == torch.float32
-    assert float((found - BodyGrids()(*given, 33)).abs().max()) < 1e-3
+    result = BodyGrids(dtype=torch.float32)(*(edge.float() for edge in given), 33)
+    assert result.dtype == torch.float32
+    assert float((result - BodyGrids()(*given, 33)).abs().max()) < 1e-3
 
 
 def test_what_it_does_not_take_is_told(tmp_path: Path) -> None:

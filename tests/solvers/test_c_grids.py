@@ -29,13 +29,13 @@ def test_c_grids_are_valid_and_their_edges_are_those_given(name: str, section: s
     grid = METHODS[name](boundary)
     assert (grid.topology, grid.patches) == ("c", boundary.patches)
     assert count_folded(grid.nodes) == 0
-    for found, given in (
+    for result, given in (
         (grid.nodes[:, 0], boundary.south),
         (grid.nodes[:, -1], boundary.north),
         (grid.nodes[0], boundary.west),
         (grid.nodes[-1], boundary.east),
     ):
-        np.testing.assert_array_equal(found, given)
+        np.testing.assert_array_equal(result, given)
 
 
 def test_winslow_solves_its_equations_inside_a_c() -> None:

@@ -21,8 +21,8 @@ def test_every_bad_cell_lies_in_a_window_inside_the_grid(
     bad = np.unique(
         np.stack([rng.integers(0, ni - 1, count), rng.integers(0, nj - 1, count)], axis=1), axis=0
     )
-    found = list(windows(bad, margin, (ni, nj), periodic, LARGEST))
-    ends = [(*w.first, *w.last) for w in found]
+    results = list(windows(bad, margin, (ni, nj), periodic, LARGEST))
+    ends = [(*w.first, *w.last) for w in results]
     for i, j in bad:
         assert any(
             j0 <= j < j1 and (i0 <= i < i1 or (periodic and (i - i0) % (ni - 1) < i1 - i0))
@@ -44,9 +44,9 @@ def test_a_group_on_both_sides_of_the_seam_is_one_window() -> None:
 
 def test_a_long_group_is_split() -> None:
     bad = np.stack([np.arange(300), np.arange(300)], axis=1)
-    found = list(windows(bad, 6, (400, 400), False, LARGEST))
-    assert len(found) > 4
-    assert max(w.cells for w in found) <= LARGEST
+    results = list(windows(bad, 6, (400, 400), False, LARGEST))
+    assert len(results) > 4
+    assert max(w.cells for w in results) <= LARGEST
 
 
 @settings(max_examples=30, deadline=None)
@@ -54,9 +54,9 @@ def test_a_long_group_is_split() -> None:
 def test_so_does_every_one_of_a_volume(counts: tuple[int, int, int], margin: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
     bad = np.unique(rng.integers(0, np.array(counts) - 1, (rng.integers(1, 30), 3)), axis=0)
-    found = list(windows(bad, margin, counts, False, LARGEST))
+    results = list(windows(bad, margin, counts, False, LARGEST))
     for cell in bad:
-        assert any(((w.first <= cell) & (cell < w.last)).all() for w in found)
-    for w in found:
+        assert any(((w.first <= cell) & (cell < w.last)).all() for w in results)
+    for w in results:
         assert (np.zeros(3) <= w.first).all()
         assert (np.array(w.last) < counts).all()

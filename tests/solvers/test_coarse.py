@@ -78,10 +78,10 @@ def test_a_kink_of_an_edge_between_coarse_nodes_is_met_and_forgotten_inside() ->
     kinked = even.copy()
     kinked[:, 0, 1] -= 0.02 * np.maximum(0.0, 1.0 - np.abs(100 * t - 50) / 2)
     boundary = quad(kinked[:, 0], kinked[:, -1], kinked[0], kinked[-1])
-    found = refine_grid(even[::4, ::4], boundary)
-    assert found[50, 0, 1] == -0.02
-    assert 0.004 < np.abs(found - even)[50, 4].max() < 0.016
-    np.testing.assert_allclose(found[:, 8:], even[:, 8:], atol=1e-12)
+    result = refine_grid(even[::4, ::4], boundary)
+    assert result[50, 0, 1] == -0.02
+    assert 0.004 < np.abs(result - even)[50, 4].max() < 0.016
+    np.testing.assert_allclose(result[:, 8:], even[:, 8:], atol=1e-12)
 
 
 def test_no_fewer_nodes_than_asked_for_is_the_method_itself() -> None:

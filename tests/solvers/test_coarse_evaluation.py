@@ -76,13 +76,13 @@ def test_it_is_the_sum_of_matrices(m: int, n: int, ni: int, nj: int, straightene
 @pytest.mark.parametrize(("m", "n", "ni", "nj"), [(33, 33, 65, 65), (9, 5, 40, 23), (4, 6, 3, 2)])
 def test_the_beginning_is_the_interpolation_of_thinned_edges(m: int, n: int, ni: int, nj: int) -> None:
     sides = rims(wavy(ni, nj))
-    for k, found in enumerate(transfinite(thinned(sides, m, n))):
+    for k, result in enumerate(transfinite(thinned(sides, m, n))):
         south, north, west, east = (side[k].T for side in thinned(sides, m, n))
         expected = np.empty((2, m, n))
         interpolate(
             *expected, (south, north, west, east), parameters((south, north, west, east), "arclength")
         )
-        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(result, expected, rtol=0, atol=1e-14)
 
 
 def test_arrays_that_do_not_fit_are_refused() -> None:
@@ -90,12 +90,12 @@ def test_arrays_that_do_not_fit_are_refused() -> None:
     fine = placed(5, 5, 9, 7)
     coarse, opened, nodes = wavy(5, 5), np.zeros((2, 4)), np.empty((2, 2, 9, 7))
     near, straight = (acute.NEAR, acute.FAR, REACH), np.zeros((2, 5, 4), np.uint8)
-    for given, told in (
+    for given, report in (
         ((coarse[:1], sides, fine, opened, *near, nodes), "is needed"),
         ((coarse, tuple(side[:1] for side in sides), fine, opened, *near, nodes), "is needed"),
         ((coarse, sides, fine[::-1], opened, *near, nodes), "is needed"),
         ((coarse, sides, placed(8, 8, 9, 7), opened, *near, nodes), "index 4 out of range"),
         ((coarse, sides, fine, opened, *near, nodes, straight), "is needed"),
     ):
-        with pytest.raises(ValueError, match=told):
+        with pytest.raises(ValueError, match=report):
             resample(*given)

@@ -42,7 +42,7 @@ def test_the_compiled_residual_is_that_of_the_equations(boundary: Boundary) -> N
             field.along[:, -1] = field.along[:, 0]
     work = nodes.copy(order="K")
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
-    found = Multigrid(work, edges, periodic, controls=Controls(phi, psi)).residual()
+    result = Multigrid(work, edges, periodic, controls=Controls(phi, psi)).residual()
     wide = np.concatenate([nodes[-2:-1], nodes]) if periodic else nodes
     alpha, _, gamma = metric_terms(wide)
     rows = slice(0, -1) if periodic else slice(1, -1)
@@ -53,7 +53,7 @@ def test_the_compiled_residual_is_that_of_the_equations(boundary: Boundary) -> N
         + (alpha * sources[0])[..., None] * first[0]
         + (gamma * sources[1])[..., None] * first[1]
     )
-    assert found == pytest.approx(np.sqrt((expected**2).sum() / (ni * nj)), rel=1e-3)
+    assert result == pytest.approx(np.sqrt((expected**2).sum() / (ni * nj)), rel=1e-3)
 
 
 def stretched(t: Floats) -> tuple[Floats, Floats]:
@@ -82,8 +82,8 @@ def test_error_against_a_stretched_conformal_map_is_of_second_order(periodic: bo
             Factors(one((1, 2 * n - 1)), (b_ratio / (n - 1))[None]),
         )
         boundary = edges_of(nodes, "o" if periodic else "quad")
-        found = solve(boundary, tol=1e-10, max_cycles=60, controls=controls).grid.nodes
-        errors.append(np.abs(found - nodes).max())
+        result = solve(boundary, tol=1e-10, max_cycles=60, controls=controls).grid.nodes
+        errors.append(np.abs(result - nodes).max())
     slope = -np.polyfit(np.log(counts - 1), np.log(errors), 1)[0]
     assert 1.9 < slope < 2.3
     assert errors[-1] < 1e-3
@@ -115,8 +115,8 @@ def test_a_start_does_not_spoil_what_interpolation_solves() -> None:
     nodes = np.stack(np.meshgrid(t, t, indexing="ij"), axis=-1)
     start = nodes.copy()
     start[1:-1, 1:-1] += 0.02
-    found = solve(edges_of(nodes), initial=Grid.from_nodes(start)).grid.nodes
-    np.testing.assert_allclose(found, nodes, atol=1e-14)
+    result = solve(edges_of(nodes), initial=Grid.from_nodes(start)).grid.nodes
+    np.testing.assert_allclose(result, nodes, atol=1e-14)
 
 
 def test_the_ratio_of_steps_on_an_edge_is_minus_the_middlecoff_quotient() -> None:

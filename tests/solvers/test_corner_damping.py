@@ -42,13 +42,13 @@ def shares(nodes: Floats) -> Floats:
 
 @pytest.mark.parametrize(("degrees", "share"), [(20.0, 1.0), (45.0, 0.5), (70.0, None)])
 def test_the_share_goes_with_the_angle_of_the_corner(degrees: float, share: float | None) -> None:
-    found = shares(tfi(kite(degrees, 33)).nodes)
+    result = shares(tfi(kite(degrees, 33)).nodes)
     if share is None:
-        assert not found.any()
+        assert not result.any()
     else:
-        assert found[0, 0] == found[4, 4] == pytest.approx(share)
-        assert found[10, 0] == found[0, 10] == found[-1, -1] == 0.0
-        assert 0.0 < found[7, 3] < share
+        assert result[0, 0] == result[4, 4] == pytest.approx(share)
+        assert result[10, 0] == result[0, 10] == result[-1, -1] == 0.0
+        assert 0.0 < result[7, 3] < share
 
 
 def test_each_corner_is_looked_at() -> None:

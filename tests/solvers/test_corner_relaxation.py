@@ -47,6 +47,6 @@ def test_cycles_around_a_notch_converge_faster(monkeypatch: pytest.MonkeyPatch) 
 
 def test_the_default_stop_around_a_notch_leaves_less_error_than_the_discretisation() -> None:
     boundary = wrench(321, 321)
-    found, full = solve(boundary).grid.nodes, solve(boundary, tol=1e-7, max_cycles=60).grid.nodes
+    result, full = solve(boundary).grid.nodes, solve(boundary, tol=1e-7, max_cycles=60).grid.nodes
     half = solve(wrench(161, 161), tol=1e-7, max_cycles=60).grid.nodes
-    assert np.linalg.norm(found - full) < np.linalg.norm(half - full[::2, ::2]) * 2
+    assert np.linalg.norm(result - full) < np.linalg.norm(half - full[::2, ::2]) * 2

@@ -17,11 +17,11 @@ from meshonet.solvers.pipeline.named import method_named
 @pytest.mark.parametrize("res", [(100, 100), (160, 60), (200, 40)])
 def test_grids_are_valid_nearly_square_and_grow_slowly(section: str, te: str, res: tuple[int, int]) -> None:
     boundary = naca(section).boundary(Sampling(*res, "c", te=te))  # type: ignore[arg-type]
-    found = march_by_default(boundary)
-    assert found is not None
-    nodes = found.grid.nodes
+    result = march_by_default(boundary)
+    assert result is not None
+    nodes = result.grid.nodes
     assert count_folded(nodes) == 0
-    angle = measure(found.grid)["max_angle"]
+    angle = measure(result.grid)["max_angle"]
     assert angle.max < 125
     assert angle.mean < 94
     np.testing.assert_array_equal(nodes[:, 0], boundary.south)
@@ -53,8 +53,8 @@ def test_given_far_fields_and_very_few_rows_are_left_to_the_variational_method()
     few = naca("0012").boundary(Sampling(100, 30, "c"))
     for one in given, few:
         assert march_by_default(one) is None
-        found = elliptic().solve([one])[0]
-        assert found.method == "variational"
-        np.testing.assert_array_equal(found.grid.nodes[:, -1], one.north)
+        result = elliptic().solve([one])[0]
+        assert result.method == "variational"
+        np.testing.assert_array_equal(result.grid.nodes[:, -1], one.north)
     assert elliptic().solve([boundary])[0].method == "hyperbolic"
     assert fewer_on_quads(method_named("winslow")).solve([boundary])[0].method == "winslow"

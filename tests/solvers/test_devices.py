@@ -20,8 +20,8 @@ torch.set_num_threads(1)  # tests run side by side
 
 
 def domains() -> list[Boundary]:
-    found = [random_quad(seed, 21, 25) for seed in (3, 5)]
-    return [one for one in found if one is not None]
+    results = [random_quad(seed, 21, 25) for seed in (3, 5)]
+    return [one for one in results if one is not None]
 
 
 def bodies() -> list[Boundary]:

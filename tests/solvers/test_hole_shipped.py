@@ -34,11 +34,11 @@ def test_golden_nodes(model: str) -> None:
 
 def test_polished_grids_are_valid_and_nearer_to_right_angles_than_winslows() -> None:
     edges = bodies()
-    found = [solution.grid for solution in load("hole-o").solve(edges)]
-    assert sum(count_folded(grid.nodes) for grid in found) == 0
+    results = [solution.grid for solution in load("hole-o").solve(edges)]
+    assert sum(count_folded(grid.nodes) for grid in results) == 0
     own, other = (
         np.array([[measure(grid)["max_angle"].max, measure(grid)["max_angle"].mean] for grid in grids])
-        for grids in (found, [winslow(one).grid for one in edges])
+        for grids in (results, [winslow(one).grid for one in edges])
     )
     assert (own[:, 1] < other[:, 1]).mean() >= 0.9
     assert np.median(own[:, 1]) < 97.0 < np.median(other[:, 1])
@@ -50,8 +50,8 @@ def test_the_papers_hole_is_nearer_to_winslows_grid_than_the_papers_model_and_ne
     goals = [winslow(one, tol=1e-8).grid for one in edges]
     worst = []
     for polish in (0, 2):
-        found = [solution.grid for solution in load("hole-winslow").solve(edges, polish)]
-        assert sum(count_folded(grid.nodes) for grid in found) == 0
-        worst.append(max(compare(grid, goal).relative_l2 for grid, goal in zip(found, goals, strict=True)))
+        results = [solution.grid for solution in load("hole-winslow").solve(edges, polish)]
+        assert sum(count_folded(grid.nodes) for grid in results) == 0
+        worst.append(max(compare(grid, goal).relative_l2 for grid, goal in zip(results, goals, strict=True)))
     assert worst[0] < 3e-2  # MeshONet: 3.2e-2
     assert worst[1] < 2e-3

@@ -82,7 +82,7 @@ def with_number(value: Any, place: Place, number: int) -> Any:
 @pytest.fixture(scope="module")
 def calls() -> dict[str, Call]:
     """The first call of every kernel with indices, by what makes grids of blocks and volumes."""
-    found: dict[str, Call] = {
+    results: dict[str, Call] = {
         "crossing_segments": (crossing_segments, (np.eye(3, 2), np.arange(3), np.zeros(3), np.ones(3), 9, 9)),
         "put_rows": (
             _native.put_rows,
@@ -94,7 +94,7 @@ def calls() -> dict[str, Call]:
         original = getattr(_native, name)
 
         def call(*given: Any) -> Any:
-            found.setdefault(name, (original, copied(given)))
+            results.setdefault(name, (original, copied(given)))
             return original(*given)
 
         return call
@@ -110,7 +110,7 @@ def calls() -> dict[str, Call]:
         march_surface(surface_of(grid_of(plate(4))), VolumeMarch(1e-2, 5, 0.3))
         mesh = hex_mesh_of(shell(3, 4))
         HexProblem(mesh, ~mesh.outer, wanted_edges(mesh, ~mesh.outer, rounds=0))
-    return found
+    return results
 
 
 NAMES = sorted({"crossing_segments", "put_rows", *(name for names in USED.values() for name in names)})

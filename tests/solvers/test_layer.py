@@ -237,12 +237,12 @@ def test_members_without_a_grid_leave_the_others_as_they_are(function: Any) -> N
     broken[0][1, 4, 1] = torch.nan
     for side in broken:
         side[2] = 0.0
-    found = function(*(side.requires_grad_() for side in broken), *more, failed="nan")
-    assert found.isfinite().all((1, 2, 3)).tolist() == [True, False, False, True]
+    result = function(*(side.requires_grad_() for side in broken), *more, failed="nan")
+    assert result.isfinite().all((1, 2, 3)).tolist() == [True, False, False, True]
     few = [side[[0, 3]].requires_grad_() for side in given]
     alone = function(*few, *more)
-    torch.testing.assert_close(found[[0, 3]], alone, rtol=0, atol=1e-11)
-    found.square().sum().backward()
+    torch.testing.assert_close(result[[0, 3]], alone, rtol=0, atol=1e-11)
+    result.square().sum().backward()
     alone.square().sum().backward()
     for side, own in zip(broken, few, strict=True):
         torch.testing.assert_close(side.grad[[0, 3]], own.grad, rtol=1e-9, atol=1e-9)
@@ -268,9 +268,9 @@ def test_grids_of_any_size_are_those_of_unit_size(function: Any) -> None:
     nodes, given = inputs(function, 2)
     for size in (2.0**-500, 2.0**500):
         scaled = [(side * size).requires_grad_() for side in given]
-        found = nodes(*scaled)
-        torch.testing.assert_close(found.detach() / size, nodes(*given), rtol=0, atol=1e-11)
-        (found / size).sum().backward()
+        result = nodes(*scaled)
+        torch.testing.assert_close(result.detach() / size, nodes(*given), rtol=0, atol=1e-11)
+        (result / size).sum().backward()
         assert all(bool(side.grad.isfinite().all()) for side in scaled)
 
 
@@ -278,9 +278,9 @@ def test_grids_of_any_size_are_those_of_unit_size(function: Any) -> None:
 def test_an_empty_batch_has_no_grids(function: Any) -> None:
     nodes, given = inputs(function, 1)
     none = [side[:0].requires_grad_() for side in given]
-    found = nodes(*none)
-    assert found.shape == (0, *nodes(*given).shape[1:])
-    found.sum().backward()
+    result = nodes(*none)
+    assert result.shape == (0, *nodes(*given).shape[1:])
+    result.sum().backward()
     assert none[0].grad.shape == none[0].shape
 
 
@@ -288,8 +288,8 @@ def test_an_empty_batch_has_no_grids(function: Any) -> None:
 def test_grids_are_made_in_inference_mode_too(function: Any) -> None:
     nodes, given = inputs(function, 1)
     with torch.inference_mode():
-        found = nodes(*given)
-    torch.testing.assert_close(found, nodes(*given), rtol=0, atol=1e-11)
+        result = nodes(*given)
+    torch.testing.assert_close(result, nodes(*given), rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize("function", QUADS + AROUND)

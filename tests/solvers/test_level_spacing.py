@@ -32,11 +32,11 @@ def test_without_an_edge_they_grow_by_one_ratio_and_with_one_less_at_its_cells()
     plain = level_steps(1e-5, 15.0, 99, 1, None)
     np.testing.assert_array_equal(plain, growing_steps(1e-5, 15.0, 99))
     for size in (1e-3, 1e-2):
-        found = ratios(level_steps(1e-5, 15.0, 99, 1, Edge(size, 1.0)))
+        result = ratios(level_steps(1e-5, 15.0, 99, 1, Edge(size, 1.0)))
         height = np.cumsum(level_steps(1e-5, 15.0, 99, 1, Edge(size, 1.0)))
-        assert 1.5 * size < height[np.argmin(found)] < 8 * size
-        assert 0.7 * found.max() < found.min() < 0.85 * found.max()
-        assert found.max() < 1.09 * ratios(plain).max()
+        assert 1.5 * size < height[np.argmin(result)] < 8 * size
+        assert 0.7 * result.max() < result.min() < 0.85 * result.max()
+        assert result.max() < 1.09 * ratios(plain).max()
     weak = ratios(level_steps(1e-5, 15.0, 99, 1, Edge(1e-3, 0.1)))
     assert weak.min() > 0.97 * weak.max()
 
@@ -45,11 +45,11 @@ def test_the_sharpest_corner_is_found_with_its_cells() -> None:
     t = -np.linspace(0.0, 2 * np.pi, 41)[:-1]
     assert sharpest_edge(np.stack([np.cos(t), np.sin(t)], axis=1)) is None
     wedge = np.array([[1.0, 0.0], [0.7, -0.05], [0.0, -0.1], [-0.3, 0.0], [0.0, 0.1], [0.9, 0.02]])
-    found = sharpest_edge(wedge)
-    assert found is not None
-    assert found.size == pytest.approx(0.5 * (np.hypot(0.3, 0.05) + np.hypot(0.1, 0.02)))
+    result = sharpest_edge(wedge)
+    assert result is not None
+    assert result.size == pytest.approx(0.5 * (np.hypot(0.3, 0.05) + np.hypot(0.1, 0.02)))
     between = np.arctan(0.05 / 0.3) + np.arctan(0.02 / 0.1)
-    assert found.sharpness == pytest.approx(1.0 - np.sin(0.5 * between))
+    assert result.sharpness == pytest.approx(1.0 - np.sin(0.5 * between))
     assert sharpest_edge(wedge[::-1]) is None  # the other way round every corner is a hollow
 
 

@@ -117,8 +117,8 @@ def test_the_grid_moves_turns_and_grows_with_the_body() -> None:
         edge[-1] = edge[0]
     moved[2][0], moved[2][-1] = moved[0][0], moved[1][0]
     other = Boundary(moved[0], moved[1], moved[2], moved[2], topology="o")
-    found = hyperbolic(other, wall_spacing=1e-4).grid.nodes
-    np.testing.assert_allclose(found, 30.0 * nodes @ turn + [5.0, -7.0], atol=1e-6)
+    result = hyperbolic(other, wall_spacing=1e-4).grid.nodes
+    np.testing.assert_allclose(result, 30.0 * nodes @ turn + [5.0, -7.0], atol=1e-6)
 
 
 def test_free_rows_are_few_more_than_the_growth_needs() -> None:
@@ -147,7 +147,7 @@ def test_three_nodes_are_enough_two_rows_are_not() -> None:
 
 
 @pytest.mark.parametrize(
-    ("settings", "told"),
+    ("settings", "message"),
     [
         ({"wall_spacing": 0.0}, "a first cell of 0 chords; use 1e-9 to 0.1"),
         ({"wall_spacing": float("nan")}, "a first cell of nan chords; use 1e-9 to 0.1"),
@@ -162,10 +162,10 @@ def test_three_nodes_are_enough_two_rows_are_not() -> None:
         ({"wall_spacing": 0.1}, "cells, of which the first is"),
     ],
 )
-def test_values_out_of_range_are_named(settings: dict[str, float], told: str) -> None:
+def test_values_out_of_range_are_named(settings: dict[str, float], message: str) -> None:
     with pytest.raises(InputError) as error:
         hyperbolic(ellipse(80, 120 if settings["wall_spacing"] == 0.1 else 40), **settings)
-    assert told in str(error.value)
+    assert message in str(error.value)
 
 
 def test_a_four_sided_domain_is_refused() -> None:

@@ -79,8 +79,8 @@ def test_a_wake_of_any_direction_ends_on_a_straight_outlet() -> None:
     turn = np.array([[0.5, np.sqrt(0.75)], [-np.sqrt(0.75), 0.5]])
     plain = hyperbolic(body.boundary(Sampling(140, 60, "c")), wall_spacing=1e-4).grid.nodes
     turned = Airfoil(body.curve.points @ turn).boundary(Sampling(140, 60, "c"))
-    found = hyperbolic(turned, wall_spacing=1e-4).grid.nodes
-    np.testing.assert_allclose(found, plain @ turn, atol=1e-6)
+    result = hyperbolic(turned, wall_spacing=1e-4).grid.nodes
+    np.testing.assert_allclose(result, plain @ turn, atol=1e-6)
 
 
 @pytest.mark.parametrize(("ni", "nj"), [(401, 105), (801, 209)])

@@ -147,8 +147,8 @@ def test_the_jacobian_of_a_quadratic_is_exact() -> None:
     entries = jacobian(product, nodes, reach=1)
     moves = RANDOM.standard_normal(nodes.shape)
     exact = moves[::-1, 2:, 1:-1] * nodes[:, 1:-1, :-2] + nodes[::-1, 2:, 1:-1] * moves[:, 1:-1, :-2]
-    found = entries.times(moves.ravel()).reshape(nodes.shape)[:, 1:-1, 1:-1]
-    assert found == pytest.approx(exact, abs=1e-8)
+    result = entries.times(moves.ravel()).reshape(nodes.shape)[:, 1:-1, 1:-1]
+    assert result == pytest.approx(exact, abs=1e-8)
     left, right = RANDOM.standard_normal((2, nodes.size))
     assert left @ entries.times(right) == pytest.approx(entries.transposed_times(left) @ right, rel=1e-12)
 

@@ -53,8 +53,8 @@ def test_named_otherwise_a_domain_has_the_same_grid_to_rounding(element: Element
     given = rim(domain())
     moved = (3.0 - 7.0j) + 0.017 * np.exp(1.2j) * relabelled(given, element)
     expected = (3.0 - 7.0j) + 0.017 * np.exp(1.2j) * relabelled(polished(inside(given)), element)
-    found = polished(inside(moved))
-    assert np.abs(found - expected).max() < 1e-12 * np.ptp(np.abs(expected - expected.mean()))
+    result = polished(inside(moved))
+    assert np.abs(result - expected).max() < 1e-12 * np.ptp(np.abs(expected - expected.mean()))
 
 
 def test_unequal_counts_keep_their_axes() -> None:

@@ -29,10 +29,10 @@ def test_the_first_share_without_folds_is_taken_or_all(by: float, part: float) -
 def test_grids_that_would_fold_are_valid_in_torch_too(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     boundary = random_quad(seed, 65, 65)
     assert boundary is not None
-    (found,) = load("quad-general").solve([boundary], "off")
-    assert count_folded(found.grid.nodes) == 0
+    (result,) = load("quad-general").solve([boundary], "off")
+    assert count_folded(result.grid.nodes) == 0
     sides = (boundary.south, boundary.north, boundary.west, boundary.east)
     (nodes,) = QuadGrids()(*(torch.from_numpy(np.ascontiguousarray(side))[None] for side in sides)).numpy()
-    assert np.abs(nodes - found.grid.nodes).max() < 1e-12 * np.ptp(found.grid.nodes)
+    assert np.abs(nodes - result.grid.nodes).max() < 1e-12 * np.ptp(result.grid.nodes)
     monkeypatch.setattr("meshonet.solvers.neural.quad.coarse_grids.share", lambda *_: 1.0)
     assert count_folded(load("quad-general").solve([boundary], "off")[0].grid.nodes) > 0

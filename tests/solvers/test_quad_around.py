@@ -58,21 +58,21 @@ def nodes(edges: Boundary, model: str, polish: int = 0) -> Floats:
 
 def test_activation_goes_round_along_the_first_axis() -> None:
     x = np.random.default_rng(0).normal(size=(2, 6, 5, 8))
-    plain, found = np.empty((2, 8, 7, 8)), np.empty((2, 8, 7, 8))
+    plain, result = np.empty((2, 8, 7, 8)), np.empty((2, 8, 7, 8))
     activate(x, plain)
-    activate(x, found, True)
-    np.testing.assert_array_equal(found[:, 1:-1], plain[:, 1:-1])
-    np.testing.assert_array_equal(found[:, 0], plain[:, -2])
-    np.testing.assert_array_equal(found[:, -1], plain[:, 1])
+    activate(x, result, True)
+    np.testing.assert_array_equal(result[:, 1:-1], plain[:, 1:-1])
+    np.testing.assert_array_equal(result[:, 0], plain[:, -2])
+    np.testing.assert_array_equal(result[:, -1], plain[:, 1])
 
 
 def test_finer_copies_go_round_along_the_first_axis() -> None:
     rng = np.random.default_rng(0)
     x, add = rng.normal(size=(2, 6, 5, 8)), rng.normal(size=(2, 12, 9, 8))
-    found, closed = np.empty_like(add), np.empty((2, 13, 9, 8))
-    upsample(x, add, found, True)
+    result, closed = np.empty_like(add), np.empty((2, 13, 9, 8))
+    upsample(x, add, result, True)
     upsample(np.concatenate([x, x[:, :1]], 1), np.concatenate([add, add[:, :1]], 1), closed)
-    np.testing.assert_array_equal(found, closed[:, :-1])
+    np.testing.assert_array_equal(result, closed[:, :-1])
 
 
 def test_numpy_equals_torch() -> None:
@@ -83,12 +83,12 @@ def test_numpy_equals_torch() -> None:
     net = QuadUNet(WIDTHS, BLOCKS, around=True).double()
     net.load_state_dict({name: torch.from_numpy(value) for name, value in held.items()})
     seen = features(*approach(z, np, around=True), np, around=True)
-    told = features(*approach(torch.from_numpy(z), torch, around=True), torch, around=True)
-    np.testing.assert_allclose(told.numpy(), seen, rtol=0, atol=1e-10)
+    report = features(*approach(torch.from_numpy(z), torch, around=True), torch, around=True)
+    np.testing.assert_allclose(report.numpy(), seen, rtol=0, atol=1e-10)
     with torch.no_grad():
         expected = net(torch.from_numpy(seen)).numpy()
-    found = Network(held, BLOCKS, around=True)(seen)
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+    result = Network(held, BLOCKS, around=True)(seen)
+    np.testing.assert_allclose(result, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
 
 
 def test_the_answer_shifts_with_the_strip_and_vanishes_on_the_walls_alone() -> None:
@@ -116,10 +116,10 @@ def test_a_strip_is_a_conformal_image_that_rolls_up_again() -> None:
 def test_the_walls_are_bitwise_those_given_and_the_cut_is_closed(model: str) -> None:
     for edges in bodies():
         for polish in (0, 2):
-            found = nodes(edges, model, polish)
-            np.testing.assert_array_equal(found[:, 0], edges.south)
-            np.testing.assert_array_equal(found[:, -1], edges.north)
-            np.testing.assert_array_equal(found[0], found[-1])
+            result = nodes(edges, model, polish)
+            np.testing.assert_array_equal(result[:, 0], edges.south)
+            np.testing.assert_array_equal(result[:, -1], edges.north)
+            np.testing.assert_array_equal(result[0], result[-1])
 
 
 def moved(edges: Boundary, move: Any) -> Boundary:
@@ -170,8 +170,8 @@ def test_a_body_that_is_its_own_mirror_image_has_such_a_grid() -> None:
     far[-1] = far[0]
     south, north = (np.stack([edge.real, edge.imag], axis=1) for edge in (square, far))
     cut = straight(south[0], north[0], 33)
-    found = nodes(Boundary(south, north, cut, cut, topology="o"), "hole-o", 5)
-    np.testing.assert_allclose(found, found[::-1] * [1.0, -1.0], rtol=0, atol=1e-14)
+    result = nodes(Boundary(south, north, cut, cut, topology="o"), "hole-o", 5)
+    np.testing.assert_allclose(result, result[::-1] * [1.0, -1.0], rtol=0, atol=1e-14)
 
 
 def test_a_body_begun_a_quarter_further_has_the_same_grid(model: str) -> None:
@@ -188,8 +188,8 @@ def test_a_body_begun_a_quarter_further_has_the_same_grid(model: str) -> None:
 
 def test_together_is_as_each_alone(model: str) -> None:
     many = load(model).solve(bodies(5), 0)
-    for edges, found in zip(bodies(5), many, strict=True):
-        np.testing.assert_array_equal(found.grid.nodes, nodes(edges, model))
+    for edges, result in zip(bodies(5), many, strict=True):
+        np.testing.assert_array_equal(result.grid.nodes, nodes(edges, model))
 
 
 def test_a_quad_boundary_is_refused(model: str) -> None:

@@ -22,8 +22,8 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 def domains(ni: int, nj: int, seeds: tuple[int, ...] = (3, 5)) -> list[Boundary]:
-    found = [random_quad(seed, ni, nj) for seed in seeds]
-    return [boundary for boundary in found if boundary is not None]
+    results = [random_quad(seed, ni, nj) for seed in seeds]
+    return [boundary for boundary in results if boundary is not None]
 
 
 def edges(boundaries: list[Boundary]) -> list[Any]:
@@ -34,16 +34,16 @@ def edges(boundaries: list[Boundary]) -> list[Any]:
 @pytest.mark.parametrize(("ni", "nj"), [(33, 33), (65, 50), (20, 81)])
 def test_torch_equals_numpy(model: str, ni: int, nj: int, name: str) -> None:
     boundaries, name = domains(ni, nj), model if name == "random" else name
-    found = QuadGrids(name)(*edges(boundaries)).numpy()
-    for one, solution in zip(found, load(name).solve(boundaries, "off"), strict=True):
+    result = QuadGrids(name)(*edges(boundaries)).numpy()
+    for one, solution in zip(result, load(name).solve(boundaries, "off"), strict=True):
         np.testing.assert_allclose(one, solution.grid.nodes, rtol=0, atol=1e-12)
 
 
 def test_edges_are_the_given_ones(model: str) -> None:
     given = edges(domains(30, 40))
-    found = QuadGrids(model)(*given)
+    result = QuadGrids(model)(*given)
     for edge, expected in zip(
-        (found[:, :, 0], found[:, :, -1], found[:, 0], found[:, -1]), given, strict=True
+        (result[:, :, 0], result[:, :, -1], result[:, 0], result[:, -1]), given, strict=True
     ):
         assert torch.equal(edge, expected)
 
@@ -63,10 +63,10 @@ def test_gradients_are_those_of_finite_differences(model: str, name: str) -> Non
 
     leaves = [edge.clone().requires_grad_() for edge in given]
     (weights * grids(*leaves)).sum().backward()
-    found = sum(float((leaf.grad * move).sum()) for leaf, move in zip(leaves, moves, strict=True))
+    result = sum(float((leaf.grad * move).sum()) for leaf, move in zip(leaves, moves, strict=True))
     h = 1e-6
     expected = float(8 * (summed(h) - summed(-h)) - (summed(2 * h) - summed(-2 * h))) / (12 * h)
-    assert found == pytest.approx(expected, rel=1e-6)
+    assert result == pytest.approx(expected, rel=1e-6)
 
 
 def test_a_step_down_the_gradient_makes_the_middle_cells_more_even(model: str) -> None:

@@ -39,8 +39,8 @@ def nodes(boundary: Boundary, model: str, polish: int = 0) -> Floats:
 @pytest.mark.parametrize("polish", [0, 2])
 @pytest.mark.parametrize("boundary", SHAPES, ids=lambda b: f"{b.name}-{b.ni}x{b.nj}")
 def test_edges_are_met_bitwise(boundary: Boundary, model: str, polish: int) -> None:
-    found = nodes(boundary, model, polish)
-    edges = {"south": found[:, 0], "north": found[:, -1], "west": found[0], "east": found[-1]}
+    result = nodes(boundary, model, polish)
+    edges = {"south": result[:, 0], "north": result[:, -1], "west": result[0], "east": result[-1]}
     for side, edge in edges.items():
         np.testing.assert_array_equal(edge, getattr(boundary, side))
 
@@ -61,9 +61,9 @@ def test_a_domain_moved_turned_and_scaled_has_the_grid_moved_turned_and_scaled(
     matrix = 3.1 * np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     away = np.array([5.0, -2.0])
     expected = nodes(boundary, model, polish) @ matrix.T + away
-    found = nodes(turned(boundary, matrix, away), model, polish)
+    result = nodes(turned(boundary, matrix, away), model, polish)
     close = 1e-12 if polish == 0 else 1e-7  # the descent's preconditioner is in single precision
-    np.testing.assert_allclose(found, expected, rtol=0, atol=close * 10)
+    np.testing.assert_allclose(result, expected, rtol=0, atol=close * 10)
 
 
 def relabelled(grid: Floats, element: int) -> Floats:
@@ -85,8 +85,8 @@ def test_a_relabelled_or_mirrored_domain_has_the_relabelled_grid(model: str, ele
     boundary = random_quad(5, n, n)
     assert boundary is not None
     plain = nodes(boundary, model)
-    found = nodes(rimmed(relabelled(plain, element)), model)
-    np.testing.assert_allclose(found, relabelled(plain, element), rtol=0, atol=1e-12)
+    result = nodes(rimmed(relabelled(plain, element)), model)
+    np.testing.assert_allclose(result, relabelled(plain, element), rtol=0, atol=1e-12)
 
 
 def test_a_batch_has_the_grids_of_its_members_alone(model: str) -> None:
@@ -100,9 +100,9 @@ def test_evaluation_is_that_of_coarse_solves(model: str) -> None:
     boundary = arch(90, 70)
     sides = sides_of([boundary])
     coarse = coarse_grids.coarse_grids(sides, load(model).network(), 1)
-    (found,) = refine_quad(coarse, sides)
+    (result,) = refine_quad(coarse, sides)
     expected = refine_grid(np.ascontiguousarray(np.moveaxis(coarse[0], 0, -1)), boundary)
-    np.testing.assert_allclose(np.moveaxis(found, 0, -1), expected, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(np.moveaxis(result, 0, -1), expected, rtol=0, atol=1e-14)
     thin = coarse_grids.thinned(sides, 33, 33)
     for name, side in zip(("south", "north", "west", "east"), thin, strict=True):
         np.testing.assert_allclose(side[0].T, getattr(thinned(boundary, 33, 33), name), atol=1e-15)
@@ -130,8 +130,8 @@ def test_polish_descends_the_functional(model: str) -> None:
     boundary = arch(65, 65)
     values = []
     for steps in (0, 2, 5):
-        found = nodes(boundary, model, steps)
-        values.append(energy(found, aspect_of(found), Weights(), 1e-9))
+        result = nodes(boundary, model, steps)
+        values.append(energy(result, aspect_of(result), Weights(), 1e-9))
     assert values[0] > values[1] > values[2]
 
 
@@ -163,9 +163,9 @@ def test_domains_far_from_any_in_training_give_finite_grids(model: str) -> None:
     ("count", "threads", "sizes"), [(70, 1, [35, 35]), (192, 2, 4 * [48]), (3, 4, [1, 1, 1])]
 )
 def test_batches_keep_every_thread_at_work_to_the_end(count: int, threads: int, sizes: list[int]) -> None:
-    found = list(in_batches(count * [arch(5, 4)], threads))
-    assert [len(batch) for batch in found] == sizes
-    assert [k for batch in found for k in batch] == list(range(count))
+    results = list(in_batches(count * [arch(5, 4)], threads))
+    assert [len(batch) for batch in results] == sizes
+    assert [k for batch in results for k in batch] == list(range(count))
 
 
 @pytest.mark.parametrize("polish", [0, 2])

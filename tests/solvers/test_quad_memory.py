@@ -38,7 +38,7 @@ def main() -> None:
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize(), hard))
-    told = []
+    reports = []
     for begin in (
         lambda: problem.descent.evaluate(*WEIGHTS, gradient),
         lambda: problem.descent.evaluate(*WEIGHTS, gradient),
@@ -47,10 +47,10 @@ def main() -> None:
         try:
             begin()
         except MemoryError:
-            told.append("no memory")
+            reports.append("no memory")
     resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
-    told.append(str(np.isfinite(run(problem.descent))))
-    sys.stdout.write(" ".join(told))
+    reports.append(str(np.isfinite(run(problem.descent))))
+    sys.stdout.write(" ".join(reports))
 
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs Linux")

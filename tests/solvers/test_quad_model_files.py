@@ -25,28 +25,28 @@ def copied(folder: Path, metadata: dict[str, str], **arrays: np.ndarray) -> Path
 
 
 def test_a_copy_is_the_same_model(tmp_path: Path) -> None:
-    found = load(copied(tmp_path, header()))
-    assert isinstance(found, QuadOperator)
-    assert (found.name, found.widths, found.blocks) == ("copy", WIDTHS, BLOCKS)
-    assert found.network().heads == 2
+    result = load(copied(tmp_path, header()))
+    assert isinstance(result, QuadOperator)
+    assert (result.name, result.widths, result.blocks) == ("copy", WIDTHS, BLOCKS)
+    assert result.network().heads == 2
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "message"),
     [
         ({"kind": "meshonet strip operator"}, "it holds 'meshonet strip operator', encoding 2"),
         ({"encoding": 1}, "encoding 1"),
     ],
 )
-def test_files_that_do_not_fit_are_refused(tmp_path: Path, changes: dict[str, object], told: str) -> None:
+def test_files_that_do_not_fit_are_refused(tmp_path: Path, changes: dict[str, object], message: str) -> None:
     path = copied(tmp_path, header(**changes))
-    with pytest.raises(InputError, match=told) as caught:
+    with pytest.raises(InputError, match=message) as caught:
         load(path)
     assert str(path) in str(caught.value)
 
 
 @pytest.mark.parametrize(
-    ("arrays", "told"),
+    ("arrays", "message"),
     [
         ({"lift": np.full((1, 17), np.nan, np.float32)}, "not finite"),
         ({"lift": np.zeros((1, 16), np.float32)}, "do not fit \\(names or shapes"),
@@ -56,6 +56,8 @@ def test_files_that_do_not_fit_are_refused(tmp_path: Path, changes: dict[str, ob
         ({"more": np.zeros(1, np.float32)}, "do not fit \\(names or shapes"),
     ],
 )
-def test_arrays_that_do_not_fit_are_refused(tmp_path: Path, arrays: dict[str, np.ndarray], told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_arrays_that_do_not_fit_are_refused(
+    tmp_path: Path, arrays: dict[str, np.ndarray], message: str
+) -> None:
+    with pytest.raises(InputError, match=message):
         load(copied(tmp_path, header(), **arrays))

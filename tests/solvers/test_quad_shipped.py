@@ -38,8 +38,8 @@ def test_the_twin_is_near_winslows_grid_and_a_cycle_brings_it_nearer() -> None:
     boundaries = [boundary for boundary in drawn if boundary is not None]
     goals = [winslow(boundary, tol=1e-8).grid for boundary in boundaries]
     medians = [
-        np.median([compare(s.grid, goal).relative_l2 for s, goal in zip(found, goals, strict=True)])
-        for found in (load("quad-winslow").solve(boundaries, steps) for steps in (0, 1))
+        np.median([compare(s.grid, goal).relative_l2 for s, goal in zip(result, goals, strict=True)])
+        for result in (load("quad-winslow").solve(boundaries, steps) for steps in (0, 1))
     ]
     assert medians[0] < 3e-4
     assert medians[1] < 1e-4

@@ -125,10 +125,10 @@ def largest_growth(mesh: QuadMesh) -> float:
 
 def test_a_rectangle_becomes_squares() -> None:
     mesh = rectangle(np.linspace(0.0, 3.0, 13), np.linspace(0.0, 2.0, 9))
-    found = optimise(shaken(mesh, 0.2), iterations=200, tolerance=1e-8)
-    assert found.valid
-    assert found.value == pytest.approx(1.0, abs=1e-8)
-    np.testing.assert_allclose(found.mesh.nodes, mesh.nodes, atol=1e-4)
+    result = optimise(shaken(mesh, 0.2), iterations=200, tolerance=1e-8)
+    assert result.valid
+    assert result.value == pytest.approx(1.0, abs=1e-8)
+    np.testing.assert_allclose(result.mesh.nodes, mesh.nodes, atol=1e-4)
 
 
 @pytest.mark.parametrize("by", [0.5, 1.0, 2.0])
@@ -136,9 +136,9 @@ def test_folded_starts_lead_to_the_same_optimum(by: float) -> None:
     best = optimise(butterfly(circle()), iterations=300, tolerance=1e-6)
     start = shaken(best.mesh, by)
     assert smallest_jacobian(start.nodes, start.quads) < 0
-    found = optimise(start, iterations=300, tolerance=1e-6)
-    assert found.valid
-    assert found.value == pytest.approx(best.value, rel=1e-4)
+    result = optimise(start, iterations=300, tolerance=1e-6)
+    assert result.valid
+    assert result.value == pytest.approx(best.value, rel=1e-4)
 
 
 def test_small_folded_cells_beside_large_ones_come_undone() -> None:
@@ -148,23 +148,23 @@ def test_small_folded_cells_beside_large_ones_come_undone() -> None:
     nodes[1:-1] += 0.2 * np.geomspace(1.0, 100.0, 24)[1:-1, None, None] * random.normal(size=(22, 30, 2))
     start = mesh.with_nodes(nodes.reshape(-1, 2))
     assert smallest_jacobian(start.nodes, start.quads) < 0
-    found = optimise(start, iterations=300)
-    assert found.valid
-    radii = np.hypot(*found.mesh.nodes.T).reshape(24, 30)
+    result = optimise(start, iterations=300)
+    assert result.valid
+    radii = np.hypot(*result.mesh.nodes.T).reshape(24, 30)
     np.testing.assert_allclose(radii, radii.mean(axis=1, keepdims=True) * np.ones(30), rtol=1e-2)
 
 
 def test_what_it_calls_valid_has_no_fold_and_the_domain_s_area() -> None:
     for seed in range(10):
-        found = optimise(shaken(butterfly(circle(120, 2.0)), 3.0, seed))
-        z = found.mesh.nodes[found.mesh.quads] @ np.array([1.0, 1j])
+        result = optimise(shaken(butterfly(circle(120, 2.0)), 3.0, seed))
+        z = result.mesh.nodes[result.mesh.quads] @ np.array([1.0, 1j])
         areas = (np.conj(z[:, 2] - z[:, 0]) * (z[:, 3] - z[:, 1])).imag / 2
         corners = [
             (np.conj(z[:, (k + 1) % 4] - z[:, k]) * (z[:, k - 1] - z[:, k])).imag.min() for k in range(4)
         ]
-        assert found.valid == (min(corners) > 0)
-        if found.valid:
-            assert areas.sum() == pytest.approx(found.mesh.domain.area, rel=0.03)
+        assert result.valid == (min(corners) > 0)
+        if result.valid:
+            assert areas.sum() == pytest.approx(result.mesh.domain.area, rel=0.03)
 
 
 @pytest.mark.parametrize(("scale", "move"), [(1e-9, 0.0), (1e9, 0.0), (1.0, 1e3), (1e-3, -7.0)])
@@ -199,9 +199,9 @@ def test_wall_nodes_stay_on_their_curve_and_in_order() -> None:
 
 def test_tips_are_not_cut_off(monkeypatch: pytest.MonkeyPatch) -> None:
     start = butterfly(circle(200, 4.0), core=10)
-    found = optimise(start, iterations=300)
-    assert found.valid
-    assert sagitta(found.mesh) < 0.25
+    result = optimise(start, iterations=300)
+    assert result.valid
+    assert sagitta(result.mesh) < 0.25
     monkeypatch.setattr("meshonet.solvers.energy.quad_problem.BENT", 0.0)
     assert sagitta(optimise(start, iterations=300).mesh) > 1.0
 
@@ -213,12 +213,12 @@ def test_corners_and_held_nodes_stay_bitwise() -> None:
     nodes = mesh.nodes.copy().reshape(13, 6, 2)
     nodes[1:-1, 3:-1] += 0.05
     start = mesh.with_nodes(nodes.reshape(-1, 2))
-    found = optimise(start, held=held.ravel())
-    assert found.valid
+    result = optimise(start, held=held.ravel())
+    assert result.valid
     stay = held.ravel() | (mesh.places.cells > 0)
-    assert found.mesh.nodes[stay].tobytes() == start.nodes[stay].tobytes()
-    assert found.mesh.places.arc[stay].tobytes() == start.places.arc[stay].tobytes()
-    assert not np.allclose(found.mesh.nodes[~stay], start.nodes[~stay])
+    assert result.mesh.nodes[stay].tobytes() == start.nodes[stay].tobytes()
+    assert result.mesh.places.arc[stay].tobytes() == start.places.arc[stay].tobytes()
+    assert not np.allclose(result.mesh.nodes[~stay], start.nodes[~stay])
 
 
 def test_a_held_fold_is_not_valid() -> None:
@@ -230,12 +230,12 @@ def test_a_held_fold_is_not_valid() -> None:
 
 def test_partners_are_one_node() -> None:
     mesh = passage()
-    found = optimise(mesh, iterations=300, tolerance=1e-8)
-    assert found.valid
+    result = optimise(mesh, iterations=300, tolerance=1e-8)
+    assert result.valid
     tied = np.flatnonzero((mesh.places.partner >= 0) & (mesh.places.cells == 0))
     partner, shift = mesh.places.partner[tied], np.array(mesh.domain.periodic[0].shift)
-    np.testing.assert_array_equal(found.mesh.nodes[tied], found.mesh.nodes[partner] + shift)
-    assert np.abs(found.mesh.nodes[tied] - mesh.nodes[tied]).max() > 0.01
+    np.testing.assert_array_equal(result.mesh.nodes[tied], result.mesh.nodes[partner] + shift)
+    assert np.abs(result.mesh.nodes[tied] - mesh.nodes[tied]).max() > 0.01
 
 
 def test_it_does_not_matter_where_a_period_is_cut() -> None:
@@ -260,9 +260,9 @@ def test_aspects_and_targets_make_a_graded_grid_the_optimum() -> None:
     aspects = side[wanted.edge_of[:, 1]] / side[wanted.edge_of[:, 0]]
     start = rectangle(np.linspace(0.0, x[-1], len(x)), np.linspace(0.0, 1.0, 7))
     start = replace(wanted, nodes=start.nodes, places=start.places)
-    found = optimise(start, aspects=aspects, targets=side, iterations=300, tolerance=1e-8)
-    assert found.valid
-    np.testing.assert_allclose(found.mesh.nodes, wanted.nodes, atol=2e-3)
+    result = optimise(start, aspects=aspects, targets=side, iterations=300, tolerance=1e-8)
+    assert result.valid
+    np.testing.assert_allclose(result.mesh.nodes, wanted.nodes, atol=2e-3)
 
 
 def test_nodes_that_stay_out_of_order_are_refused() -> None:

@@ -19,11 +19,11 @@ def rings(radii: Floats, ni: int) -> Floats:
 def test_rings_that_grow_come_back() -> None:
     fine = rings(np.geomspace(1.0, 20.0, 65), 129)
     boundary = ring(fine[:, 0], fine[:, -1], 65)
-    found = refine_grid(as_planar(fine[::2, ::2]), boundary)
-    assert np.abs(found - fine).max() < 1e-4 * 20.0
-    assert np.array_equal(found[:, 0], boundary.south)
-    assert np.array_equal(found[:, -1], boundary.north)
-    assert np.array_equal(found[0], found[-1])
+    result = refine_grid(as_planar(fine[::2, ::2]), boundary)
+    assert np.abs(result - fine).max() < 1e-4 * 20.0
+    assert np.array_equal(result[:, 0], boundary.south)
+    assert np.array_equal(result[:, -1], boundary.north)
+    assert np.array_equal(result[0], result[-1])
 
 
 def test_where_steps_jump_lines_do_not_turn_back() -> None:
@@ -32,9 +32,9 @@ def test_where_steps_jump_lines_do_not_turn_back() -> None:
     places = np.linspace(0.0, 24.0, 97)
     assert np.diff(CubicSpline(np.arange(25.0), radii)(places)).min() < -0.01
     boundary = ring(circle(1.0, 65), circle(float(radii[-1]), 65), 97)
-    found = refine_grid(rings(radii, 33), boundary)
-    assert folded(found) == 0
-    reach = np.hypot(found[..., 0], found[..., 1])
+    result = refine_grid(rings(radii, 33), boundary)
+    assert folded(result) == 0
+    reach = np.hypot(result[..., 0], result[..., 1])
     assert np.diff(reach, axis=1).min() > 0.0
     np.testing.assert_allclose(reach[::2, ::4].mean(axis=0), radii, atol=1e-6)
 
@@ -46,11 +46,11 @@ def test_a_corner_between_coarse_nodes_is_felt_near_the_wall_only() -> None:
     coarse = thinned(boundary, 37, 31)
     assert np.abs(coarse.south - (1.0, -1.0)).sum(axis=1).min() > 0.02
     t = np.linspace(0.0, 1.0, 31)[None, :, None]
-    found = refine_around(as_planar((1 - t) * coarse.south[:, None] + t * coarse.north[:, None]), boundary)
-    assert folded(found) == 0
+    result = refine_around(as_planar((1 - t) * coarse.south[:, None] + t * coarse.north[:, None]), boundary)
+    assert folded(result) == 0
     exact = np.linspace(0.0, 1.0, 61)[None, :, None]
     plain = (1 - exact) * boundary.south[:, None] + exact * boundary.north[:, None]
-    bends = [np.abs(np.diff(nodes, 2, axis=0))[:, 40].max() for nodes in (found, plain)]
+    bends = [np.abs(np.diff(nodes, 2, axis=0))[:, 40].max() for nodes in (result, plain)]
     assert bends[0] < 0.5 * bends[1]
 
 
@@ -58,6 +58,6 @@ def test_a_corner_between_coarse_nodes_is_felt_near_the_wall_only() -> None:
 @pytest.mark.parametrize("nj", [5, 12])
 def test_few_layers_do(n: int, nj: int) -> None:
     boundary = ring(circle(1.0, 33), circle(2.0, 33), nj)
-    found = refine_grid(rings(np.linspace(1.0, 2.0, n), 17), boundary)
+    result = refine_grid(rings(np.linspace(1.0, 2.0, n), 17), boundary)
     expected = rings(np.linspace(1.0, 2.0, nj), 33)
-    np.testing.assert_allclose(found, expected, atol=2e-4)
+    np.testing.assert_allclose(result, expected, atol=2e-4)

@@ -61,14 +61,14 @@ def test_a_loop_without_corners_turns_with_its_box() -> None:
 
 
 @pytest.mark.parametrize(
-    ("polygons", "told"),
+    ("polygons", "message"),
     [
         ([STEP, circle(4, 1, 0.3)], "the layout is of a domain with 0 holes, this one has 1 hole; give a"),
         ([STEP[[0, 2, 3, 4, 5]]], r"loop 0 \(outer\) has 4 corners, in the layout it has 6; give a"),
     ],
 )
-def test_a_domain_of_another_kind_is_refused_with_what_differs(polygons: list[Floats], told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_a_domain_of_another_kind_is_refused_with_what_differs(polygons: list[Floats], message: str) -> None:
+    with pytest.raises(InputError, match=message):
         carried_over(step_layout(), Domain.of_polygons(polygons))
 
 

@@ -65,8 +65,8 @@ def test_any_start_will_do(method: str) -> None:
     boundary = seamount(65, 33)
     rng = np.random.default_rng(6)
     start = tfi(boundary).nodes + rng.normal(0, 5.0, (65, 33, 2))
-    found = METHODS[method](boundary, initial=Grid.from_nodes(start), tol=1e-7, max_cycles=60).grid.nodes
-    assert folded(found) == 0
+    result = METHODS[method](boundary, initial=Grid.from_nodes(start), tol=1e-7, max_cycles=60).grid.nodes
+    assert folded(result) == 0
 
 
 @pytest.mark.parametrize("method", METHODS)

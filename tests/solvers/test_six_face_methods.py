@@ -125,8 +125,8 @@ def test_the_gradient_is_that_of_the_functional() -> None:
 def test_the_energy_of_shapes_is_the_inverse_mean_ratio() -> None:
     for thick, wanted in ((1.0, 1.0), (2.0, 6.0 / (3.0 * 2.0 ** (2.0 / 3.0)))):
         box = np.moveaxis(mapped(lambda a, b, c, z=thick: (a, b, z * c), (5, 5, 5)), -1, 0)
-        found = value(np.ascontiguousarray(box), (1.0, 0.0, 0), np.empty((3, 27)), cubes=True)
-        assert found == pytest.approx(wanted, rel=1e-12)
+        result = value(np.ascontiguousarray(box), (1.0, 0.0, 0), np.empty((3, 27)), cubes=True)
+        assert result == pytest.approx(wanted, rel=1e-12)
 
 
 @pytest.mark.parametrize("shape", [bump, skewed])

@@ -52,13 +52,13 @@ def bend(kind: str, ni: int = 161, nj: int = 61) -> Boundary:
 
 def leans(nodes: Floats, boundary: Boundary) -> Floats:
     """Degrees (2, ni - 4) between first cells' lines and the wall's normal, its tangent by splines."""
-    found = []
+    results = []
     for wall, (one, two) in ((boundary.south, (0, 1)), (boundary.north, (-1, -2))):
         curve, out = Curve(wall), nodes[:, two] - nodes[:, one]
         tangent = curve.tangent(curve.knots)
         sine = (out * tangent).sum(axis=1) / np.hypot(*out.T)
-        found.append(np.degrees(np.arcsin(np.abs(sine)))[2:-2])
-    return np.array(found)
+        results.append(np.degrees(np.arcsin(np.abs(sine)))[2:-2])
+    return np.array(results)
 
 
 CHANNELS = [*(channel(kind) for kind in WALLS), bend("U"), bend("L")]

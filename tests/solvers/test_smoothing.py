@@ -22,10 +22,10 @@ from meshonet.solvers.solution import Outcome
 
 
 def worst(grid: Grid) -> tuple[float, float, float]:
-    found = faces(grid)
-    assert found.non_orthogonality
-    assert found.face_skewness
-    return found.non_orthogonality.max, found.face_skewness.max, block_figures(grid).deviation.mean
+    result = faces(grid)
+    assert result.non_orthogonality
+    assert result.face_skewness
+    return result.non_orthogonality.max, result.face_skewness.max, block_figures(grid).deviation.mean
 
 
 def nozzle(first: float = 0.01) -> Grid:

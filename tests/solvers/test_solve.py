@@ -47,8 +47,8 @@ def test_error_against_a_conformal_map_is_of_second_order(exact, periodic) -> No
     errors = []
     for n in counts:
         nodes = exact(2 * n - 1, n)
-        found = solve(edges_of(nodes, periodic), tol=1e-10).grid.nodes
-        errors.append(np.abs(found - nodes).max())
+        result = solve(edges_of(nodes, periodic), tol=1e-10).grid.nodes
+        errors.append(np.abs(result - nodes).max())
     slope = -np.polyfit(np.log(counts - 1), np.log(errors), 1)[0]
     assert 1.9 < slope < 2.3
     assert errors[-1] < 1e-3
@@ -190,8 +190,8 @@ def test_a_far_from_valid_start_still_ends_at_the_solution() -> None:
     boundary = arch(65, 65)
     rng = np.random.default_rng(3)
     start = tfi(boundary).nodes + rng.normal(0, 0.05, (65, 65, 2))
-    found = solve(boundary, tol=1e-8, max_cycles=60, initial=Grid.from_nodes(start)).grid.nodes
-    np.testing.assert_allclose(found, solve(boundary, tol=1e-8).grid.nodes, atol=1e-6)
+    result = solve(boundary, tol=1e-8, max_cycles=60, initial=Grid.from_nodes(start)).grid.nodes
+    np.testing.assert_allclose(result, solve(boundary, tol=1e-8).grid.nodes, atol=1e-6)
 
 
 @pytest.mark.parametrize("offset", [0.0, 1e4])

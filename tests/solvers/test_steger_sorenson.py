@@ -76,8 +76,8 @@ def test_a_grid_that_is_right_needs_no_sources() -> None:
     edge = ControlledEdge("south", boundary.south, 33, 90.0, 0.0, False)
     lean, _ = edge.errors(nodes)
     assert np.abs(lean).max() < 1e-3
-    found = solve_steger_sorenson(boundary).grid.nodes
-    np.testing.assert_allclose(found, solve(boundary).grid.nodes, atol=2e-3)
+    result = solve_steger_sorenson(boundary).grid.nodes
+    np.testing.assert_allclose(result, solve(boundary).grid.nodes, atol=2e-3)
 
 
 @pytest.mark.parametrize("make", [arch, hexagon, bump, seamount, l_shape, horseshoe])
@@ -155,7 +155,7 @@ def test_going_astray_ends_at_the_best(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(
-    ("make", "settings", "told"),
+    ("make", "settings", "message"),
     [
         (arch, {"angle": 5.0}, "an angle of 5 degrees at walls; use 30 to 150"),
         (
@@ -166,8 +166,8 @@ def test_going_astray_ends_at_the_best(monkeypatch: pytest.MonkeyPatch) -> None:
         (arch, {"tol": 2.0}, "tolerance 2 is not between 0 and 1"),
     ],
 )
-def test_what_cannot_be_controlled_is_refused(make, settings: dict[str, object], told: str) -> None:  # type: ignore[no-untyped-def]
-    with pytest.raises(InputError, match=told):
+def test_what_cannot_be_controlled_is_refused(make, settings: dict[str, object], message: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(InputError, match=message):
         solve_steger_sorenson(make(41, 21), **settings)  # type: ignore[arg-type]
 
 

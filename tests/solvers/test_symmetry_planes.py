@@ -17,8 +17,8 @@ def planes(patches: list[Floats], far: float, axis: str | None = None) -> tuple[
 
 
 def test_planes_that_walls_of_a_corner_face_are_none_and_named() -> None:
-    found, notes = planes(room_corner(8), 2.5)
-    assert found == ["z = 0", "z = 1"]
+    result, notes = planes(room_corner(8), 2.5)
+    assert result == ["z = 0", "z = 1"]
     for name in ("x = 1", "y = 1"):
         assert f"the open edges at {name} are not in a plane of symmetry: walls 1 away face it" in notes
 
@@ -41,8 +41,8 @@ def test_a_plane_that_closes_in_is_refused_by_name() -> None:
     ],
 )
 def test_planes_that_walls_end_at_or_turn_away_from_stay(patches: list[Floats], names: list[str]) -> None:
-    found, notes = planes(patches, 50.0)
-    assert found == names
+    result, notes = planes(patches, 50.0)
+    assert result == names
     assert "not in a plane" not in notes
 
 

@@ -45,10 +45,10 @@ def angle(nodes: Floats) -> Summary:
     return measure(Grid.from_nodes(nodes))["max_angle"]
 
 
-def never_worse(found: Floats, reference: Floats) -> None:
-    assert folded(found) == 0
-    assert angle(found).max <= angle(reference).max + 1e-9
-    assert angle(found).mean <= angle(reference).mean
+def never_worse(result: Floats, reference: Floats) -> None:
+    assert folded(result) == 0
+    assert angle(result).max <= angle(reference).max + 1e-9
+    assert angle(result).mean <= angle(reference).mean
 
 
 # mean angle gained at least, in degrees: nine tenths of what the functional's minimum gains at 65x65
@@ -59,10 +59,10 @@ GAINS = [(arch, 5.6), (hexagon, 7.1), (bump, 4.8), (wrench, 12.0), (seamount, 6.
 @pytest.mark.parametrize("n", [65, 100])
 def test_angles_are_better_than_winslows(make, gain: float, n: int) -> None:  # type: ignore[no-untyped-def]
     boundary: Boundary = make(n, n)
-    reference, found = winslow(boundary).grid.nodes, solve(boundary).grid.nodes
-    never_worse(found, reference)
-    assert angle(found).mean < angle(reference).mean - gain
-    for side, edge in (("south", found[:, 0]), ("north", found[:, -1]), ("west", found[0])):
+    reference, result = winslow(boundary).grid.nodes, solve(boundary).grid.nodes
+    never_worse(result, reference)
+    assert angle(result).mean < angle(reference).mean - gain
+    for side, edge in (("south", result[:, 0]), ("north", result[:, -1]), ("west", result[0])):
         assert np.array_equal(edge, getattr(boundary, side))
 
 
@@ -96,9 +96,9 @@ def test_a_minimum_that_folds_on_finer_levels_gives_way_to_the_other() -> None:
     boundary = random_quad(171, 65, 65)
     assert boundary is not None
     assert folded(winslow(boundary).grid.nodes) > 100
-    found = solve(boundary)
-    assert found.notes == ()
-    assert folded(found.grid.nodes) == 0
+    result = solve(boundary)
+    assert result.notes == ()
+    assert folded(result.grid.nodes) == 0
 
 
 def test_straight_lines_lead_on_where_splines_fold_too_much(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -106,16 +106,16 @@ def test_straight_lines_lead_on_where_splines_fold_too_much(monkeypatch: pytest.
     boundary, smooth = arch(33, 33), module.refine_grid
 
     def swinging(nodes: Floats, boundary: Boundary) -> Floats:
-        found = smooth(nodes, boundary)
-        found[16, 16] += 1.0
-        return found
+        result = smooth(nodes, boundary)
+        result[16, 16] += 1.0
+        return result
 
     goal = solve(boundary, tol=1e-7).grid.nodes
     monkeypatch.setattr(module, "refine_grid", swinging)
     monkeypatch.setattr(descent_module, "_made_valid", lambda *_: False)
-    found = solve(boundary, tol=1e-7)
-    assert found.notes == ()
-    np.testing.assert_allclose(found.grid.nodes, goal, atol=1e-5)
+    result = solve(boundary, tol=1e-7)
+    assert result.notes == ()
+    np.testing.assert_allclose(result.grid.nodes, goal, atol=1e-5)
 
 
 def test_of_several_minima_of_a_hard_domain_the_better_one_counts() -> None:
@@ -126,9 +126,9 @@ def test_of_several_minima_of_a_hard_domain_the_better_one_counts() -> None:
     aspect, whole = aspect_of(start), start.copy(order="K")
     assert unfold(whole, Weights())[0]
     descend(whole, Weights(), module.STILL, 1000)
-    found = solve(boundary, max_cycles=1000).grid.nodes
-    assert folded(found) == 0
-    assert energy(found, aspect, Weights()) < energy(whole, aspect, Weights()) - 0.05
+    result = solve(boundary, max_cycles=1000).grid.nodes
+    assert folded(result) == 0
+    assert energy(result, aspect, Weights()) < energy(whole, aspect, Weights()) - 0.05
 
 
 def test_largest_angles_are_far_below_winslows() -> None:
@@ -159,9 +159,9 @@ def test_it_converges_with_the_square_of_the_step(make) -> None:  # type: ignore
     finest = solve(boundary, tol=2e-6, max_cycles=500).grid.nodes
     size, counts, errors = np.linalg.norm(finest - finest.mean(axis=(0, 1))), (17, 33, 65), []
     for n in counts:
-        found = solve(thinned(boundary, n, n), tol=2e-6, max_cycles=500).grid.nodes
+        result = solve(thinned(boundary, n, n), tol=2e-6, max_cycles=500).grid.nodes
         every = 128 // (n - 1)
-        errors.append(np.linalg.norm(found - finest[::every, ::every]) / size * every)
+        errors.append(np.linalg.norm(result - finest[::every, ::every]) / size * every)
     assert errors[1] < 1e-3
     # the finest is no limit: with e = c h² - c h₁₂₉² the slopes of second order are 2.02 and 2.05
     slope = -np.polyfit(np.log([n - 1 for n in counts]), np.log(errors), 1)[0]
@@ -175,9 +175,9 @@ def test_any_counts_do(ni: int, nj: int) -> None:
 
 def test_descent_lowers_the_functional() -> None:
     start = winslow(arch(65, 65)).grid.nodes
-    found = solve(arch(65, 65)).grid.nodes
+    result = solve(arch(65, 65)).grid.nodes
     aspect = aspect_of(start)
-    assert energy(found, aspect, Weights()) < energy(start, aspect, Weights()) - 0.1
+    assert energy(result, aspect, Weights()) < energy(start, aspect, Weights()) - 0.1
 
 
 def test_the_minimum_does_not_depend_on_the_start() -> None:
@@ -205,35 +205,35 @@ def test_a_folded_start_is_unfolded() -> None:
     nodes = tfi(boundary).nodes
     nodes[8:16, 8:16] = nodes[24:16:-1, 24:16:-1]
     assert folded(nodes) > 10
-    found = solve(boundary, initial=Grid.from_nodes(nodes), max_cycles=1000)
-    assert folded(found.grid.nodes) == 0
-    assert found.notes == ()
+    result = solve(boundary, initial=Grid.from_nodes(nodes), max_cycles=1000)
+    assert folded(result.grid.nodes) == 0
+    assert result.notes == ()
 
 
 def test_the_regularised_barrier_unfolds_what_repair_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(descent_module, "repair", lambda nodes, periodic: folded(nodes))
     boundary = wrench(33, 33)
     assert folded(tfi(boundary).nodes) > 10
-    found = solve(boundary, initial=tfi(boundary), max_cycles=1000)
-    assert folded(found.grid.nodes) == 0
-    assert found.notes == ()
+    result = solve(boundary, initial=tfi(boundary), max_cycles=1000)
+    assert folded(result.grid.nodes) == 0
+    assert result.notes == ()
 
 
 def test_a_corner_of_180_degrees_is_told() -> None:
     turned = segment((0, 0), (1, 0), 33), segment((-0.5, 0), (1, 1), 33)
     boundary = quad(*turned, segment((0, 0), (-0.5, 0), 33), segment((1, 0), (1, 1), 33))
-    found = solve(boundary)
-    assert found.notes == ("no valid start was found; the grid is not the minimum",)
-    assert folded(found.grid.nodes) > 0
+    result = solve(boundary)
+    assert result.notes == ("no valid start was found; the grid is not the minimum",)
+    assert folded(result.grid.nodes) > 0
 
 
 def test_a_coarse_minimum_keeps_the_gain_at_any_resolution() -> None:
     boundary = bump(129, 129)
     own, reference = solve(boundary).grid.nodes, winslow(boundary).grid.nodes
-    found = solve_coarse(boundary, solve, 33, smooth=True).grid.nodes
-    assert folded(found) == 0
+    result = solve_coarse(boundary, solve, 33, smooth=True).grid.nodes
+    assert folded(result) == 0
     gain = angle(reference).mean - angle(own).mean
-    assert angle(reference).mean - angle(found).mean > 0.9 * gain
+    assert angle(reference).mean - angle(result).mean > 0.9 * gain
 
 
 def test_provenance_names_method_and_weights() -> None:
@@ -246,15 +246,15 @@ def test_provenance_names_method_and_weights() -> None:
 def test_around_a_body_the_cut_moves(make, ni: int, nj: int) -> None:  # type: ignore[no-untyped-def]
     boundary = make(ni, nj)
     reference, solution = winslow(boundary).grid, solve(boundary)
-    found = solution.grid.nodes
+    result = solution.grid.nodes
     assert solution.notes == ()
-    assert folded(found) == 0
+    assert folded(result) == 0
     # a sharp edge bounds the maximum, and Winslow's line halves it exactly on symmetric bodies
-    assert angle(found).max < angle(reference.nodes).max + 0.05
-    assert angle(found).mean < angle(reference.nodes).mean
-    assert np.array_equal(found[0], found[-1])
-    assert np.array_equal(found[:, 0], boundary.south)
-    assert np.array_equal(found[:, -1], boundary.north)
+    assert angle(result).max < angle(reference.nodes).max + 0.05
+    assert angle(result).mean < angle(reference.nodes).mean
+    assert np.array_equal(result[0], result[-1])
+    assert np.array_equal(result[:, 0], boundary.south)
+    assert np.array_equal(result[:, -1], boundary.north)
 
 
 def body(seed: int, ni: int, nj: int) -> Boundary:
@@ -300,12 +300,12 @@ def test_around_a_body_it_does_not_matter_where_nodes_begin() -> None:
 
 def test_behind_a_sharp_edge_the_wake_stays() -> None:
     boundary = naca_section("0012").boundary(Sampling(101, 41, topology="c"))
-    reference, found = tfi(boundary), solve(boundary).grid
-    assert found.topology == "c"
-    assert found.patches == reference.patches
-    assert np.array_equal(found.nodes[:, 0], boundary.south)
-    never_worse(found.nodes, reference.nodes)
-    assert angle(found.nodes).mean < 93
+    reference, result = tfi(boundary), solve(boundary).grid
+    assert result.topology == "c"
+    assert result.patches == reference.patches
+    assert np.array_equal(result.nodes[:, 0], boundary.south)
+    never_worse(result.nodes, reference.nodes)
+    assert angle(result.nodes).mean < 93
 
 
 def test_a_bent_cut_is_straightened() -> None:
@@ -319,10 +319,10 @@ def test_a_bent_cut_is_straightened() -> None:
         np.cos(angle) * x - np.sin(angle) * y,
         np.sin(angle) * x + np.cos(angle) * y,
     )
-    found = solve(boundary, initial=Grid.from_nodes(bent, "o"), tol=1e-6).grid.nodes
-    rays = np.arctan2(found[..., 1], found[..., 0]) - np.arctan2(walls[0][:, 1], walls[0][:, 0])[:, None]
+    result = solve(boundary, initial=Grid.from_nodes(bent, "o"), tol=1e-6).grid.nodes
+    rays = np.arctan2(result[..., 1], result[..., 0]) - np.arctan2(walls[0][:, 1], walls[0][:, 0])[:, None]
     assert np.abs((rays + np.pi) % (2 * np.pi) - np.pi).max() < 1e-4
-    assert np.ptp(np.hypot(found[..., 0], found[..., 1]), axis=0).max() < 1e-4
+    assert np.ptp(np.hypot(result[..., 0], result[..., 1]), axis=0).max() < 1e-4
 
 
 @pytest.mark.parametrize("bad", [{"tol": 0.0}, {"tol": 2.0}, {"max_cycles": 0}])

@@ -18,9 +18,9 @@ def test_places_are_the_inverse_of_positions_also_beyond_hub_and_casing() -> Non
     channel = Channel(blade_row.HUB, blade_row.SHROUD, 0.01, 0.03)
     rng = np.random.default_rng(1)
     s, h = rng.uniform(0.02, 0.98, 200), rng.uniform(0.0, 1.0, 200)
-    found = channel.places(channel.at(s, h))
-    assert found[0] == pytest.approx(s, abs=1e-12)
-    assert found[1] == pytest.approx(h, abs=1e-12)
+    result = channel.places(channel.at(s, h))
+    assert result[0] == pytest.approx(s, abs=1e-12)
+    assert result[1] == pytest.approx(h, abs=1e-12)
     assert channel.places(np.array([[0.0, 1.9]]))[1] < 0.0
     assert channel.places(np.array([[0.0, 3.1]]))[1] > 1.0
 

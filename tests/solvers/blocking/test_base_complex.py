@@ -20,18 +20,18 @@ from meshonet.solvers.refinement.chords import Chords
     ids=["rectangle", "corner", "annulus", "disc"],
 )
 def test_known_blocks(mesh, blocks, chords, irregular):
-    found = base_complex(mesh)
-    assert (len(found.blocks), found.chords) == (blocks, chords)
+    result = base_complex(mesh)
+    assert (len(result.blocks), result.chords) == (blocks, chords)
     assert np.count_nonzero(mesh.irregular & ~mesh.wall_nodes) == irregular
-    assert Chords.of(found.layout).count == chords
+    assert Chords.of(result.layout).count == chords
 
 
 @pytest.mark.parametrize("mesh", [rectangle(), corner(), annulus(), disc()])
 def test_blocks_are_the_quads(mesh):
     """Each quad is a cell of one block, and the same way round."""
-    found = base_complex(mesh)
+    result = base_complex(mesh)
     cells = []
-    for block in found.blocks:
+    for block in result.blocks:
         corners = block[:-1, :-1], block[1:, :-1], block[1:, 1:], block[:-1, 1:]
         cells += np.stack(corners, axis=-1).reshape(-1, 4).tolist()
     assert all(polygon_area(mesh.nodes[cell]) > 0 for cell in cells)

@@ -102,13 +102,13 @@ def test_one_layout_at_many_resolutions() -> None:
 
 def test_another_attempt_where_one_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     seeds = []
-    found = decomposition.seamless_map
+    result = decomposition.seamless_map
 
     def failing(domain, count, seed, fewer):
         seeds.append(seed)
         if seed < 2:
             raise SolverError("no map")
-        return found(domain, count=count, seed=seed, fewer=fewer)
+        return result(domain, count=count, seed=seed, fewer=fewer)
 
     monkeypatch.setattr(decomposition, "seamless_map", failing)
     assert len(decompose(Domain.of_polygons([STEP])).blocks) == 3

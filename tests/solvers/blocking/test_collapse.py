@@ -50,8 +50,8 @@ def test_a_ring_from_wall_to_wall_stays():
 
 
 def test_widths_are_those_of_blocks():
-    found = base_complex(corner(3))
-    np.testing.assert_allclose(widths(found), 1.0)
+    result = base_complex(corner(3))
+    np.testing.assert_allclose(widths(result), 1.0)
 
 
 def test_padding_moves_wrong_counts_inside():
@@ -59,9 +59,9 @@ def test_padding_moves_wrong_counts_inside():
     mesh = lattice_in_a_circle(4)
     assert np.count_nonzero(wrong_count(mesh)) == 4
     assert loops_to_pad(mesh) == [0]
-    found = base_complex(pad(mesh, [0]))
-    assert len(found.blocks) == 5
-    assert found.mesh.valence[found.mesh.irregular].tolist() == [3, 3, 3, 3]
+    result = base_complex(pad(mesh, [0]))
+    assert len(result.blocks) == 5
+    assert result.mesh.valence[result.mesh.irregular].tolist() == [3, 3, 3, 3]
 
 
 def test_padding_keeps_the_mesh_conforming():

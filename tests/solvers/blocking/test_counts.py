@@ -22,12 +22,12 @@ def test_no_other_whole_numbers_are_nearer(seed: int) -> None:
     rows = [({0: 1.0, 1: 1.0, 2: -1.0}, 0.0, 0.0), ({1: 1.0, 3: -1.0}, -1.0, 1.0)]
     if signs.sum() > 0:
         rows.append(({0: 1.0, 3: 1.0}, 4.0, np.inf))
-    found = whole_numbers(wanted, np.ones(4), rows)
+    result = whole_numbers(wanted, np.ones(4), rows)
     best = np.inf
     for tried in product(range(1, 13), repeat=4):
         if all(low <= sum(v * tried[k] for k, v in row.items()) <= high for row, low, high in rows):
             best = min(best, cost(np.array(tried, dtype=float), wanted))
-    assert cost(found.astype(float), wanted) <= best * 1.02 + 1e-9
+    assert cost(result.astype(float), wanted) <= best * 1.02 + 1e-9
 
 
 def test_sums_that_cannot_be_equal_are_an_error() -> None:
@@ -36,6 +36,6 @@ def test_sums_that_cannot_be_equal_are_an_error() -> None:
 
 
 def test_far_numbers_are_reached() -> None:
-    found = whole_numbers(np.array([400.0, 3.0]), np.ones(2), [({0: 1.0, 1: -1.0}, 0.0, 0.0)])
-    assert found[0] == found[1]
-    assert 20 <= found[0] <= 60, "near the geometric mean, 35"
+    result = whole_numbers(np.array([400.0, 3.0]), np.ones(2), [({0: 1.0, 1: -1.0}, 0.0, 0.0)])
+    assert result[0] == result[1]
+    assert 20 <= result[0] <= 60, "near the geometric mean, 35"

@@ -24,7 +24,7 @@ CHANNEL = Domain.of_polygons([BOX, tube(2, 1.5), tube(4, 1.5)], names=[SIDES, "o
 
 def heights(grid: meshonet.Grid) -> dict[str, np.ndarray]:
     """Distances of the nodes next to each patch from its own ones, by its name."""
-    found: dict[str, list[np.ndarray]] = {}
+    results: dict[str, list[np.ndarray]] = {}
     for patch in grid.patches:
         nodes = grid.blocks[patch.block].nodes
         rows = {"south": (0, 1), "north": (-1, -2)}.get(patch.side)
@@ -32,8 +32,8 @@ def heights(grid: meshonet.Grid) -> dict[str, np.ndarray]:
             (nodes[0], nodes[1]) if patch.side == "west" else (nodes[-1], nodes[-2])
         )  # fmt: skip
         part = slice(patch.start, patch.stop + 1)
-        found.setdefault(patch.name, []).append(np.hypot(*(beside - wall)[part].T))
-    return {name: np.concatenate(each) for name, each in found.items()}
+        results.setdefault(patch.name, []).append(np.hypot(*(beside - wall)[part].T))
+    return {name: np.concatenate(each) for name, each in results.items()}
 
 
 @pytest.mark.parametrize(
@@ -48,19 +48,19 @@ def heights(grid: meshonet.Grid) -> dict[str, np.ndarray]:
 def test_each_wall_has_the_first_cells_given_for_it(given: dict[str, float]) -> None:
     grid = meshonet.grid(CHANNEL, first_cell=given, cells=4000)
     assert grid.quality().folded == 0
-    found = heights(grid)
+    result = heights(grid)
     for name, first in given.items():
-        np.testing.assert_allclose(found[name], first, rtol=1e-6)
-    assert min(found["outlet"]) > 2 * max(given.values())  # which has none
+        np.testing.assert_allclose(result[name], first, rtol=1e-6)
+    assert min(result["outlet"]) > 2 * max(given.values())  # which has none
 
 
 def test_without_holes_the_walls_are_the_sides_that_no_name_says_are_none() -> None:
     duct = Domain.of_polygons([BOX], names=[SIDES])
     grid = meshonet.grid(duct, first_cell=1e-3, cells=2000)
-    found = heights(grid)
+    result = heights(grid)
     for name in ("floor", "roof"):
-        np.testing.assert_allclose(found[name], 1e-3, rtol=1e-6)
-    assert min(*found["inlet"], *found["outlet"]) > 1e-2
+        np.testing.assert_allclose(result[name], 1e-3, rtol=1e-6)
+    assert min(*result["inlet"], *result["outlet"]) > 1e-2
     assert {patch.name for patch in grid.walls()} == {"floor", "roof"}
     with pytest.raises(InputError, match="name the walls"):
         meshonet.grid(Domain.of_polygons([BOX]), first_cell=1e-3, cells=2000)
@@ -94,8 +94,8 @@ def test_mirror_images_keep_unlike_first_cells_and_share_like_ones() -> None:
 
 def test_y_plus_of_each_wall_is_converted_with_one_reynolds_number() -> None:
     grid = meshonet.grid(CHANNEL, y_plus={"one": 1, "two": 30}, reynolds=1e5, length=2.0, cells=4000)
-    found = heights(grid)
-    np.testing.assert_allclose(found["two"].mean() / found["one"].mean(), 30, rtol=1e-6)
+    result = heights(grid)
+    np.testing.assert_allclose(result["two"].mean() / result["one"].mean(), 30, rtol=1e-6)
 
 
 def test_a_name_that_no_wall_has_is_refused_with_the_names_there_are() -> None:

@@ -39,11 +39,11 @@ SYMMETRIC = {
 
 @pytest.mark.parametrize("name", SYMMETRIC)
 def test_blocks_do_not_hang_on_the_last_digits_of_coordinates(name):
-    found = set()
+    results = set()
     for seed in range(3):
         rng = np.random.default_rng(seed)
         size = 1e-13 if seed else 0.0
         rings = [ring * (1.0 + size * rng.uniform(-1, 1, ring.shape)) for ring in SYMMETRIC[name]]
         layout = block_grid(Domain(tuple(map(loop, rings))), cells=1500)[1]
-        found.add((len(layout.blocks), irregular_inside(layout.mesh), layout.mesh.quads.tobytes()))
-    assert len(found) == 1
+        results.add((len(layout.blocks), irregular_inside(layout.mesh), layout.mesh.quads.tobytes()))
+    assert len(results) == 1

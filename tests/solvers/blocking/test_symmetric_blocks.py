@@ -19,8 +19,8 @@ from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
 @pytest.mark.parametrize("name", SYMMETRIC)
 def test_grids_of_symmetric_domains_are_symmetric(name):
     domain, (_, _, angles) = symmetric_domain(name), SYMMETRIC[name]
-    found = [np.degrees(np.arctan2(*mirror.along[::-1])) % 180 for mirror in mirrors_of(domain)]
-    np.testing.assert_allclose(found, angles, atol=1e-6)
+    results = [np.degrees(np.arctan2(*mirror.along[::-1])) % 180 for mirror in mirrors_of(domain)]
+    np.testing.assert_allclose(results, angles, atol=1e-6)
     layout = decompose(domain)
     grids = [layout, fine_layout(layout, cells=1200), fine_layout(layout, cells=9000)]
     for each in grids:

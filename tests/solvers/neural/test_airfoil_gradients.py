@@ -35,8 +35,8 @@ def test_torch_equals_numpy(
     boundary = airfoil(designation, ni, nj, spacing=spacing)
     expected = infer(boundary, model, polish or "off")
     assert expected.method == ("conformal" if model == "base" else "operator")
-    found = AirfoilGrids(model, polish)(*walls(boundary), nj)[0].numpy()
-    np.testing.assert_allclose(found, expected.grid.nodes, rtol=0, atol=1e-12 * np.abs(boundary.north).max())
+    result = AirfoilGrids(model, polish)(*walls(boundary), nj)[0].numpy()
+    np.testing.assert_allclose(result, expected.grid.nodes, rtol=0, atol=1e-12 * np.abs(boundary.north).max())
 
 
 def test_a_mirrored_and_a_symmetric_body_are_those_of_numpy_in_one_batch() -> None:
@@ -44,10 +44,10 @@ def test_a_mirrored_and_a_symmetric_body_are_those_of_numpy_in_one_batch() -> No
     south, north = walls(one, other)
     turned = [edge.flip(1) * torch.tensor([1.0, -1.0]) for edge in (south, north)]
     grids = AirfoilGrids("airfoil-o", 1)
-    found = grids(*(torch.cat(pair) for pair in zip((south, north), turned, strict=True)), 40)
-    mirrored = found[2:].flip(1) * torch.tensor([1.0, -1.0])
-    np.testing.assert_allclose(mirrored, found[:2], rtol=0, atol=2e-11)
-    np.testing.assert_allclose(found[0], infer(one, "airfoil-o", 1).grid.nodes, rtol=0, atol=2e-11)
+    result = grids(*(torch.cat(pair) for pair in zip((south, north), turned, strict=True)), 40)
+    mirrored = result[2:].flip(1) * torch.tensor([1.0, -1.0])
+    np.testing.assert_allclose(mirrored, result[:2], rtol=0, atol=2e-11)
+    np.testing.assert_allclose(result[0], infer(one, "airfoil-o", 1).grid.nodes, rtol=0, atol=2e-11)
 
 
 @pytest.mark.parametrize("designation", ["2412", "4412-sharp"])
@@ -60,18 +60,18 @@ def test_a_section_far_from_the_origin_has_the_grid_of_the_same_one_near_it(desi
     south, north = south - away, north - away  # rounded alike
     cut = straight(south[0], north[0], 30)
     here = infer(Boundary(south, north, cut, cut, topology="o"), "airfoil-o", 1).grid.nodes
-    for found in (
+    for result in (
         infer(there, "airfoil-o", 1).grid.nodes,
         AirfoilGrids(polish=1)(*walls(there), 30)[0].numpy(),
     ):
-        np.testing.assert_allclose(found - away, here, rtol=0, atol=1e-11)
+        np.testing.assert_allclose(result - away, here, rtol=0, atol=1e-11)
 
 
 def test_walls_are_the_given_ones() -> None:
     south, north = walls(airfoil("2412", 81, 20))
-    found = AirfoilGrids("base", 1)(south, north, 20)
-    assert torch.equal(found[:, :, 0], south)
-    assert torch.equal(found[:, :, -1], north)
+    result = AirfoilGrids("base", 1)(south, north, 20)
+    assert torch.equal(result[:, :, 0], south)
+    assert torch.equal(result[:, :, -1], north)
 
 
 @pytest.mark.parametrize("designation", ["2412", "4412-sharp"])

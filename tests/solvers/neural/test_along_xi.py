@@ -59,9 +59,9 @@ def test_the_laplace_layer_integrates_linear_systems_from_rest() -> None:
         return 0.4 + np.cos(omega * t) - 0.5 * np.sin(3 * omega * t)
 
     poles = np.array([[[np.log(decay), turn]]])
-    found = respond(np, poles, np.array([[[[residue.real, residue.imag]]]]), signal(xi)[None, :, None])
+    result = respond(np, poles, np.array([[[[residue.real, residue.imag]]]]), signal(xi)[None, :, None])
     exact = solve_ivp(lambda t, y: mu * y + signal(t), (0, 1), [0j], "DOP853", xi, rtol=1e-11, atol=1e-12)
-    np.testing.assert_allclose(found[0, :, 0], (residue * exact.y[0]).real, atol=1e-8)
+    np.testing.assert_allclose(result[0, :, 0], (residue * exact.y[0]).real, atol=1e-8)
 
 
 def test_the_koopman_operator_learns_to_reconstruct_its_inputs() -> None:

@@ -31,8 +31,8 @@ def test_every_node_equals_the_direct_sum_through_the_maps(designation: str, ni:
     T = (far.mean() - wall.mean()).real
     F += np.fft.ifft(rest[:, None] * np.exp(-np.outer(k, eta) * T), axis=0)
     z = lift.to_plane(F + 1j * theta[:, None])
-    found, inner = out[:-1, :, 0] - 1j * out[:-1, :, 1], slice(1, -1)
-    np.testing.assert_allclose(found[:, inner], z[:, inner], rtol=1e-11, atol=1e-11)
+    result, inner = out[:-1, :, 0] - 1j * out[:-1, :, 1], slice(1, -1)
+    np.testing.assert_allclose(result[:, inner], z[:, inner], rtol=1e-11, atol=1e-11)
     np.testing.assert_array_equal(out[-1, inner], out[0, inner])
     np.testing.assert_allclose(grid.at((3, n - 1), 1), (F[:, 1] + 1j * theta)[[3, n - 1]], atol=1e-12)
 
@@ -51,14 +51,14 @@ def test_columns_are_the_sums_of_the_modes_over_the_window_s_transform(count: in
     rng = np.random.default_rng(3)
     values = rng.standard_normal((2, count, 2 * highest + 1))
     modes_ = values[0] + 1j * values[1]
-    found = columns(modes_)
+    result = columns(modes_)
     k = np.concatenate([np.arange(highest + 1), np.arange(-highest, 0)])
-    steps = len(found)
+    steps = len(result)
     assert steps >= 4 * highest + 4
     x = np.linspace(-1, 1, 20001)
     window = np.exp(SHARPNESS * (np.sqrt(np.maximum(1 - x * x, 0)) - 1))
     gain = np.trapezoid(np.cos(np.pi * TAPS / steps * np.abs(k)[:, None] * x) * window, x) * TAPS / 2
     sums = np.exp(2j * np.pi / steps * np.outer(np.arange(steps), k)) @ (modes_ / gain).T
-    got = found[:, 0, :count] + 1j * found[:, 1, :count]
+    got = result[:, 0, :count] + 1j * result[:, 1, :count]
     np.testing.assert_allclose(got, sums, atol=1e-9 * np.abs(sums).max())
-    assert not found[:, :, count:].any()
+    assert not result[:, :, count:].any()

@@ -38,13 +38,13 @@ ALONE = Team(torch.device("cpu"))
 
 def fit(output: Path, plan: Plan = SMALL, samples: Samples | None = None, **rest: object) -> list[Progress]:
     samples = samples or arches()
-    told: list[Progress] = []
+    reports: list[Progress] = []
     kind = str(rest.pop("kind", "meshonet"))
     own = settings_of(architecture(kind, samples.topology))
     sizes = SMALLER.get(kind) or {name: size for name, size in SIZES.items() if name in own}
-    given = {"recipe": {}, "report": told.append, "settings": sizes, **rest}
+    given = {"recipe": {}, "report": reports.append, "settings": sizes, **rest}
     train(kind, samples, output, plan, ALONE, **given)  # type: ignore[arg-type]
-    return told
+    return reports
 
 
 def read(path: Path) -> PaperOperator:
@@ -53,17 +53,17 @@ def read(path: Path) -> PaperOperator:
     return operator
 
 
-def losses(told: list[Progress]) -> list[float]:
-    return [one.loss for one in told]
+def losses(message: list[Progress]) -> list[float]:
+    return [one.loss for one in message]
 
 
 @pytest.mark.parametrize("kind", [kind for kind in ARCHITECTURES if not architecture(kind, "quad").physics])
 @pytest.mark.parametrize("samples", [arches(), rings()], ids=["quad", "o"])
 def test_the_loss_falls(tmp_path: Path, kind: str, samples: Samples) -> None:
-    told = fit(tmp_path / "m.safetensors", replace(SMALL, epochs=60), samples, kind=kind)
-    assert told[-1].loss < 0.6 * told[0].loss
-    assert told[-1].loss == pytest.approx(sum(told[-1].parts.values()))
-    assert told[-1].seen == 60 * len(samples.where("train"))
+    report = fit(tmp_path / "m.safetensors", replace(SMALL, epochs=60), samples, kind=kind)
+    assert report[-1].loss < 0.6 * report[0].loss
+    assert report[-1].loss == pytest.approx(sum(report[-1].parts.values()))
+    assert report[-1].seen == 60 * len(samples.where("train"))
 
 
 @pytest.mark.parametrize("samples", [arches(), rings()], ids=["quad", "o"])
@@ -74,8 +74,8 @@ def test_coefficients_of_modes_are_learnt(tmp_path: Path, samples: Samples) -> N
     plan = replace(SMALL, epochs=120)
     figures = train("meshonet-hard", samples, path, plan, ALONE, settings=settings, recipe={})
     assert figures["test"]["boundary"] <= 1e-12
-    found = read(path).model
-    assert (found, found.native) == (model, True)
+    result = read(path).model
+    assert (result, result.native) == (model, True)
     bare = np.array([extend(edges) for edges in samples.boundaries()])
     base = np.linalg.norm(bare - samples.nodes) / np.linalg.norm(samples.nodes)
     assert figures["test"]["median"] < 0.5 * base
@@ -100,8 +100,8 @@ def test_the_same_seed_gives_the_same_losses_and_another_does_not(tmp_path: Path
 
 
 def stop_at(epoch: int) -> object:
-    def report(told: Progress) -> None:
-        if told.epoch == epoch:
+    def report(message: Progress) -> None:
+        if message.epoch == epoch:
             raise KeyboardInterrupt
 
     return report
@@ -115,7 +115,7 @@ def test_a_run_that_was_cut_off_goes_on_as_if_it_had_not_been(tmp_path: Path) ->
         fit(cut, plan, report=stop_at(6))
     assert not cut.exists()
     resumed = fit(cut, plan, resume=True)
-    assert [told.epoch for told in resumed] == [4, 6, 8], "from the checkpoint of epoch 3"
+    assert [report.epoch for report in resumed] == [4, 6, 8], "from the checkpoint of epoch 3"
     assert losses(resumed) == losses(whole)[1:], "the sums of the report that was cut are in the checkpoint"
     first, second = (read(tmp_path / f"{name}.safetensors").weights for name in ("whole", "cut"))
     assert all(np.array_equal(first[key], second[key]) for key in first)
@@ -214,10 +214,10 @@ def test_too_little_memory_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 def test_it_stops_when_the_held_out_loss_no_longer_falls(tmp_path: Path) -> None:
     plan = replace(SMALL, epochs=400, rate=0.5, patience=5)
-    told = fit(tmp_path / "m.safetensors", plan, held_out=1)
-    assert told[-1].epoch < 400
-    best = min(told, key=lambda one: one.held_out["loss"])
-    assert told[-1].epoch == best.epoch + 5
+    report = fit(tmp_path / "m.safetensors", plan, held_out=1)
+    assert report[-1].epoch < 400
+    best = min(report, key=lambda one: one.held_out["loss"])
+    assert report[-1].epoch == best.epoch + 5
     assert read(tmp_path / "m.safetensors").header["figures"]["epoch"] == best.epoch
     with pytest.raises(InputError, match="patience: stopping early needs shapes held out; use held_out"):
         fit(tmp_path / "n.safetensors", plan)

@@ -45,8 +45,8 @@ def fit(strips: Strips, output: Path, plan: Plan = SMALL, **rest: object) -> lis
 
 def test_strips_solve_winslows_equations(strips: Strips) -> None:
     for m in range(3):
-        found = harmonic(strips.wall[m], strips.far[m], across().eta) + strips.residual[m]
-        assert picard(found, 1)[1][0] < 1e-4, "a solution is where another step changes nothing"
+        result = harmonic(strips.wall[m], strips.far[m], across().eta) + strips.residual[m]
+        assert picard(result, 1)[1][0] < 1e-4, "a solution is where another step changes nothing"
         assert np.abs(strips.residual[m]).max() > 1e-5
         np.testing.assert_array_equal(strips.residual[m][:, [0, -1]], 0)
 
@@ -64,8 +64,8 @@ def test_the_file_answers_as_the_network_did(strips: Strips, tmp_path: Path) -> 
     model, test = load(output), strips[-4:]
     assert isinstance(model, StripOperator)
     answers = model.residual(test.wall, test.far)
-    found = [distance(answer, goal) for answer, goal in zip(answers, test.residual, strict=True)]
-    assert np.median(found) == pytest.approx(figures["network"]["median"], rel=0.02)
+    results = [distance(answer, goal) for answer, goal in zip(answers, test.residual, strict=True)]
+    assert np.median(results) == pytest.approx(figures["network"]["median"], rel=0.02)
 
 
 def test_the_same_seed_gives_the_same_weights_and_another_does_not(strips: Strips, tmp_path: Path) -> None:
@@ -92,9 +92,9 @@ def test_a_run_that_was_cut_off_goes_on_as_if_it_had_not_been(strips: Strips, tm
     resumed = fit(strips, cut, resume=True)
     assert [report.epoch for report in resumed] == [3]
     assert resumed[0].loss == expected[2].loss
-    wanted, found = read_tensors(whole)[1], read_tensors(cut)[1]
+    wanted, result = read_tensors(whole)[1], read_tensors(cut)[1]
     for key in wanted:
-        np.testing.assert_array_equal(found[key], wanted[key])
+        np.testing.assert_array_equal(result[key], wanted[key])
 
 
 def test_a_checkpoint_of_other_settings_is_refused(strips: Strips, tmp_path: Path) -> None:
@@ -128,8 +128,8 @@ def test_boundaries_that_cannot_be_lifted_are_left_out_and_others_refused() -> N
     good: Boundary = naca("2412").boundary(Sampling(ni=97, nj=3))
     tiny = naca("0012").boundary(Sampling(ni=8, nj=3))
     counts: list[tuple[int, int]] = []
-    found = solve_strips([good, tiny], lambda done, left_out: counts.append((done, left_out)))
-    assert len(found) == 1
+    result = solve_strips([good, tiny], lambda done, left_out: counts.append((done, left_out)))
+    assert len(result) == 1
     assert counts[-1] == (1, 1)
     with pytest.raises(InputError, match="no boundary could be lifted"):
         solve_strips([tiny])

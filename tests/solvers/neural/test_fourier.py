@@ -26,11 +26,11 @@ def test_a_fourier_layer_mixes_the_lowest_modes(ni: int, nj: int, modes: int) ->
     rng = np.random.default_rng(0)
     model = FNO2D(width=3, modes=modes)
     h, weight = rng.standard_normal((2, ni, nj, 3)), rng.standard_normal((2 * modes, modes, 3, 3, 2))
-    found = model._mixed(np, weight, h)
-    assert found.dtype == np.float64
-    assert found == pytest.approx(masked(h, weight, model), abs=1e-12)
+    result = model._mixed(np, weight, h)
+    assert result.dtype == np.float64
+    assert result == pytest.approx(masked(h, weight, model), abs=1e-12)
     by_torch = model._mixed(torch, torch.from_numpy(weight), torch.from_numpy(h))
-    assert by_torch.numpy() == pytest.approx(found, abs=1e-12)
+    assert by_torch.numpy() == pytest.approx(result, abs=1e-12)
     single = model._mixed(torch, torch.from_numpy(weight).float(), torch.from_numpy(h).float())
     assert single.dtype == torch.float32
 

@@ -17,8 +17,8 @@ def test_numpy_equals_torch_to_round_off() -> None:
     with torch.no_grad():
         wanted = net(torch.tensor(channels), torch.tensor(scalars)).numpy()
     weights = {name: value.numpy() for name, value in net.state_dict().items()}
-    found = StripNetwork(weights)(channels, scalars)
-    assert np.abs(found - wanted).max() <= 1e-12 * np.abs(wanted).max()
+    result = StripNetwork(weights)(channels, scalars)
+    assert np.abs(result - wanted).max() <= 1e-12 * np.abs(wanted).max()
 
 
 def test_the_network_commutes_with_shifts_of_theta() -> None:

@@ -50,10 +50,10 @@ def test_any_resolution_is_valid(ni: int, nj: int) -> None:
 def test_it_agrees_with_the_elliptic_solver_for_every_spacing(spacing: str) -> None:
     edges = boundary("4412", 160, 160, spacing=spacing)
     reference = solve(edges, tol=1e-8).grid.nodes
-    found = infer(edges).grid.nodes
+    result = infer(edges).grid.nodes
     near = np.hypot(reference[..., 0] - 0.5, reference[..., 1]) < 1.5
     size = np.hypot(reference[..., 0] - 0.5, reference[..., 1])
-    miss = np.hypot(*np.moveaxis(found - reference, -1, 0))
+    miss = np.hypot(*np.moveaxis(result - reference, -1, 0))
     # either is off the converged solution, by 1.4e-3 at most (even spacing leaves the nose to few nodes)
     assert np.sqrt((miss[near] ** 2).sum() / (size[near] ** 2).sum()) < 2.5e-3
 
@@ -77,9 +77,9 @@ def test_translation_rotation_and_scale_carry_over(designation: str) -> None:
         return 250.0 * nodes @ turn + np.array([3000.0, -700.0])
 
     sides = {side: moved(getattr(edges, side)) for side in ("south", "north", "west", "east")}
-    found = infer(replace(edges, **sides, wall=None)).grid.nodes
+    result = infer(replace(edges, **sides, wall=None)).grid.nodes
     wanted = moved(infer(edges).grid.nodes)
-    assert np.abs(found - wanted).max() < 1e-12 * np.abs(wanted).max()
+    assert np.abs(result - wanted).max() < 1e-12 * np.abs(wanted).max()
 
 
 @pytest.mark.parametrize("designation", ["4412-sharp", "2412", "0012", "0012-sharp"])
@@ -197,11 +197,11 @@ def test_grids_stay_what_they_were(designation: str, i: int, j: int, x: float, y
 
 def test_polished_to_the_end_the_network_is_left_out_unless_it_is_named() -> None:
     edges = boundary("4412", 161, 60, spacing="cosine")
-    found, named = infer(edges), infer(edges, model="airfoil-o")
-    assert (found.method, found.model) == ("conformal", None)
+    result, named = infer(edges), infer(edges, model="airfoil-o")
+    assert (result.method, result.model) == ("conformal", None)
     assert (named.method, named.model, infer(edges, polish=1).model) == ("operator", "airfoil-o", "airfoil-o")
     near = slice(0, 40)
-    away = np.abs(found.grid.nodes - named.grid.nodes)[:, near].max()
+    away = np.abs(result.grid.nodes - named.grid.nodes)[:, near].max()
     assert 0.0 < away < 1e-3, "both are Winslow's solution"
 
 

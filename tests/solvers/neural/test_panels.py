@@ -19,8 +19,8 @@ def test_a_line_singular_at_the_wall_is_carried_to_round_off(levels: int, spread
     for (start, stop), own in zip(pairwise(ends), points.reshape(-1, NODES), strict=True):
         psi, grid = own * height - spread, eta[start:stop] * height - spread
         line = np.exp(psi) + psi**0.3 + 0.1 / psi  # a power and a pole at the wall's outermost point
-        found = line @ matrix[:, start - ends[0] : stop - ends[0]]
-        np.testing.assert_allclose(found, np.exp(grid) + grid**0.3 + 0.1 / grid, rtol=2e-11)
+        result = line @ matrix[:, start - ends[0] : stop - ends[0]]
+        np.testing.assert_allclose(result, np.exp(grid) + grid**0.3 + 0.1 / grid, rtol=2e-11)
 
 
 @pytest.mark.parametrize("levels", [4, 30, 100])

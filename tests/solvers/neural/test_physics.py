@@ -68,10 +68,10 @@ def test_differences_converge_to_exact_derivatives_at_second_order() -> None:
 def fit(
     samples: Samples, output: Path, kind: str = "mgnet", plan: Plan = PLAN, **settings: object
 ) -> list[Progress]:
-    told: list[Progress] = []
+    reports: list[Progress] = []
     settings = {**SMALL, **settings}
-    train(kind, samples, output, plan, ALONE, settings=settings, recipe={}, report=told.append)
-    return told
+    train(kind, samples, output, plan, ALONE, settings=settings, recipe={}, report=reports.append)
+    return reports
 
 
 @pytest.mark.parametrize(
@@ -79,9 +79,9 @@ def fit(
     [("mgnet", {}), ("mgnet", {"finite": 0.02}), ("mgnet", {"lines": 2}), ("meshnet", {"coarse": 3})],
 )
 def test_the_loss_falls(tmp_path: Path, kind: str, settings: dict[str, object]) -> None:
-    told = fit(arches(1), tmp_path / "m.safetensors", kind, **settings)
-    assert told[-1].loss < 0.3 * told[0].loss
-    assert (told[-1].parts["data"] > 0) == bool(settings.get("lines") or settings.get("coarse"))
+    report = fit(arches(1), tmp_path / "m.safetensors", kind, **settings)
+    assert report[-1].loss < 0.3 * report[0].loss
+    assert (report[-1].parts["data"] > 0) == bool(settings.get("lines") or settings.get("coarse"))
 
 
 def test_it_answers_the_geometries_it_knows_and_no_other(tmp_path: Path) -> None:
@@ -90,8 +90,8 @@ def test_it_answers_the_geometries_it_knows_and_no_other(tmp_path: Path) -> None
     trained = load(output)
     assert isinstance(trained, PaperOperator)
     for edges, nodes in zip(rings(2).boundaries(), rings(2).nodes, strict=True):
-        found, _ = trained.nodes(edges)
-        assert found.shape == nodes.shape
+        result, _ = trained.nodes(edges)
+        assert result.shape == nodes.shape
     with pytest.raises(
         InputError, match=r"knows 2 geometries, and this one is off the nearest by .*train it on"
     ):

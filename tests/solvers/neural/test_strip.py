@@ -53,9 +53,9 @@ def test_harmonic_extension_of_one_mode_is_its_hyperbolic_sine() -> None:
     T, k, eta = 3.0, 4, np.linspace(0, 1, 11)
     wall, far = np.zeros(2 * MODES + 1, complex), np.zeros(2 * MODES + 1, complex)
     wall[k], far[0] = 0.2, T
-    found = harmonic(wall, far, eta)
-    np.testing.assert_allclose(found[k], 0.2 * np.sinh(k * T * (1 - eta)) / np.sinh(k * T), atol=1e-14)
-    np.testing.assert_allclose(found[0], T * eta, atol=1e-14)
+    result = harmonic(wall, far, eta)
+    np.testing.assert_allclose(result[k], 0.2 * np.sinh(k * T * (1 - eta)) / np.sinh(k * T), atol=1e-14)
+    np.testing.assert_allclose(result[0], T * eta, atol=1e-14)
 
 
 def sheared_solution(T: float, shear: float, size: float, eta: np.ndarray) -> np.ndarray:
@@ -73,14 +73,14 @@ def test_picard_converges_to_the_sheared_conformal_solution(shear: float, size: 
     eta = across().eta
     exact = sheared_solution(3.5, shear, size, eta)
     start = harmonic(modes(exact[:, 0]), modes(exact[:, -1]), eta)
-    found, changes = picard(start, 25)
-    np.testing.assert_allclose(to_columns(found.T).T, exact, atol=2e-7)
+    result, changes = picard(start, 25)
+    np.testing.assert_allclose(to_columns(result.T).T, exact, atol=2e-7)
     if shear:
         assert np.abs(to_columns(start.T).T - exact).max() > 1e-3, (
             "the harmonic start must differ to prove anything"
         )
     assert changes[-1] < 1e-7
-    np.testing.assert_array_equal(found[:, [0, -1]], start[:, [0, -1]])
+    np.testing.assert_array_equal(result[:, [0, -1]], start[:, [0, -1]])
 
 
 def test_a_step_that_is_not_finite_is_an_infinite_change_and_the_last() -> None:

@@ -13,7 +13,7 @@ def sides(*counts: int, dtype: torch.dtype = torch.float64) -> list[torch.Tensor
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "message"),
     [
         (sides(9, 9, 5, 4), "west has 5 nodes and east 4; opposite sides need equal counts"),
         (sides(9, 9, 5, 1), r"east has shape \(1, 1, 2\); give \(..., n, 2\) with n at least 2"),
@@ -22,13 +22,13 @@ def sides(*counts: int, dtype: torch.dtype = torch.float64) -> list[torch.Tensor
         ([torch.cat(2 * sides(9)), torch.cat(3 * sides(9)), *sides(5, 5)], "of different batches"),
     ],
 )
-def test_four_sides_are_looked_at(given: list[torch.Tensor], told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_four_sides_are_looked_at(given: list[torch.Tensor], message: str) -> None:
+    with pytest.raises(InputError, match=message):
         QuadGrids()(*given)
 
 
 @pytest.mark.parametrize(
-    ("given", "nj", "told"),
+    ("given", "nj", "message"),
     [
         (sides(9, 8), 5, "south has 9 nodes and north 8; opposite"),
         (sides(3, 3), 5, "with n at least 4"),
@@ -36,8 +36,8 @@ def test_four_sides_are_looked_at(given: list[torch.Tensor], told: str) -> None:
         (sides(9, 9), 1, "nj is 1 nodes; use at least 2"),
     ],
 )
-def test_bodies_are_looked_at(given: list[torch.Tensor], nj: int, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_bodies_are_looked_at(given: list[torch.Tensor], nj: int, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         AirfoilGrids("base")(*given, nj)
 
 

@@ -54,14 +54,14 @@ def test_numpy_and_torch_agree(kind: str, settings: dict[str, int], topology: st
     where, index = square(samples.ni, samples.nj), np.arange(samples.ni * samples.nj)
     answer, seen = trained.model.answer, trained.model.seen
     single = {k: v.astype(np.float32) for k, v in inputs.items()}
-    found = answer(np, trained.weights, single, seen(np, where.astype("f4")), index)
+    result = answer(np, trained.weights, single, seen(np, where.astype("f4")), index)
     tensors = (
         {k: torch.tensor(v, dtype=torch.float32) for k, v in a.items()} for a in (trained.weights, inputs)
     )
     places = seen(torch, torch.tensor(where, dtype=torch.float32))
     goal = answer(torch, *tensors, places, torch.tensor(index))
-    assert found.shape == (len(samples), samples.ni * samples.nj, 2)
-    np.testing.assert_allclose(found, goal.numpy(), atol=2e-5 * float(goal.abs().max()))
+    assert result.shape == (len(samples), samples.ni * samples.nj, 2)
+    np.testing.assert_allclose(result, goal.numpy(), atol=2e-5 * float(goal.abs().max()))
 
 
 def test_the_paper_counts_as_many_parameters() -> None:
@@ -133,8 +133,8 @@ def test_native_models_answer_finer_boundaries_on_the_nodes_they_know(kind: str,
     settings |= {"levels": 2} if kind == "wno" else {}
     trained = random(kind, coarse, **settings)
     for one, other in zip(coarse.boundaries(), fine.boundaries(), strict=True):
-        found, finer = trained.difference(one), trained.difference(other)
-        np.testing.assert_allclose(finer[::2, ::2], found, atol=2e-5 * np.abs(found).max())
+        result, finer = trained.difference(one), trained.difference(other)
+        np.testing.assert_allclose(finer[::2, ::2], result, atol=2e-5 * np.abs(result).max())
 
 
 def test_beyond_the_training_shapes_the_difference_is_that_of_the_last_one() -> None:
@@ -212,7 +212,7 @@ def test_another_topology_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
         ({"kind": "meshonet strip"}, "it holds 'meshonet strip'"),
         ({"version": 9}, "version 9"),
@@ -226,7 +226,7 @@ def test_another_topology_is_refused() -> None:
         ({"settings": 5}, "do not fit"),
     ],
 )
-def test_foreign_headers_are_refused(tmp_path: Path, change: dict[str, object], told: str) -> None:
+def test_foreign_headers_are_refused(tmp_path: Path, change: dict[str, object], message: str) -> None:
     path, trained = tmp_path / "m.safetensors", random("meshonet", FAMILIES["quad"])
     write(path, trained, trained.weights)
     from safetensors import safe_open
@@ -234,6 +234,6 @@ def test_foreign_headers_are_refused(tmp_path: Path, change: dict[str, object], 
     with safe_open(path, framework="numpy") as file:
         header = json.loads(file.metadata()[HEADER])
     save_file(load_file(path), path, metadata={HEADER: json.dumps(header | change)})
-    with pytest.raises(InputError, match=told) as caught:
+    with pytest.raises(InputError, match=message) as caught:
         load(path)
     assert str(path) in str(caught.value)

@@ -37,14 +37,14 @@ def test_the_residual_is_winslows_of_the_networks_map() -> None:
     def place(p: torch.Tensor) -> torch.Tensor:
         return dense(torch, net, "net", p[None, None])[0, 0]
 
-    for point, found in zip(points, residual(net, points, 1e-3), strict=True):
+    for point, result in zip(points, residual(net, points, 1e-3), strict=True):
         first = torch.autograd.functional.jacobian(place, point)
         second = torch.stack(
             [torch.autograd.functional.hessian(lambda p, c=c: place(p)[c], point) for c in range(3)]
         )
         metric = first.T @ first
         exact = torch.einsum("ij,cij->c", torch.linalg.inv(metric) * torch.det(metric), second)
-        torch.testing.assert_close(found, exact, rtol=1e-4, atol=1e-7)
+        torch.testing.assert_close(result, exact, rtol=1e-4, atol=1e-7)
 
 
 def test_conflicting_gradients_are_projected_and_others_added() -> None:
@@ -67,8 +67,8 @@ def test_gradients_are_those_of_the_two_parts(projected: bool) -> None:
         for part in parts[:2]
     ]
     exact = project(*flat) if projected else flat[0] + flat[1]
-    found = torch.cat([value.grad.reshape(-1) for value in weights])  # type: ignore[union-attr]
-    torch.testing.assert_close(found, exact, rtol=1e-3, atol=1e-6)
+    result = torch.cat([value.grad.reshape(-1) for value in weights])  # type: ignore[union-attr]
+    torch.testing.assert_close(result, exact, rtol=1e-3, atol=1e-6)
     assert one.spread.grad is not None
 
 
@@ -76,11 +76,11 @@ def test_a_volume_is_learnt_and_answered_at_any_resolution(tmp_path: Path) -> No
     faces = SixFaces.of_block(box())
     source, path = tmp_path / "box.vts", tmp_path / "box.safetensors"
     faces.grid(box()).write(source)
-    told = meshonet.train(
+    report = meshonet.train(
         source, path, model="meshnet", epochs=150, points=120, rate=0.01, schedule="cosine",
         settings={"width": 16, "depth": 2},
     )  # fmt: skip
-    assert told["figures"]["train"]["median"] < 0.15
+    assert report["figures"]["train"]["median"] < 0.15
     network = load_volume(str(path))
     raw, pasted = (infer_volume(faces, model=str(path), answer=answer) for answer in ("raw", "pasted"))
     assert np.array_equal(raw.grid.blocks[0].nodes, network.nodes(faces))
@@ -112,7 +112,7 @@ def test_numpy_and_torch_agree() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "message"),
     [
         ({"settings": {"finite": 0.9}}, "finite=0.9; use a step between 0 and 0.5"),
         ({"held_out": 1}, "a network for one volume holds none out"),
@@ -121,8 +121,8 @@ def test_numpy_and_torch_agree() -> None:
         ({"settings": {"colour": 1}}, "meshnet has no setting 'colour'"),
     ],
 )
-def test_what_volumes_cannot_do_is_refused(tmp_path: Path, changes: dict, told: str) -> None:
+def test_what_volumes_cannot_do_is_refused(tmp_path: Path, changes: dict, message: str) -> None:
     source = tmp_path / "box.vts"
     SixFaces.of_block(box()).grid(box()).write(source)
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         meshonet.train(source, tmp_path / "m.safetensors", model="meshnet", epochs=1, **changes)

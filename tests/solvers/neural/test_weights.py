@@ -44,7 +44,7 @@ def test_a_copy_is_the_same_model(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         (b"", "not a safetensors file"),
         (b"\xff" * 100, "not a safetensors file"),
@@ -52,16 +52,16 @@ def test_a_copy_is_the_same_model(tmp_path: Path) -> None:
         ((2**60).to_bytes(8, "little") + b"{}", "not a safetensors file"),
     ],
 )
-def test_other_files_are_refused(tmp_path: Path, content: bytes, told: str) -> None:
+def test_other_files_are_refused(tmp_path: Path, content: bytes, message: str) -> None:
     path = tmp_path / "model.safetensors"
     path.write_bytes(content)
-    with pytest.raises(InputError, match=told) as caught:
+    with pytest.raises(InputError, match=message) as caught:
         load(str(path))
     assert str(path) in str(caught.value)
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "message"),
     [
         ({"kind": "something else"}, "it holds 'something else'"),
         ({"encoding": 999}, "encoding 999"),
@@ -71,9 +71,9 @@ def test_other_files_are_refused(tmp_path: Path, content: bytes, told: str) -> N
         ({"encoding": 1e400}, "encoding inf"),
     ],
 )
-def test_foreign_headers_are_refused(tmp_path: Path, changes: dict[str, object], told: str) -> None:
+def test_foreign_headers_are_refused(tmp_path: Path, changes: dict[str, object], message: str) -> None:
     save_file(tensors(), tmp_path / "m.safetensors", metadata=header(**changes))
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         load(str(tmp_path / "m.safetensors"))
 
 

@@ -96,8 +96,8 @@ def test_extrapolated_steps_get_nearer_than_as_many_plain_ones() -> None:
 def test_steps_can_go_on_from_where_they_ended(around: bool) -> None:
     z = wild(around)
     half, _ = approach(z, np, around, steps=2)
-    found = approach(half, np, around, steps=1, harmonic=False)
-    for one, other in zip(found, approach(z, np, around, steps=3), strict=True):
+    result = approach(half, np, around, steps=1, harmonic=False)
+    for one, other in zip(result, approach(z, np, around, steps=3), strict=True):
         np.testing.assert_allclose(one, other, rtol=0, atol=1e-14)
 
 

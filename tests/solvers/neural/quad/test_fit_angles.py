@@ -36,7 +36,7 @@ def test_skew_beyond_the_goals_counts_and_skew_below_it_does_not() -> None:
 
 
 def test_a_fold_counts_more_the_deeper_it_is_and_unfolding_is_downhill() -> None:
-    found = []
+    results = []
     for depth in (0.01, 0.05, 0.09):
         z = sheared(5, 0.0)
         z[0, 2, 2] += (0.125 + depth) * (1 + 1j)  # beyond the diagonal of the next cell
@@ -44,8 +44,8 @@ def test_a_fold_counts_more_the_deeper_it_is_and_unfolding_is_downhill() -> None
         folds = excess(z, sheared(5, 0.0))[2].sum()
         (slope,) = torch.autograd.grad(folds, z)
         assert (slope[0, 2, 2].conj() * (1 + 1j)).real > 0
-        found.append(folds.item())
-    assert 0.0 < found[0] < found[1] < found[2]
+        results.append(folds.item())
+    assert 0.0 < results[0] < results[1] < results[2]
 
 
 def test_edges_without_length_have_finite_derivatives() -> None:

@@ -121,13 +121,13 @@ def test_parts_of_the_loss_are_weighed(given: Quads, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("weights", "told"),
+    ("weights", "message"),
     [({"fold": 1.0}, "has no part 'fold'"), ({"folds": -1.0}, "no weight"), ({"folds": "much"}, "no weight")],
 )
 def test_weights_of_no_part_are_refused(
-    given: Quads, tmp_path: Path, weights: dict[str, float], told: str
+    given: Quads, tmp_path: Path, weights: dict[str, float], message: str
 ) -> None:
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         train("quad", given, tmp_path / "m", SMALL, ALONE, held_out=4, weights=weights, recipe={})
 
 

@@ -62,10 +62,10 @@ def test_the_compiled_convolution_is_the_plain_one(
     bias = rng.normal(size=out).astype(dtype)
     expected = plain(x.astype(float), kernel.astype(float), bias.astype(float), stride)
     add = rng.normal(size=expected.shape).astype(dtype) if more else None
-    found = np.full(expected.shape, np.nan, dtype)
-    convolve(x, *packed(kernel, bias, dtype), size, stride, add, found)
+    result = np.full(expected.shape, np.nan, dtype)
+    convolve(x, *packed(kernel, bias, dtype), size, stride, add, result)
     expected += 0.0 if add is None else add
-    np.testing.assert_allclose(found, expected, rtol=0, atol=CLOSE[dtype] * np.abs(expected).max())
+    np.testing.assert_allclose(result, expected, rtol=0, atol=CLOSE[dtype] * np.abs(expected).max())
 
 
 def test_a_convolution_of_arrays_that_do_not_fit_is_refused() -> None:
@@ -85,13 +85,13 @@ def test_a_convolution_of_arrays_that_do_not_fit_is_refused() -> None:
 def test_activation_is_accurate_and_padded(dtype: Any, close: float) -> None:
     x = np.linspace(-60, 60, 2 * 7 * 7 * 24).astype(dtype).reshape(2, 7, 7, 24)
     x[0, 0, 0, :4] = -3e4, 3e4, 0, -1e-30
-    found = np.full((2, 9, 9, 24), np.nan, dtype)
-    activate(x, found)
+    result = np.full((2, 9, 9, 24), np.nan, dtype)
+    activate(x, result)
     exact = x.astype(float)
     expected = exact * np.exp(np.minimum(exact, 0)) / (1 + np.exp(-np.abs(exact)))
-    np.testing.assert_allclose(found[:, 1:-1, 1:-1], expected, rtol=close, atol=1e-25)
-    found[:, 1:-1, 1:-1] = 0
-    assert not found.any()
+    np.testing.assert_allclose(result[:, 1:-1, 1:-1], expected, rtol=close, atol=1e-25)
+    result[:, 1:-1, 1:-1] = 0
+    assert not result.any()
 
 
 def test_activation_without_padding_is_what_stands_inside_it() -> None:
@@ -110,15 +110,15 @@ def test_recorded_layers_do_what_they_do_at_once_for_fewer_of_a_batch_too() -> N
     for program in (None, later):
         activate(x, active, False, program)
         convolve(active, *kernel, 3, 1, None, out, program)
-    found = np.empty((2, 5, 5, 16))
-    later.run(x[1:], found)
-    np.testing.assert_array_equal(found, out[1:])
+    result = np.empty((2, 5, 5, 16))
+    later.run(x[1:], result)
+    np.testing.assert_array_equal(result, out[1:])
     with pytest.raises(ValueError, match="a batch of another size"):
-        later.run(x, found)
+        later.run(x, result)
     with pytest.raises(ValueError, match="arrays of other shapes than the layers"):
-        later.run(x[1:].astype(np.float32), found)
+        later.run(x[1:].astype(np.float32), result)
     with pytest.raises(ValueError, match="arrays of other shapes than the layers"):
-        LayerProgram().run(x, found)
+        LayerProgram().run(x, result)
 
 
 def test_a_program_holds_so_many_layers() -> None:
@@ -133,19 +133,19 @@ def test_a_program_holds_so_many_layers() -> None:
 def test_finer_copies_are_linear_between_nodes(dtype: Any) -> None:
     rng = np.random.default_rng(0)
     x, add = rng.normal(size=(2, 5, 5, 8)).astype(dtype), rng.normal(size=(2, 9, 9, 8)).astype(dtype)
-    found = np.empty_like(add)
-    upsample(x, add, found)
+    result = np.empty_like(add)
+    upsample(x, add, result)
     matrix = np.maximum(0.0, 1.0 - np.abs(np.arange(9)[:, None] / 2 - np.arange(5)))
     expected = add + np.einsum("ip,jq,bpqc->bijc", matrix, matrix, x)
-    np.testing.assert_allclose(found, expected, rtol=0, atol=8 * np.finfo(dtype).eps)
+    np.testing.assert_allclose(result, expected, rtol=0, atol=8 * np.finfo(dtype).eps)
 
 
 def test_compiled_features_are_those_in_numpy() -> None:
     z = grids(17)
     near, step = approach(z, np)
-    found = np.empty((2, 17, 17, FEATURES))
-    grid_features(planes(near), planes(step), found)
-    np.testing.assert_allclose(found, features(near, step, np), rtol=0, atol=1e-12)
+    result = np.empty((2, 17, 17, FEATURES))
+    grid_features(planes(near), planes(step), result)
+    np.testing.assert_allclose(result, features(near, step, np), rtol=0, atol=1e-12)
 
 
 def planes(values: Complexes) -> Floats:
@@ -213,5 +213,5 @@ def test_numpy_equals_torch() -> None:
     seen = seen_of(grids(17))
     with torch.no_grad():
         expected = model(torch.from_numpy(seen)).numpy()
-    found = Network(held, BLOCKS)(seen)
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+    result = Network(held, BLOCKS)(seen)
+    np.testing.assert_allclose(result, expected, rtol=0, atol=1e-12 * np.abs(expected).max())

@@ -46,8 +46,8 @@ def test_features_of_a_relabelled_grid_are_those_seen_from_the_element(element: 
     at = np.rint(ELEMENTS[element] @ np.stack(np.meshgrid(places, places, indexing="ij")).reshape(2, -1))
     rows = (at + (n - 1) / 2).astype(int)
     moved = features(z, step, np)[:, rows[0], rows[1]].reshape(*z.shape, FEATURES)
-    found = features(relabelled(z, element), relabelled(step, element), np)
-    np.testing.assert_allclose(found, moved @ SEEN[element].T, atol=1e-12)
+    result = features(relabelled(z, element), relabelled(step, element), np)
+    np.testing.assert_allclose(result, moved @ SEEN[element].T, atol=1e-12)
 
 
 @pytest.mark.parametrize("element", ALL)
