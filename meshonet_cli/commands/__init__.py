@@ -29,7 +29,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("train", "Train a neural operator on datasets."),
     Command("infer", "Make grids by the method that suits the kind of shape."),
     Command("layout", "Split domains into blocks and write the block layout."),
-    Command("stack", "Make volume grids of wings, ducts, rows and aircraft."),
+    Command("stack", "Make volume grids of wings, ducts, blade rows and aircraft."),
     Command("sweep", "Sweep cross-sections along curves: pipes and ducts."),
     Command("deform", "Deform grids to changed walls, and keep their layers."),
     Command("quality", "Measure quality: folded cells, angles, growth."),

@@ -30,8 +30,8 @@ class ConvertedFiles(o.FileOptions):
 
     output: Annotated[str, _output(
         "-o", "--output", metavar="OUT",
-        help="File to write, or - for standard output. Several inputs need a pattern such as "
-        "'dir/{stem}.vts' (the fields are {stem}, {name} and {index}), or one .h5 file for all results.",
+        help="File to write, or - for standard output. For several inputs: one .h5 file, or a pattern such "
+        "as 'dir/{stem}.vts', with {stem} (of the input file), {name} (of the shape) or {index} (from 0).",
     )] = ""
 
 
@@ -40,40 +40,38 @@ def convert(
     run: o.InputOptions,
     names: Annotated[list[str] | None, typer.Argument(
         metavar="IN... [OUT]", show_default=False,
-        help="Files to read, or - for standard input. Without -o the last name is the file to write.",
+        help="Files to read, or - for standard input. Without -o the last argument is the file to write.",
     )] = None,
     extrude: Annotated[float | None, _option(
         "--extrude", metavar="H",
         help="Extrude the planar grid by H along z, for planar flow in solvers that require "
-        "three-dimensional grids. The result has one layer of cells, unless --planes is given.",
+        "three-dimensional grids. The result has one layer of cells, or more with --planes.",
     )] = None,
     planes: Annotated[int | None, _option(
         "--planes", metavar="K", min=2, max=10_000,
-        help="Number of planes of nodes for --extrude or --revolve, one more than the number of cells. "
+        help="Number of planes of nodes for --extrude or --revolve, one more than the layers of cells. "
         "[default: 2; for sectors and full rings, cells of at most 4 degrees]",
     )] = None,
     plot3d: Annotated[str | None, _output(
         "--plot3d", metavar="WORDS",
-        help="Variant of the Plot3D file to write, or to read if the output is in another format. WORDS are "
-        "separated by commas and are any of ascii/binary/fortran, multi/single, 2d/3d, no-iblank/iblank, "
-        "little/big, float64/float32, whole/planes (coordinates of whole blocks, or plane by plane; planes "
-        "are not written) and span-k/span-i/span-j (index of the file for the third direction of volumes, "
-        "only for writing). For reading, give only "
-        "properties that the program cannot recognise from the file. All other commands accept the same "
-        "words as --from plot3d:WORDS.",
+        help="Variant of the Plot3D file to write, or to read if the output has another format. WORDS are "
+        "separated by commas: ascii/binary/fortran (fortran: binary with record marks), multi/single, 2d/3d, "
+        "no-iblank/iblank, little/big, float64/float32, whole/planes (reading only: coordinates by block or "
+        "by plane), span-k/span-i/span-j (writing only: file index of the third direction of volumes). For "
+        "reading, give only what the program does not recognise. In other commands use --from plot3d:WORDS.",
     )] = None,
     swap: Annotated[bool, _option(
         "--swap", help="Exchange xi and eta of a four-sided grid. The result is still right-handed.",
     )] = False,
     normalise: Annotated[bool, _option(
         "--normalise",
-        help="Scale and move the grid so that the leading edge is at (0, 0) and the trailing edge at (1, "
-        "0). A four-sided grid is scaled to length 1.",
+        help="Scale and move the grid so that the leading edge is at (0, 0) and the trailing edge at (1, 0). "
+        "A four-sided grid is scaled to length 1.",
     )] = False,
     coarsen: Annotated[int | None, _option(
         "--coarsen", metavar="K", min=2, max=10_000,
-        help="Keep every K-th node along xi and eta. K must divide the number of cells in both directions "
-        "and the indices of nodes at corners of walls.",
+        help="Keep every K-th node along each direction. K must divide the numbers of cells and the node "
+        "indices of wall corners. [default: 1]",
     )] = None,
     scale: Annotated[float | None, _option(
         "--scale", metavar="S",
@@ -82,9 +80,9 @@ def convert(
     )] = None,
     copies: Annotated[str | None, _option(
         "--copies", metavar="K[xL]",
-        help="Join K copies of a periodic grid, for example passages of a blade row up to the whole annulus. "
-        "If the grid has two periods, join K copies along the first and L copies along the second; the "
-        "quality report gives their order. [default: 1]",
+        help="Join K copies of a periodic grid, e.g. passages of a blade row up to the whole annulus. If the "
+        "grid has two periods, KxL joins K copies along the first and L along the second, in the order of "
+        "the quality report. [default: 1]",
     )] = None,
     revolve: o.Revolve = None,
     axis: o.Axis = None,

@@ -23,17 +23,17 @@ def deform(
     wall: Annotated[list[str] | None, _option(
         "--wall", metavar="[NAME=]FILE",
         help="New shape of a wall: a file with an outline, a designation such as naca:2412, or a grid whose "
-        "wall has the same number of nodes. NAME is required if the grid has several walls; it can be any "
-        "named part of the boundary. Repeatable.",
+        "wall has as many nodes. NAME is a wall or another named part of the boundary; it may be omitted if "
+        "the grid has one wall. Repeatable.",
     )] = None,
     rotate: Annotated[list[str] | None, _option(
         "--rotate", metavar="NAME=DEGREES@X,Y",
-        help="Rotate a wall by DEGREES counter-clockwise about the point (X, Y) of the plane. Repeatable.",
+        help="Rotate the wall NAME in the plane, by DEGREES counter-clockwise about the point (X, Y). "
+        "Repeatable.",
     )] = None,
     shift: Annotated[list[str] | None, _option(
         "--shift", metavar="NAME=DX,DY[,DZ]",
-        help="Translate a wall by (DX, DY, DZ). If the wall is also rotated, the rotation comes first. "
-        "Repeatable.",
+        help="Translate the wall NAME by (DX, DY, DZ), after its rotation if there is one. Repeatable.",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,

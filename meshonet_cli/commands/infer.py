@@ -30,40 +30,40 @@ def infer(
         "--model", metavar="NAME|PATH",
         help="Neural operator that makes the grid: the name of a shipped model (see meshonet models), a "
         ".safetensors file, or base for the conformal solver without a network. C grids are always marched, "
-        "without an operator. [default: no network; the method described above]",
+        "without an operator. [default: no operator; the method described above]",
     )] = None,
     polish: Annotated[str, _option(
         "--polish", metavar="auto|off|N", show_default=True,
-        help="Number of solver iterations after the neural operator (elliptic around bodies, variational in "
-        "four-sided domains); off means no iteration. If --polish is off or N and --model is not given, the "
-        "default network for the topology makes the grid.",
+        help="Number of solver iterations after the neural operator: elliptic around bodies, variational in "
+        "four-sided domains. off: none. auto: as many as suit the model. off or N without --model selects "
+        "the default model for the topology.",
     )] = "auto",
     answer: Annotated[Literal["valid", "pasted", "raw"], _option(
         "--answer", metavar="valid|pasted|raw", show_default=True,
-        help="Treatment of the grid that a network predicts, whose boundary nodes can differ from the given "
-        "ones. raw writes this grid, pasted replaces its boundary nodes by the given nodes, and valid also "
-        "repairs folded cells.",
+        help="Treatment of the grid that a network predicts. raw: unchanged; its boundary nodes can differ "
+        "from the given ones. pasted: with the given boundary nodes. valid: also with folded cells repaired.",
     )] = "valid",
     device: Annotated[Literal["cpu", "cuda"] | None, _option(
         "--device", metavar="cpu|cuda",
-        help="Evaluate networks with torch on this device, all grids of a batch together. --polish auto is "
-        "then 3 iterations for airfoil-o and no iteration for other models. [default: NumPy, without torch]",
+        help="Evaluate networks with torch on this device, all grids of a batch together. --polish auto then "
+        "means 3 for airfoil-o and off for other models. [default: NumPy, without torch]",
     )] = None,
     fallback: Annotated[bool, _option(
         "--fallback",
-        help="Make the grid by the solver that the network imitates if the expected error of the network is "
-        "above 0.03 or its grid has folded cells.",
+        help="Use the solver that the network imitates if the expected error of the network is above 0.03 or "
+        "its grid has folded cells.",
     )] = False,
     refine: o.Refine = 0,
 ) -> int:
     """Make grids by the method that suits the kind of shape.
 
-    The method is the one with the best results in benchmarks for this kind of shape. An O grid around a body
-    is made by a conformal map. A C grid, or a grid with a first cell, is marched from the wall. A four-sided
-    domain is filled by the variational method. Any other planar domain is split into blocks. A volume inside
-    six faces is filled by the variational method. With a first cell, the volume outside a surface is marched
-    from the surface. A neural operator makes the grid only if --model, --polish, --device or --fallback is
-    given; the report then gives the expected error of the grid.
+    The default method is the best in benchmarks for the kind of shape. O grids around bodies are made by a
+    conformal map, or with a first cell by marching from the wall. C grids are marched from the wall.
+    Four-sided domains are filled by the variational method, or with a first cell by Winslow's equations with
+    source terms. All other planar domains are split into blocks. Volumes inside six faces are filled by the
+    variational method. With a first cell, the volume outside a surface is marched from the surface. A neural
+    operator makes the grid only if --model, --polish, --device or --fallback is given; the report then gives
+    the expected error of the grid.
     """
     from meshonet_cli.tasks.grids import write_grids
 

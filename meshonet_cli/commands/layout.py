@@ -25,8 +25,8 @@ class LayoutFiles(Files):
 
     output: Annotated[str, o.option_of(o.IO)(
         "-o", "--output", metavar="LAYOUT.json",
-        help="File to write, or - for standard output. Several inputs need a pattern such as "
-        "'dir/{stem}.json' (the fields are {stem}, {name} and {index}).",
+        help="File to write, or - for standard output. For several inputs: a pattern such as "
+        "'dir/{stem}.json', with {stem} (of the input file), {name} (of the shape) or {index} (from 0).",
     )]
     from_format: o.From = None
     skip_existing: o.SkipExisting = False
@@ -36,23 +36,23 @@ def layout(
     domain: Annotated[list[str], typer.Argument(
         metavar="DOMAIN", show_default=False,
         help="File with a domain (WKT, GeoJSON, points of closed curves, DXF, or the boundary of a mesh) or "
-        "with an airfoil, a designation such as naca:2412, or - for standard input.",
+        "an airfoil; a designation such as naca:2412; or - for standard input.",
     )],
     files: LayoutFiles,
     blocks: o.BlockOptions,
     run: o.RunOptions,
     far_field: Annotated[float | None, _sampling(
         "--far-field", metavar="R",
-        help="Radius of the far field, in units of the larger side of the bounding box of all bodies. "
-        "[default: 15]",
+        help="Distance of the far field from the middle of all bodies, in lengths of their common bounding "
+        "box. [default: 15]",
     )] = None,
     first_cell: o.FirstCell = None, y_plus: o.YPlusAtWalls = None, reynolds: o.Reynolds = None,
     length: o.Length = None,
 ) -> int:
     """Split domains into blocks and write the block layout.
 
-    With a first cell, the layout contains only the blocks outside the layers. A grid that is made with this
-    layout also has blocks for the layers.
+    With a first cell, the layout contains only the blocks outside the layers. infer and solve-pde add blocks
+    for the layers.
     """
     from meshonet_cli.tasks.layouts import write_layouts
 

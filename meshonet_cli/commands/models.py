@@ -16,7 +16,8 @@ def models(
         typer.Argument(
             metavar="NAME",
             show_default=False,
-            help="Model whose training parameters and held-out errors are printed.",
+            help="Model to describe: its training parameters and held-out errors. [default: one line for "
+            "each model]",
         ),
     ] = None,
     as_json: o.AsJson = False,

@@ -27,14 +27,14 @@ class PictureFiles(Files):
 
     output: Annotated[str, _output(
         "-o", "--output", metavar="PICTURE",
-        help="Picture to write (.png, .svg or .pdf), interactive page to write (.html), or - for standard "
-        "output. Several inputs need a pattern such as 'dir/{stem}.png' (the fields are {stem}, {name} and "
-        "{index}).",
+        help="Picture (.png, .svg or .pdf) or interactive page (.html) to write, or - for standard output. "
+        "For several inputs: a pattern such as 'dir/{stem}.png', with {stem} (of the input file), {name} (of "
+        "the shape) or {index} (from 0).",
     )]
     to_format: Annotated[str | None, _output(
         "--to", metavar="FORMAT",
-        help="Format of the picture: png, svg, pdf or html. Needed if the extension of the file does not "
-        "determine it. [default: png on standard output]",
+        help="Format of the picture: png, svg, pdf or html. [default: from the extension; png on standard "
+        "output]",
     )] = None
     from_format: o.From = None
     skip_existing: o.SkipExisting = False
@@ -46,29 +46,29 @@ def plot(
     run: o.InputOptions,
     metric: Annotated[str, _option(
         "--metric", metavar="METRIC", show_default=True,
-        help="Metric that colours the cells: a metric of the report of meshonet quality, growth along grid "
-        "lines, or checkMesh's non_orthogonality, face_skewness or box_ratio. none draws grid lines only.",
+        help="Metric that colours the cells: one of the report of meshonet quality, growth (along grid "
+        "lines), or checkMesh's non_orthogonality, face_skewness or box_ratio. none: grid lines only.",
     )] = "max_angle",
     zoom: Annotated[str | None, _option(
         "--zoom", metavar="x0,x1,y0,y1",
-        help="Show only this region: x0,x1,y0,y1 for a planar grid, x0,x1,y0,y1,z0,z1 for a grid in space. "
-        "With --slice both forms are possible: in the plane x=2.9 the four numbers are y0,y1,z0,z1, and y "
-        "points to the right.",
+        help="Show only this region: x0,x1,y0,y1 of a planar grid, x0,x1,y0,y1,z0,z1 in space. With --slice "
+        "give either six numbers, or four for the two axes of the slice: in the plane x=2.9, y0,y1,z0,z1, "
+        "with y to the right. [default: the whole grid]",
     )] = None,
     slice_: Annotated[str | None, _option(
         "--slice", metavar="SLICE",
         help="Draw this slice of a volume: a grid surface of constant index, such as i=10 or k=-1 (the "
-        "last), or a plane such as x=.5. [default: no slice; the walls are drawn, or the whole boundary of "
-        "a volume without walls]",
+        "last), or a plane such as x=.5. [default: no slice; the walls, or the whole boundary of a volume "
+        "without walls]",
     )] = None,
     span: Annotated[str | None, _option(
         "--span", metavar="S,...",
-        help="Draw sections of a blade row at these fractions of the span, from 0 at the hub to 1 at the "
-        "shroud, side by side.",
+        help="Draw sections of a blade row, side by side, at these fractions of the span: 0 is the hub, 1 "
+        "the shroud.",
     )] = None,
     meridional: Annotated[bool, _option(
         "--meridional",
-        help="Draw the meridional section of a blade row in the coordinates x and r: the cells cut by a "
+        help="Draw the meridional section of a blade row, in the coordinates x and r: the cells cut by a "
         "half-plane through the axis and the blade.",
     )] = False,
     seen_from: Annotated[str | None, _option(
@@ -78,8 +78,8 @@ def plot(
     )] = None,
     up: Annotated[str | None, _option(
         "--up", metavar="AXIS",
-        help="Axis that points upwards in pictures of volumes and surfaces: x, y or z. Azimuths count from "
-        "x if z is up, from y if x is up, and from z if y is up. [default: z]",
+        help="Axis that points upwards in pictures of volumes and surfaces: x, y or z. Azimuths count from y "
+        "if x is up, from z if y is up, and from x if z is up. [default: z]",
     )] = None,
     every: Annotated[int | None, _option(
         "--every", metavar="K",

@@ -23,41 +23,41 @@ def quality(
     run: o.InputOptions,
     gates: o.GateOptions,
     plot: Annotated[str | None, _output(
-        "--plot", metavar="F.png", help="Draw the grid into this file, coloured by max_angle.",
+        "--plot", metavar="F.png",
+        help="Draw the grid into this file (.png, .svg or .pdf), coloured by max_angle.",
     )] = None,
     html: Annotated[str | None, _output(
         "--html", metavar="F.html",
-        help="Write a report as one page: pictures, histograms, the worst cells, and the results of "
-        "--fail-on and --profile. For more than 20 grids, the page shows the 20 worst.",
+        help="Write a report page with pictures, histograms, the worst cells, and the results of --fail-on "
+        "and --profile; of more than 20 grids, for the 20 worst.",
     )] = None,
     per_cell: Annotated[str | None, _output(
         "--per-cell", metavar="F.vts",
-        help="Write a file with all metrics of every cell. For a multi-block grid use the extension .vtm.",
+        help="Write a file with all metrics of every cell: .vts, or .vtm for a multi-block grid.",
     )] = None,
     compare: Annotated[str | None, _check(
         "--compare", metavar="OTHER",
         help="File with reference grids of the same size. The report then has the relative L2 distance from "
-        "the reference, over all nodes and near walls, the largest distance of a node, the largest distance "
-        "of a boundary node, the number of folded cells of the reference, and the largest and the mean angle "
-        "divided by those of the reference.",
+        "the reference over all nodes and near walls; the largest distance of all nodes and of boundary "
+        "nodes; the folded cells of the reference; and the largest and the mean angle, divided by those of "
+        "the reference.",
     )] = None,
     pair: Annotated[Literal["auto", "name", "order"] | None, _check(
         "--pair", metavar="auto|name|order",
-        help="Rule that assigns grids to the references of --compare: by name, or by order. auto compares "
-        "all grids with the reference if there is only one. Otherwise it matches them by name if the names "
-        "agree, else by order. [default: auto]",
+        help="Rule that assigns grids to the references of --compare. name: by name. order: by order. auto: "
+        "all grids to a single reference; of several references, by name if the names agree, else by order. "
+        "[default: auto]",
     )] = None,
     reynolds: Annotated[float | None, _check(
         "--reynolds", metavar="RE",
-        help="Reynolds number for which y+ of the first cells at each wall is reported; the conversion "
-        "assumes a turbulent flat plate. --fail-on 'y_plus>2' then refers to the largest y+ of all walls.",
+        help="Reynolds number, based on --length, for which the report gives y+ of the first cells at each "
+        "wall on a turbulent flat plate. --fail-on 'y_plus>2' then refers to the largest y+ of all walls.",
     )] = None,
     length: Annotated[float | None, _check(
-        "--length", metavar="L",
-        help="Reference length of --reynolds, in the unit of the grid. [default: 1]",
+        "--length", metavar="L", help="Reference length of --reynolds, in the unit of the grid. [default: 1]",
     )] = None,
     summary: Annotated[bool, _output(
-        "--summary", help="Print one table for all grids, with one row per grid; with --json one object.",
+        "--summary", help="Print one table with a row for each grid; with --json one object.",
     )] = False,
     from_format: o.From = None,
     threads: o.Threads = None,

@@ -22,43 +22,43 @@ def sample_boundary(
     run: o.RunOptions,
     source: Annotated[list[str] | None, typer.Argument(
         metavar="SOURCE", show_default=False,
-        help="File with a boundary (airfoil, points, dataset or grid), a designation such as naca:2412, or "
-        "- for standard input. A folder or a .zip file stands for all boundaries in it, and @FILE for the "
-        "inputs that FILE lists. Must be omitted with --family.",
+        help="File with an airfoil, points, a boundary or a grid; a designation such as naca:2412; or - for "
+        "standard input. A folder or a .zip file stands for all inputs in it, @FILE for those listed in "
+        "FILE. Not with --family.",
     )] = None,
     family: Annotated[str | None, _option(
         "--family", metavar="NAME",
-        help="Make random shapes of this family instead of reading files: arch, hexagon, wrench, semicircle, "
-        "airfoil or hole (the six families of the MeshONet paper), procedural (random airfoils), four-sided "
-        "(random quad domains) or bodies (random bodies in far fields). Without --res, boundaries have "
-        "101x101 nodes.",
+        help="Make shapes with random parameters instead of reading files. arch, hexagon, wrench, "
+        "semicircle, airfoil and hole: the families of the MeshONet paper, with one parameter each. "
+        "procedural: airfoils. four-sided: quad domains. bodies: bodies in far fields. Without --res, "
+        "boundaries have 101x101 nodes.",
     )] = None,
     count: Annotated[int | None, _option(
-        "--count", metavar="N", min=1,
-            help="Number of random shapes of the family. [default: 1]",
+        "--count", metavar="N", min=1, help="Number of shapes of the --family. [default: 1]",
     )] = None,
     spread: Annotated[str | None, _option(
         "--range", metavar="A:B",
-        help="Interval of the parameter of the family. [default: the interval of the paper]",
+        help="Interval of the parameter of arch, hexagon, wrench, semicircle, airfoil or hole. [default: the "
+        "interval of the MeshONet paper]",
     )] = None,
     seed: Annotated[int | None, _option(
-        "--seed", metavar="S", min=0, help="Seed of the random numbers. [default: 0]",
+        "--seed", metavar="S", min=0, help="Seed of the random numbers of --family. [default: 0]",
     )] = None,
     split: Annotated[str | None, _option(
         "--split", metavar="HOW",
-        help="Reserve a sixth of the shapes for tests. interpolation takes them from the middle of the "
-        "parameter range, extrapolation from one end, and random at random. The split is stored in the .h5 "
-        "file, for the command train; FILE.h5#test reads the test shapes.",
+        help="Reserve a sixth of the shapes of the --family for tests. interpolation: from the middle of the "
+        "parameter range. extrapolation: from one end of it. random: at random. The .h5 file stores the "
+        "split for the command train; FILE.h5#test reads the test shapes. [default: no split]",
     )] = None,
     sensors: Annotated[int | None, _option(
         "--sensors", metavar="M", min=2,
-        help="Store M boundary nodes of each shape as sensors, the input of some neural operators, in the "
-        "array sensors of the .h5 file.",
+        help="Store M boundary nodes of each shape in the array sensors of the .h5 file, as the input of "
+        "neural operators. [default: no sensors]",
     )] = None,
 ) -> int:
     """Place nodes on the four edges of a boundary.
 
-    Faces of STEP and B-rep files become patches of a surface, from which a volume can be marched.
+    Faces of STEP and B-rep files become patches of a surface, from which solve-pde can march a volume.
     """
     from meshonet.geometry.errors import InputError
     from meshonet.geometry.families.draw import draws

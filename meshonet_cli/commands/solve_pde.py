@@ -23,8 +23,8 @@ EXAMPLES = (
 _option = o.option_of(o.METHOD)
 
 AUTO = (
-    "hyperbolic for bodies with a first cell and for C grids (for which it chooses a first cell if none "
-    "is given), unless {coarse}, {refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
+    "hyperbolic for bodies with a first cell and for C grids (whose default first cell it chooses), "
+    "unless {coarse}, {refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
 )
 SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves} | {"auto": AUTO}
 if TYPE_CHECKING:
@@ -50,29 +50,29 @@ def solve_pde(
     )] = "auto",
     tol: Annotated[float | None, _option(
         "--tol", metavar="T",
-        help="Stop when the residual is below T times the residual of transfinite interpolation. The "
-        "variational method stops when no node moves by more than about T times the square root of the area "
-        "of the domain. [default: stop when the iteration error is below the discretisation error]",
+        help="Stop when the residual is below T times the residual of transfinite interpolation; for the "
+        "variational method, when no node moves by more than about T times the square root of the area of "
+        "the domain. [default: stop when the iteration error is below the discretisation error]",
     )] = None,
     max_cycles: Annotated[int | None, _option(
         "--max-cycles", metavar="N", min=1,
-        help="Largest number of multigrid cycles; for the variational method, of iterations at full "
-        "resolution. [default: 30, variational 200]",
+        help="Largest number of multigrid cycles; for the variational method, of iterations on all nodes. "
+        "[default: 30; variational 200]",
     )] = None,
     coarse: Annotated[str, _option(
         "--coarse", metavar="auto|off|N", show_default=True,
-        help="Solve on N x N nodes and interpolate to --res by splines; off solves on all nodes. auto uses N "
-        "= 257 for winslow with more than 512 nodes along a side, and N = 129 for variational with more than "
-        "257; the quality is then the same. auto applies to quad and C grids without --tol, --max-cycles and "
-        "--initial.",
+        help="Solve on at most N x N nodes and interpolate to --res by splines. off: solve on all nodes. "
+        "auto: N = 257 for winslow with more than 512 nodes along a side, N = 129 for variational with more "
+        "than 257, at the same quality; all nodes for O grids and with --tol, --max-cycles or --initial.",
     )] = "auto",
     refine: o.Refine = 0,
     initial: Annotated[str | None, _option("--initial", metavar="GRID",
-        help="File with the grid from which the iteration starts.",
+        help="File with the grid from which the iteration starts. [default: transfinite interpolation]",
     )] = None,
     history: Annotated[str | None, o.option_of(o.IO)(
         "--history", metavar="F.csv",
-        help="Write residual, change, seconds, folded cells and functional of every cycle to a CSV file.",
+        help="Write a CSV file with a row for each cycle: residual, displacement of nodes, seconds, folded "
+        "cells and functional.",
     )] = None,
     slide: o.Slide = None,
     wall_angle: o.WallAngle = None,
@@ -84,9 +84,9 @@ def solve_pde(
 ) -> int:
     """Make elliptic, variational or marched grids.
 
-    A volume inside six faces is filled; the faces are those of a given grid, or six patches. With --method
-    hyperbolic a volume is marched from the patches of a surface. A given multi-block grid is smoothed across
-    the interfaces of its blocks.
+    Of a volume grid or six patches, the volume inside the six faces is filled. With --method hyperbolic a
+    volume is marched from the patches of a surface. A multi-block grid is smoothed, across the interfaces of
+    its blocks too.
     """
     from meshonet_cli.tasks.grids import initial_grid, write_grids
 

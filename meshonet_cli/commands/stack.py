@@ -32,54 +32,53 @@ class VolumeFiles(Files):
 def stack(
     sections: Annotated[list[str], typer.Argument(
         metavar="SECTIONS.toml", show_default=False,
-        help="File with at least two sections, or - for standard input. Each section of a wing or blade has "
-        "an airfoil (a file or naca:2412), a chord, its position z and, where needed, x, y and twist, or "
-        "sweep and dihedral. Sections of a duct have an outline instead: circle:RADIUS or a file with a "
-        "closed curve. The file of a blade row has profiles, hub and shroud instead. The file of an aircraft "
-        "has a body and wings, described by numbers or by surface files (Plot3D, CGNS or VTK).",
+        help="File with two or more sections, or - for standard input. A section of a wing or blade has an "
+        "airfoil (a file or naca:2412), a chord, its position z and, where needed, x, y and twist, or sweep "
+        "and dihedral. A section of a duct has an outline instead: circle:RADIUS or a file with a closed "
+        "curve. The file of a blade row has profiles, hub and shroud instead; the file of an aircraft a body "
+        "and wings, described by numbers or by surface files (Plot3D, CGNS or VTK).",
     )],
     files: VolumeFiles,
     run: o.RunOptions,
     gates: o.GateOptions,
     around: Annotated[int | None, _sampling(
-        "--around", metavar="N", help="Number of nodes around each section, an odd number. [default: 129]",
+        "--around", metavar="N",
+        help="Number of nodes around each section, odd, with the repeated first node. [default: 129]",
     )] = None,
     span: Annotated[int | None, _sampling(
         "--span", metavar="N",
-        help="Number of nodes along z, from the first to the last section. [default: 49, and more in "
-        "ducts and blades with unevenly spaced sections]",
+        help="Number of nodes along z, from the first to the last section. [default: 49; more in ducts and "
+        "blades with unevenly spaced sections]",
     )] = None,
     base: Annotated[float | None, _sampling(
         "--base", metavar="H",
-        help="Smallest height of trailing edges, in chords of each section. Thinner trailing edges of wings "
-        "and blades are opened to this height. [default: 0.005, or 0.001 for a wing given by a surface file]",
+        help="Smallest height of trailing edges of wings and blades, in chords of each section. Thinner "
+        "trailing edges are opened to this height. [default: 0.005; 0.001 for wings from surface files]",
     )] = None,
     cells: Annotated[int | None, _sampling(
         "--cells", metavar="N",
-        help="Approximate number of cells: around a wing or blade (instead of --around, --span or both), "
-        "around an aircraft (instead of --around), or in a passage of a blade row. [default: 500000 in a "
-        "blade row]",
+        help="Approximate number of cells around a wing or blade (instead of --around, --span or both), "
+        "around an aircraft (instead of --around), or in each passage of a blade row. [default: 500000 in a "
+        "blade row; else set by --around and --span]",
     )] = None,
     copies: Annotated[int | None, _sampling(
         "--copies", metavar="K", min=1,
-        help="Number of passages of a blade row beside each other. The number of blades gives the whole "
-        "annulus. [default: 1]",
+        help="Number of adjacent passages of a blade row; the number of blades gives the whole annulus. "
+        "[default: 1]",
     )] = None,
     far_field: Annotated[float | None, _sampling(
         "--far-field", metavar="R",
-        help="Distance of the far field from a wing or blade, in units of the longest chord. [default: "
-        "15]",
+        help="Distance of the far field from a wing, blade or aircraft, in longest chords. [default: 15]",
     )] = None,
     tip: Annotated[Literal["round", "flat", "open"] | None, _volume(
         "--tip", metavar="round|flat|open",
-        help="Shape of the tip of a wing: round closes it with a cap of half the local thickness, flat with "
-        "a plane, and open leaves it open, in a plane of symmetry. [default: as given in the file, else "
-        "round]",
+        help="Tip of a wing. round: closed by a cap of half the local thickness. flat: closed by a plane. "
+        "open: not closed, in a plane of symmetry. [default: as given in the file, else round]",
     )] = None,
     revolve: Annotated[float | None, _volume(
-        "--revolve", metavar="DEG",
+        "--revolve", metavar="DEGREES",
         help="Bend the z axis of a blade or duct around --axis, by this angle in degrees from the first to "
-        "the last section.",
+        "the last section. [default: straight]",
     )] = None,
     axis: o.Axis = None,
     surface: Annotated[bool, _volume(
@@ -88,26 +87,26 @@ def stack(
     layers: o.Layers = None,
     first_cell: Annotated[float | None, _layer(
         "--first-cell", "--wall-spacing", metavar="H",
-        help="Height of the first cell at every wall node, in units of the longest chord; in ducts "
-        "in the unit of the file. [default: 0.001; in ducts about the height of the cells in the middle]",
+        help="Height of the first cell at every wall, in longest chords; in ducts in the unit of the file. "
+        "[default: 0.001; in ducts about the height of the cells in the middle]",
     )] = None,
     y_plus: o.YPlus = None,
-    reynolds: Annotated[float | None, _layer(
-        "--reynolds", metavar="RE",
-        help="Reynolds number for --y-plus, based on the longest chord (in ducts the widest "
-        "section) or on --length.",
+    reynolds: o.Reynolds = None,
+    length: Annotated[float | None, _layer(
+        "--length", metavar="L",
+        help="Reference length of --reynolds, in the unit of --first-cell. [default: the longest chord; in "
+        "ducts the extent of the widest section]",
     )] = None,
-    length: o.Length = None,
     growth: Annotated[float | None, _layer(
         "--growth", metavar="G",
-        help="Ratio of the heights of neighbouring cells along a grid line away from the wall. The number of "
-        "layers follows from it. [default: 1.2, or the ratio that follows from --layers]",
+        help="Largest ratio of the heights of neighbouring cells along a grid line away from the wall. The "
+        "number of rows follows from it. Not with --layers. [default: 1.2]",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
     leave_out_failed: o.LeaveOutFailed = False,
 ) -> int:
-    """Make volume grids of wings, ducts, rows and aircraft.
+    """Make volume grids of wings, ducts, blade rows and aircraft.
 
     A TOML file describes the shape by cross-sections. The grid surrounds a wing or an aircraft, fills a duct
     from the first section to the last, or fills one passage of a row of blades.

@@ -45,62 +45,63 @@ def sweep(
     )] = None,
     around: Annotated[int | None, _sampling(
         "--around", metavar="N",
-        help="Number of cells around a circle, a multiple of four. [default: 88, or derived from --cells and "
-        "at least 84; the area is then accurate to 0.1 %]",
+        help="Number of cells around a circle, a multiple of four. [default: 88; with --cells, derived from "
+        "it and at least 84, so that the area is accurate to 0.1 %]",
     )] = None,
     planes: Annotated[int | None, _volume(
         "--planes", metavar="K",
-        help="Number of planes of nodes along the path. [default: as many as needed for cells that turn by "
-        "at most 4 degrees and are at most three times as long as wide]",
+        help="Number of planes of nodes along the path or around the axis. [default: as many as needed for "
+        "cells that turn by at most 4 degrees and, along a path, are at most three times as long as wide; 2 "
+        "in a wedge]",
     )] = None,
     up: Annotated[str | None, _volume(
         "--up", metavar="X,Y,Z",
-        help="Direction of the y axis of the section at the start of the path. [default: z, or y for a path "
-        "that starts along z]",
+        help="Direction of the y axis of the section at the start of the path. [default: 0,0,1, or 0,1,0 for "
+        "a path that starts along z]",
     )] = None,
     twist: Annotated[float, _volume(
         "--twist", metavar="DEGREES", show_default=True,
-        help="Angle by which the section rotates about the path from start to end, in degrees.",
+        help="Angle in degrees by which the section rotates about the path from start to end.",
     )] = 0.0,
     scale: Annotated[float, _volume(
         "--scale", metavar="F", show_default=True,
-        help="Taper: size of the section at the end of the path relative to its size at the start. It is not "
-        "a unit, for which see convert --scale.",
+        help="Size of the section at the end of the path, divided by its size at the start. To change the "
+        "unit use convert --scale.",
     )] = 1.0,
     revolve: o.Revolve = None,
     axis: o.Axis = None,
     cells: Annotated[int | None, o.option_of(o.DOMAIN)(
         "--cells", metavar="N",
-        help="Approximate number of cells in the section. In a circle, more cells are used if the area needs "
-        "them to be accurate to 0.1 %. [default: derived from --around for a circle, else 2500]",
+        help="Approximate number of cells in the section. A circle has more if its area needs them to be "
+        "accurate to 0.1 %. [default: derived from --around for a circle, else 2500]",
     )] = None,
     cell_size: Annotated[float | None, o.option_of(o.DOMAIN)(
         "--cell-size", metavar="H",
-        help="Edge length of cells in the section away from walls, in the unit of the section.",
+        help="Edge length of cells away from walls, in the unit of the section, instead of --cells.",
     )] = None,
     layout: Annotated[str | None, o.option_of(o.DOMAIN)(
-        "--layout", metavar="LAYOUT.json", help="Use the blocks of this layout for the section.",
+        "--layout", metavar="LAYOUT.json",
+        help="Use the blocks in this file for the section. meshonet layout writes it.",
     )] = None,
     walls: o.Walls = None,
     first_cell: Annotated[str | None, o.option_of(o.BOUNDARY_LAYER)(
         "--first-cell", "--wall-spacing", metavar="H|WALL=H,...",
-        help="Height of the first cell at walls, in the unit of the section. Walls are all sides of a "
-        "four-sided section, outer curves without corners, and holes; but sides called inlet, outlet, axis "
-        "or symmetry are no walls. In a section with corners and without holes, name the walls by --walls. "
-        "WALL=H,WALL=H gives each named wall of a multi-block section its own height.",
+        help="Height of the first cell at walls, in the unit of the section. WALL=H,WALL=H gives named walls "
+        "of a multi-block section a height each, and other walls no layers. Walls are all sides of a "
+        "four-sided section, outer curves without corners, and holes, but not sides named inlet, outlet, "
+        "axis or symmetry. Other sections need --walls. [default: no layers]",
     )] = None,
     y_plus: o.YPlusAtWalls = None,
-    reynolds: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
-        "--reynolds", metavar="RE",
-        help="Reynolds number for --y-plus, based on the extent of the section (the diameter of a "
-        "pipe) or on --length.",
+    reynolds: o.Reynolds = None,
+    length: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
+        "--length", metavar="L",
+        help="Reference length of --reynolds, in the unit of the section. [default: the bounding-box length "
+        "of the section; the diameter of a pipe]",
     )] = None,
-    length: o.Length = None,
     growth: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
         "--growth", metavar="G",
-        help="Largest ratio of the heights of neighbouring cells along a grid line away from walls. Without "
-        "--res, or with --res NI, the number of rows of a four-sided section follows from it. [default: 1.2, "
-        "or the ratio that follows from --res]",
+        help="Largest ratio of the heights of neighbouring cells along a grid line away from the wall. The "
+        "number of rows of a four-sided section follows from it, unless --res gives NJ. [default: 1.2]",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,

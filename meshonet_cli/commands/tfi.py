@@ -34,8 +34,8 @@ def tfi(
     )] = "tfi",
     blending: Annotated[BlendingName | None, _option(
         "--blending", metavar="arclength|linear",
-        help="Blending functions of the interpolation: arclength uses the relative arc length along the "
-        "edges, linear the node index. [default: arclength]",
+        help="Blending functions of the interpolation. arclength: of the relative arc length along the "
+        "edges. linear: of the node index. [default: arclength]",
     )] = None,
 ) -> int:
     """Make grids by transfinite interpolation."""

@@ -25,16 +25,16 @@ class TrainOptions:
 
     model: Annotated[str | None, _option(
         "--model", metavar="NAME",
-        help="Architecture: strip (operator for airfoils), quad (operator for four-sided domains), meshonet "
-        "(the network of the MeshONet paper), meshonet-hard (a similar network whose boundary is exact), one "
-        "of the baselines deeponet, pod-deeponet, fno1d, fno2d, wno, kno, lno and mionet, or one of the "
-        "physics-informed networks mgnet and meshnet. [default: meshonet for datasets of grids, strip for "
-        "datasets of boundaries]",
+        help="Architecture. strip: operator for airfoils. quad: operator for four-sided domains. meshonet: "
+        "network of the MeshONet paper. meshonet-hard: similar, with an exact boundary. Baselines: deeponet, "
+        "pod-deeponet, fno1d, fno2d, wno, kno, lno, mionet. Physics-informed: mgnet, meshnet. [default: "
+        "strip for datasets of boundaries, else meshonet]",
     )] = None
     split: Annotated[str | None, _option(
         "--split", metavar="HOW|FILE",
-        help="Rule that reserves shapes for tests: interpolation, extrapolation or random; or a file with "
-        "the word train or test for each shape. [default: the split stored in the dataset]",
+        help="Rule that reserves shapes for tests: interpolation (from the middle of the parameter range), "
+        "extrapolation (from one end) or random; or a file with the word train or test for each shape. "
+        "[default: the split stored in the dataset]",
     )] = None
     epochs: Annotated[int | None, _option(
         "--epochs", metavar="N", min=1,
@@ -50,27 +50,27 @@ class TrainOptions:
     )] = None
     schedule: Annotated[Literal["cosine", "step"] | None, _option(
         "--schedule", metavar="cosine|step",
-        help="Schedule of the learning rate: cosine decreases it to zero, step multiplies it by 0.9 after "
-        "each fifteenth of the training. [default: cosine for strip and quad, step for others]",
+        help="Decrease of the learning rate. cosine: to zero. step: by the factor 0.9 after each fifteenth "
+        "of the training. [default: cosine for strip and quad, step for others]",
     )] = None
     points: Annotated[str | None, _option(
         "--points", metavar="N|all",
-        help="Number of random grid points for each step; a sixth of them lie on the boundary. [default: "
-        "1200]",
+        help="Number of random grid points for each step, a sixth of them on the boundary. all: all points. "
+        "[default: 1200]",
     )] = None
     held_out: Annotated[int | None, _option(
         "--held-out", metavar="N", min=0,
-        help="Number of shapes that are not used for training but to monitor the loss. [default: strip the "
+        help="Number of shapes that are used only to monitor the loss, not for training. [default: strip the "
         "last 300, quad 600, others 0]",
     )] = None
     initial: Annotated[str | None, _option(
         "--initial", metavar="NAME|PATH",
-        help="Model whose weights are the initial weights of a quad operator. [default: random weights]",
+        help="Model whose weights the training of a quad operator starts from. [default: random weights]",
     )] = None
     patience: Annotated[int | None, _option(
         "--patience", metavar="EPOCHS", min=1,
-        help="Stop when the loss on the held-out shapes has not decreased for this many epochs, and keep "
-        "the best weights.",
+        help="Stop when the loss on the held-out shapes has not decreased for this many epochs, and keep the "
+        "best weights. [default: never]",
     )] = None
     seed: Annotated[int, _option(
         "--seed", metavar="S", min=0, show_default=True,
@@ -81,13 +81,13 @@ class TrainOptions:
     )] = 1
     device: Annotated[Literal["auto", "cpu", "cuda"] | None, _option(
         "--device", metavar="auto|cpu|cuda",
-        help="Device for the training; auto is CUDA if torch finds it, else the CPU. [default: cpu for "
-        "strip and quad, auto for others]",
+        help="Device for the training. auto: cuda if torch finds it, else cpu. [default: cpu for strip and "
+        "quad, auto for others]",
     )] = None
     amp: Annotated[bool, _option(
         "--amp",
-        help="Multiply matrices in bfloat16 where the accuracy permits it. On a CPU without bfloat16 "
-        "units this takes twice as long.",
+        help="Multiply matrices in bfloat16 where the accuracy permits it. On a CPU without bfloat16 units "
+        "this takes twice as long.",
     )] = False
     compiled: Annotated[bool, _option(
         "--compile",
@@ -109,9 +109,9 @@ def train(
     dataset: Annotated[list[str], typer.Argument(
         metavar="DATASET", show_default=False,
         help="An .h5 file with grids of one family, made by solve-pde. The model strip needs boundaries of O "
-        "grids instead, for example from sample-boundary --family procedural. The model quad needs two "
-        "datasets of the same domains, one with Winslow's grids and one with variational grids, with 33x33 "
-        "nodes (65x33 around bodies). meshnet also accepts volumes.",
+        "grids instead, e.g. from sample-boundary --family procedural. The model quad needs two datasets of "
+        "the same domains, one with Winslow's and one with variational grids, with 33x33 nodes (65x33 around "
+        "bodies). meshnet also accepts volumes.",
     )],
     output: Annotated[str, _output("-o", "--output", metavar="FILE",
         help="Model file to write, .safetensors.",
@@ -120,13 +120,13 @@ def train(
     options: TrainOptions,
     settings: Annotated[list[str] | None, _option(
         "--set", metavar="NAME=VALUE",
-        help="Setting of the model, e.g. sensors=80, or a weight in the loss of the quad operator, e.g. "
-        "folds=3. All settings are listed in the documentation, on the page on operators of the MeshONet "
-        "paper. Repeatable.",
+        help="Set a parameter of the model, e.g. sensors=80, or a weight in the loss of the quad operator, "
+        "e.g. folds=3. The documentation lists all on the page on operators of the MeshONet paper. "
+        "Repeatable.",
     )] = None,
     log_csv: Annotated[str | None, _output(
         "--log-csv", metavar="FILE",
-        help="Write the loss, its terms, the learning rate and the time to a CSV file.",
+        help="Write the loss, its terms, the learning rate and the time of each epoch to a CSV file.",
     )] = None,
 ) -> int:
     """Train a neural operator on datasets.

@@ -24,8 +24,8 @@ AllowInvalid = Annotated[bool, _option(
 
 LeaveOutFailed = Annotated[bool, _option(
     "--leave-out-failed",
-    help="Do not write grids that fail a --fail-on or a --profile; a line names each. The exit code is 1 all "
-    "the same.",
+    help="Do not write grids that fail a --fail-on or --profile; print a line for each. The exit code stays "
+    "1.",
 )]
 
 
@@ -35,8 +35,8 @@ class CheckOptions:
 
     repair: Annotated[bool | None, _option(
         "--repair/--no-repair",
-        help="Repair folded cells; with --no-repair a grid with folded cells is an error. [default: --repair "
-        "for solve-pde and infer, --no-repair for tfi]",
+        help="Repair folded cells. With --no-repair a grid with folded cells is an error. [default: "
+        "--no-repair for tfi, else --repair]",
     )] = None
     allow_invalid: AllowInvalid = False
 
@@ -47,17 +47,17 @@ class GateOptions:
 
     fail_on: Annotated[list[str] | None, _option(
         "--fail-on", metavar="GATE",
-        help="Exit with code 1 if this condition holds, e.g. 'max_angle>170', 'skewness.p99>0.8' or "
-        "'folded>0'. The names include folded, max_angle, skewness, growth, wall_growth, equal_wall_cells, "
-        "far_field, non_orthogonality, face_skewness, box_ratio and, for multi-block grids, irregular; the "
-        "page on quality in the documentation lists all of them. The condition replaces the limit of a "
-        "--profile for the same name. For several grids a table shows which of them pass. Repeatable.",
+        help="Exit with code 1 if this condition holds, e.g. 'max_angle>170', 'skewness.p99>0.8' (99th "
+        "percentile) or 'folded>0'. Metrics include folded, max_angle, skewness, growth, wall_growth, "
+        "equal_wall_cells, far_field, non_orthogonality, face_skewness, box_ratio and, for multi-block "
+        "grids, irregular; the documentation lists all on the page on quality. The condition replaces the "
+        "--profile limit of the same metric. For several grids a table shows which of them pass. Repeatable.",
     )] = None
     profile: Annotated[list[Profile] | None, _option(
         "--profile", metavar="openfoam|pointwise|verdict|viscous",
-        help="Check the grid against the thresholds of another program or guideline; the result for each "
-        "threshold is pass, warn or FAIL. Exit with code 1 after a FAIL. The page on quality in the "
-        "documentation lists the thresholds. Repeatable.",
+        help="Check the grid against the thresholds of another program or guideline: each gives pass, warn "
+        "or FAIL, and a FAIL exits with code 1. The documentation lists the thresholds on the page on "
+        "quality. Repeatable.",
     )] = None
 
     def criteria(self, leave_out: bool = False, *, more: Sequence[str] = ()) -> "Criteria | None":

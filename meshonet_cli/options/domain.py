@@ -12,14 +12,14 @@ _COUNTS = "use SIDE=N, e.g. inlet=40,floor=120"
 # fmt: off
 BlocksName = Annotated[Literal["auto", "single"], _option(
     "--blocks", metavar="auto|single", show_default=True,
-    help="Number of blocks. auto makes one block for a four-sided domain or a body in a far field, and "
-    "several blocks for all other domains. single makes one block.",
+    help="Number of blocks. auto: one for a four-sided domain or a body in a far field, several for all "
+    "other domains. single: one.",
 )]
 Walls = Annotated[str | None, _option(
     "--walls", metavar="NAME,NAME",
-    help="Names of the walls that get the layers of --first-cell or --y-plus: holes, or named parts of a "
-    "boundary curve. Layers end only at corners of about 90 degrees. If both sides of such a corner are "
-    "walls, their layers meet. [default: the walls that --first-cell lists]",
+    help="Names of the walls with layers: holes, or named parts of a boundary curve. Needs --first-cell or "
+    "--y-plus. Layers end only at corners of about 90 degrees; if both sides of such a corner are walls, "
+    "their layers meet. [default: the walls described at --first-cell]",
 )]
 
 
@@ -30,28 +30,28 @@ class BlockOptions:
     assemble: Annotated[bool, _option(
         "--assemble",
         help="Combine all inputs into one domain: bodies in a common far field or, if one input encloses the "
-        "others, inside this input. Each body is named after its file.",
+        "others, inside this input. Each wall is named after its file.",
     )] = False
     cells: Annotated[int | None, _option(
         "--cells", metavar="N",
-        help="Approximate number of cells in all blocks together. [default: 2500, or 20000 with layers]",
+        help="Approximate number of cells in all blocks together. [default: 2500; 20000 with layers]",
     )] = None
     cell_size: Annotated[float | None, _option(
         "--cell-size", metavar="H",
-        help="Edge length of cells away from walls, in the unit of the domain. Edges are shorter next to "
-        "layers and longer towards a distant far field.",
+        help="Edge length of cells away from walls, in the unit of the input, instead of --cells. Edges are "
+        "shorter at layers and longer towards a distant far field.",
     )] = None
     layout: Annotated[str | None, _option(
         "--layout", metavar="LAYOUT.json",
-        help="Use the blocks of this layout, written by meshonet layout for the same or a similar domain. "
-        "For a grid with layers, make the layout with a first cell too. The command layout itself fits the "
-        "blocks to its domain and writes them, with the number of cells that --cells gives.",
+        help="Use the blocks in this file, which meshonet layout wrote for the same or a similar domain. For "
+        "a grid with layers, make the layout with a first cell. The command layout itself fits the blocks to "
+        "its domain and writes them with about --cells cells.",
     )] = None
     periodic: Annotated[list[str] | None, _option(
         "--periodic", metavar="SIDE,SIDE",
-        help="Names of two sides of the outer boundary that are periodic: a translation moves one onto the "
-        "other. The nodes of the two sides match. Output formats that know periodic sides mark them. Repeat "
-        "the option for a second pair. In GeoJSON files the property periodic has the same meaning.",
+        help="Names of two sides of the outer boundary, one a translation of the other, whose nodes must "
+        "match. Formats that know periodic sides mark them. Repeat the option for a second pair. A GeoJSON "
+        "file may have the property periodic instead.",
     )] = None
 
     walls: Walls = None
@@ -81,17 +81,17 @@ class DomainOptions(BlockOptions):
 
     pitch: Annotated[str | None, _option(
         "--pitch", metavar="DX,DY",
-        help="Displacement from one blade of a cascade to the next. The input is one blade; the grid fills "
-        "the passage around this blade, and the nodes of the two periodic sides match. An error with "
-        "--layout: the blocks of a passage are always the same.",
+        help="Displacement from one blade of a cascade to the next, in the unit of the input, which is one "
+        "blade. The grid fills the passage around this blade; the nodes of its two periodic sides match. Not "
+        "with --layout: a passage always has the same blocks.",
     )] = None
     inlet: Annotated[float | None, _option(
         "--inlet", metavar="L",
-        help="Length of the passage upstream of the blade, in axial chords; needs --pitch. [default: 1]",
+        help="Length of the passage upstream of the blade, in axial chords. Needs --pitch. [default: 1]",
     )] = None
     outlet: Annotated[float | None, _option(
         "--outlet", metavar="L",
-        help="Length of the passage downstream of the blade, in axial chords; needs --pitch. [default: 1]",
+        help="Length of the passage downstream of the blade, in axial chords. Needs --pitch. [default: 1]",
     )] = None
 
     def parameters(self) -> dict[str, Any]:

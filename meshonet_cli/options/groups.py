@@ -9,7 +9,7 @@ from typing import Annotated, Any, get_origin
 import typer
 
 IO, SAMPLING, BOUNDARY_LAYER = "Input and output", "Sampling", "Boundary layer"
-DOMAIN, VOLUME = "Domains of many blocks", "Volumes from surfaces"
+DOMAIN, VOLUME = "Multi-block grids", "Volumes"
 METHOD, CHECKS = "Method", "Checks"
 """Headings of the groups of options in help texts."""
 GROUPS = (IO, SAMPLING, BOUNDARY_LAYER, DOMAIN, VOLUME, METHOD, CHECKS)  # in the order of the help text

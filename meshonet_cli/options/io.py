@@ -20,45 +20,43 @@ _option = option_of(IO)
 # fmt: off
 Boundaries = Annotated[list[str], typer.Argument(
     metavar="BOUNDARY", show_default=False,
-    help="File with a boundary (airfoil, points, dataset or grid), a designation such as naca:2412, or - "
-    "for standard input. A folder or a .zip file stands for all boundaries in it, and @FILE for the inputs "
-    "that FILE lists.",
+    help="File with an airfoil, points, a boundary or a grid; a designation such as naca:2412; or - for "
+    "standard input. A folder or a .zip file stands for all inputs in it, @FILE for those listed in FILE.",
 )]
 Grids = Annotated[list[str], typer.Argument(
     metavar="GRID", show_default=False,
-    help="File with a grid, or - for standard input. A folder stands for all grids in it, and @FILE for the "
-    "inputs that FILE lists.",
+    help="File with a grid, or - for standard input. A folder stands for all grids in it, @FILE for those "
+    "listed in FILE.",
 )]
 Output = Annotated[str, _option(
     "-o", "--output", metavar="FILE",
-    help="File to write, or - for standard output. Several inputs need a pattern such as 'dir/{stem}.vts' "
-    "(the fields are {stem}, {name} and {index}), or one .h5 file for all results.",
+    help="File to write, or - for standard output. For several inputs: one .h5 file, or a pattern such as "
+    "'dir/{stem}.vts', with {stem} (of the input file), {name} (of the shape) or {index} (from 0).",
 )]
 From = Annotated[str | None, _option(
     "--from", metavar="FORMAT",
-    help="Format of the input. Needed if neither the extension nor the content of the file determines "
-    "it.",
+    help="Format of the input, as in meshonet convert --list-formats. [default: from the extension or the "
+    "content]",
 )]
 To = Annotated[str | None, _option(
     "--to", metavar="FORMAT",
-    help="Format of the output. Needed if the extension of the file does not determine it. [default: hdf5 "
-    "on standard output]",
+    help="Format of the output, as in meshonet convert --list-formats. [default: from the extension; hdf5 on "
+    "standard output]",
 )]
 SkipExisting = Annotated[bool, _option(
     "--skip-existing", help="Skip an input if its output file, or its part of a dataset, already exists.",
 )]
 Threads = Annotated[int | None, _option(
     "--threads", metavar="N", min=1, max=64,
-    help="Number of threads for one large grid. The result does not depend on it. [default: all cores, "
-    "divided by --jobs]",
+    help="Number of threads for each grid; the result does not depend on it. [default: cores divided by "
+    "processes]",
 )]
 AsJson = Annotated[bool, _option("--json", help="Print one JSON object per result on standard output.")]
 PartSize = Annotated[int | None, _option(
     "--part-size", metavar="N", min=1, max=1_000_000,
-    help="Number of inputs in each part of an .h5 dataset. The parts are the files out/part-00000.h5, "
-    "out/part-00001.h5 and so on; out.h5 presents them as one dataset. --skip-existing continues an "
-    "unfinished dataset. [default: parts of up to 256 MiB for more than 10,000 inputs or with --shard, else "
-    "a dataset without parts]",
+    help="Write an .h5 dataset in parts of N inputs each: out/part-00000.h5, out/part-00001.h5 and so on, "
+    "which out.h5 presents as one dataset. --skip-existing continues an unfinished dataset. [default: parts "
+    "of up to 256 MiB with --shard or more than 10,000 inputs, else no parts]",
 )]
 Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")]
 
@@ -95,13 +93,13 @@ class InputOptions(PrintOptions):
 
     pick: Annotated[list[str] | None, _option(
         "--pick", metavar="PATTERN",
-        help="Use only files whose name matches this pattern, e.g. 'naca*', from folders, .zip files and "
-        "lists. Upper and lower case are equivalent. Repeatable.",
+        help="Use only files whose name matches PATTERN, e.g. 'naca*', from folders, .zip files and lists. "
+        "Case does not matter. Repeatable.",
     )] = None
     shard: Annotated[str | None, _option(
         "--shard", metavar="K/N",
-        help="Process every N-th input, starting with the K-th, so that N jobs can share the work. If the "
-        "output is a dataset in parts, process every N-th part.",
+        help="Process only inputs K, K+N, K+2N and so on (parts, if the output is a dataset in parts), so "
+        "that N jobs share the work. K is 1 to N.",
     )] = None
 
     def inputs(
@@ -135,16 +133,17 @@ class RunOptions(InputOptions):
     """Selection of inputs, messages, and the engine of a batch."""
 
     jobs: Annotated[int, _option(
-        "--jobs", metavar="N", min=1, max=1024, show_default=True, help="Number of processes for a batch.",
+        "--jobs", metavar="N", min=1, max=1024, show_default=True,
+        help="Number of processes that share the inputs.",
     )] = 1
     engine: Annotated[EngineName, _option(
         "--engine", metavar="processes|dask|mpi", show_default=True,
-        help="Engine that distributes a batch: processes uses --jobs processes, dask a Dask cluster, and "
-        "mpi the ranks of MPI (mpiexec -n N meshonet ...).",
+        help="Engine that starts the processes: processes uses --jobs on this machine, dask a Dask cluster, "
+        "mpi the ranks of mpiexec -n N meshonet ...",
     )] = "processes"
     scheduler: Annotated[str | None, _option(
         "--scheduler", metavar="ADDRESS",
-        help="Address of the scheduler of the Dask cluster, e.g. tcp://head:8786. [default: a cluster of "
+        help="Address of the scheduler for --engine dask, e.g. tcp://head:8786. [default: a cluster of "
         "--jobs processes on this machine]",
     )] = None
 

@@ -24,10 +24,10 @@ _option = option_of(SAMPLING)
 # fmt: off
 Resolution = Annotated[str | None, _option(
     "--res", metavar="N|NIxNJ[xNK]",
-    help="Number of nodes along each direction: N for all directions, or NI along xi (around a body), NJ "
-    "along eta (away from it) and NK along zeta (volumes). If --growth determines the number of rows, N is "
-    "NI. For multi-block grids, number of cells along the longest extent. [default: the nodes of the input, "
-    "or 200x100 for curves]",
+    help="Number of nodes: N along every direction, or NI along xi (around a body), NJ along eta (away from "
+    "it) and NK along zeta (volumes). If --growth determines the number of rows, N is NI. For a multi-block "
+    "grid, number of cells along its longer extent. [default: the nodes of the input; 200x100 for airfoils "
+    "and outlines]",
 )]
 
 
@@ -38,73 +38,75 @@ class SamplingOptions:
     res: Resolution = None
     topology: Annotated[TopologyName, _option(
         "--topology", metavar="auto|quad|o|c", show_default=True,
-        help="Topology of the grid: quad is four-sided, o surrounds a body, and c surrounds an airfoil and "
-        "its wake (NI then includes both sides of the wake). auto selects c if a first cell is given and "
-        "the trailing edge is sharp, else quad or o according to the input.",
+        help="Topology of the grid. quad: four-sided. o: around a body. c: around an airfoil and its wake; "
+        "NI includes both sides of the wake. auto: c for an airfoil with a sharp trailing edge and a first "
+        "cell, o for other bodies and outlines with fewer than four corners, else quad.",
     )] = "auto"
     spacing: Annotated[SpacingName, _option(
         "--spacing", metavar="|".join(LAWS), show_default=True,
-        help="Distribution of the nodes along walls. conformal: equal steps on the circle to which a "
-        "conformal map takes the body. uniform: equal steps along the wall. cosine: small cells at both "
-        "ends. tanh: small cells of prescribed length at both ends. curvature: small cells at the ends and "
-        "where the wall bends. auto: conformal around airfoils and smooth bodies, tanh around airfoils if "
-        "--le-spacing or --te-spacing is given, curvature with a first cell, else uniform.",
+        help="Distribution of the nodes along walls. uniform: equal cells. cosine: smaller cells at both "
+        "ends. tanh: smaller cells at both ends, whose length --le-spacing and --te-spacing set for "
+        "airfoils. curvature: smaller cells at both ends and at bends. conformal: equal steps on the circle "
+        "to which a conformal map takes the body. auto: curvature with a first cell; otherwise conformal "
+        "around airfoils (tanh with --le-spacing or --te-spacing) and smooth bodies, else uniform.",
     )] = "auto"
     le_spacing: Annotated[float | None, _option(
-        "--le-spacing", metavar="H", help="Length of the wall cells at the leading edge, in chords.",
+        "--le-spacing", metavar="H",
+        help="Length of the wall cells at the leading edge, in chords. [default: from --spacing]",
     )] = None
     te_spacing: Annotated[float | None, _option(
-        "--te-spacing", metavar="H", help="Length of the wall cells at the trailing edge, in chords.",
+        "--te-spacing", metavar="H",
+        help="Length of the wall cells at the trailing edge, in chords. [default: from --spacing]",
     )] = None
     te: Annotated[Literal["auto", "exact", "round", "wedge"], _option(
         "--te", metavar="auto|exact|round|wedge", show_default=True,
-        help="Treatment of blunt trailing edges: exact keeps their shape, round rounds the two corners, and "
-        "wedge closes the base by a wedge of up to four base heights. At the corners, grid angles deviate "
-        "from 90 degrees by about 45 with exact and by at most 10 with round. auto is wedge for a C grid "
-        "that is not marched, or that has no first cell and a base of at most 0.005 chords; otherwise it is "
-        "exact.",
+        help="Shape of a blunt trailing edge. exact: unchanged; grid angles at its two corners deviate from "
+        "90 degrees by about 45. round: rounded corners; angles deviate by at most 10. wedge: closed by a "
+        "wedge of up to four base heights. auto: wedge for a C grid that is not marched, or that has no "
+        "first cell and a base of at most 0.005 chords; else exact.",
     )] = "auto"
     far_field: Annotated[float | None, _option(
         "--far-field", metavar="R",
-        help="Smallest distance of the far field from the middle of the body, in chords. For lift and drag "
-        "use 100 or more. For a volume marched from a surface, the marching distance in the unit of the "
-        "surface. [default: 15 chords, or 15 times the largest extent of the surface]",
+        help="Smallest distance of the far field from the middle of the body, in chords of an airfoil or "
+        "largest extents of other bodies. For lift and drag use 100 or more. For a volume marched from "
+        "a surface, the marching distance in the unit of the surface. [default: 15; from a surface 15 "
+        "bounding-box lengths]",
     )] = None
     wake: Annotated[float | None, _option(
         "--wake", metavar="L",
-        help="Length of the wake of a C grid, in chords. [default: the far-field distance]",
+        help="Length of the wake of a C grid, from the trailing edge, in chords. [default: --far-field]",
     )] = None
     wake_nodes: Annotated[int | None, _option(
         "--wake-nodes", metavar="N",
-        help="Number of nodes along the wake of a C grid, including the trailing edge. The cells grow by a "
-        "constant ratio. [default: about a fifth of NI]",
+        help="Number of nodes along the wake of a C grid, including the trailing edge. Cell lengths grow by "
+        "a constant ratio. [default: about a fifth of NI]",
     )] = None
     base: Annotated[float | None, _option(
         "--base", metavar="T",
-        help="Open trailing edges that are thinner than T chords to a base of this thickness, by moving both "
-        "sides apart in proportion to the distance from the leading edge. --te then applies to this base.",
+        help="Open a trailing edge thinner than T chords to this thickness. Both sides move apart in "
+        "proportion to the distance from the leading edge. --te then applies to this base.",
     )] = None
     base_nodes: Annotated[int | None, _option(
         "--base-nodes", metavar="N",
-        help="Number of nodes on the base of a blunt trailing edge, including its two corners. It must be "
-        "odd for an O grid, which starts in the middle of the base. [default: derived from the width of the "
-        "base and the cells next to it]",
+        help="Number of nodes on the base of a blunt trailing edge, including its two corners; odd for an O "
+        "grid, whose seam is in the middle of the base. [default: derived from the base height and the cells "
+        "next to it]",
     )] = None
     smooth: Annotated[float | None, _option(
         "--smooth", metavar="TOL",
-        help="Smooth an airfoil with noisy or rounded coordinates by splines, which deviate from the points "
-        "by at most TOL chords. Choose about 3 times the standard deviation of the noise, or the unit of the "
-        "last digit: 6e-4 for noise of 2e-4, 1e-4 for four decimals. A corner is kept if it is more than 2 "
-        "TOL chords away from the straight line between the third point before it and the third point after "
-        "it. A base lower than TOL chords is closed. The report gives the changes. Needs SciPy.",
+        help="Smooth noisy or rounded coordinates of an airfoil by splines that stay within TOL chords of "
+        "the points. Choose 3 times the standard deviation of the noise, or one unit of the last digit: 1e-4 "
+        "for four decimals. A corner more than 2 TOL from the line between the third points before and after "
+        "it stays. A base lower than TOL is closed. The report lists the changes. Needs SciPy.",
     )] = None
     corners: Annotated[str, _option(
         "--corners", metavar="auto|I,J,K,L", show_default=True,
-        help="Indices, from 0, of the four points of an outline that become the corners of a four-sided "
-        "grid, starting in the south-west.",
+        help="Indices, from 0, of four points of an outline, in order from the south-west, that become the "
+        "corners of a four-sided grid. auto: the four sharpest corners.",
     )] = "auto"
     normalise: Annotated[bool, _option(
-        "--normalise", help="Move the leading edge to (0, 0) and the trailing edge to (1, 0).",
+        "--normalise",
+        help="Scale, turn and move the airfoil: leading edge to (0, 0), trailing edge to (1, 0).",
     )] = False
 
     def placed(self, layers: "Mapping[str, Any] | None" = None) -> "Sampling":

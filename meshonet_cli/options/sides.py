@@ -15,16 +15,16 @@ class SideOptions:
 
     spacing_south: Annotated[float | None, _option(
         "--spacing-south", metavar="H",
-        help="Height of the first cell at every node of the south side of a four-sided domain, in the unit "
-        "of the input.",
+        help="Height of the first cell at the south side of a four-sided domain, in the unit of the input. "
+        "[default: the height that --first-cell gives]",
     )] = None
     spacing_north: Annotated[float | None, _option(
-        "--spacing-north", metavar="H", help="The same as --spacing-south for the north side.",
+        "--spacing-north", metavar="H", help="The same for the north side.",
     )] = None
     spacing_west: Annotated[float | None, _option(
-        "--spacing-west", metavar="H", help="The same as --spacing-south for the west side.",
+        "--spacing-west", metavar="H", help="The same for the west side.",
     )] = None
     spacing_east: Annotated[float | None, _option(
-        "--spacing-east", metavar="H", help="The same as --spacing-south for the east side.",
+        "--spacing-east", metavar="H", help="The same for the east side.",
     )] = None
 # fmt: on

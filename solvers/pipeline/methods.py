@@ -88,7 +88,7 @@ METHODS: Mapping[str, MethodEntry] = MappingProxyType(
         ),
         "thomas-middlecoff": MethodEntry(
             "meshonet.solvers.elliptic.solve:solve_thomas_middlecoff",
-            "Winslow's equations with control functions; the node spacing of the sides continues inside",
+            "Winslow's equations with control functions, which continue the node spacing of the sides inside",
             sweeps=False,
         ),
         "steger-sorenson": MethodEntry(
@@ -98,14 +98,14 @@ METHODS: Mapping[str, MethodEntry] = MappingProxyType(
         ),
         "variational": MethodEntry(
             "meshonet.solvers.energy.variational:solve",
-            "minimises a functional of angles and edge lengths; angles are closer to 90 degrees",
+            "minimises a functional of angles and lengths; angles are closer to 90 degrees than winslow's",
         ),
         "hyperbolic": MethodEntry(
             "meshonet.solvers.hyperbolic.march:hyperbolic", "marches row by row from the wall"
         ),
         "conformal": MethodEntry(
             "meshonet.solvers.conformal.solve:conformal",
-            "Winslow's equations around a body, solved in a strip after a conformal map",
+            "Winslow's equations around a body, on the rectangle to which a conformal map takes the region",
         ),
         "operator": MethodEntry(
             "meshonet.solvers.neural.inference:OperatorMethod", "a neural operator", kind="network"
