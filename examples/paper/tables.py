@@ -237,7 +237,7 @@ def maps(pages: Path) -> str:
     return table(["", "TFI", "PDE", "MeshONet, boundary pasted", "MeshONet-hard"], rows) if rows else ""
 
 
-def budgets(pictures: Path) -> str:
+def budgets(results: Path) -> str:
     """Return what each model was given: the last row of its log."""
     rows = []
     for path in sorted(results.glob("*.csv")):
