@@ -48,7 +48,7 @@ The deformations are random (seed {seed}).
 
 The columns and methods of the table are:
 
-- *deformations*: kind, with the number of deformations in brackets. Random deformations that give an
+- *deformations*: kind, with their number in brackets. Random deformations that give an
   invalid outline are left out; their number is {refused}.
 - *folded*: number of grids with folded cells and, if there are any, the largest number of folded cells in
   one grid.

@@ -43,7 +43,7 @@ GPUs](../guide/threads-and-gpu.md) explains how to use a GPU.
 `python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md` measures for at most eight minutes and writes
 this page. Rows that were not measured for lack of time are marked.
 
-- **Layers**: the functions of `meshonet.layer`, which are exact solvers, and for comparison the network
+- **Layers**: the functions of `meshonet.layer` (exact solvers) and, for comparison, the network
   `quad-general`. The sides of the domains are in the memory of the GPU. The table gives the grids per second
   without and with gradients, the peak memory, whether two runs give bitwise equal nodes, and the largest
   distance from the nodes that the CPU computes. Grids of 65 x 65 nodes are made in batches, larger grids

@@ -42,9 +42,9 @@ HEAD = """# Volumes marched from surfaces: quality and time
 Use this page to find the quality and the CPU time of volume grids that are marched from surfaces. For the
 method see [marching from surfaces](../guide/marching-surfaces.md).
 
-- *surface*: the first four are read from files (a blended wing body, the wing ONERA M6, two spheres), the
-  others are computed. *patches, nodes*: their numbers on the surface. *levels*: number of node layers from
-  the surface to the far field.
+- *surface*: the first four (a blended wing body, the ONERA M6 wing, two spheres) are read from files. *star*
+  and *dented* are deformed spheres. *patches, nodes*: their numbers on the surface. *levels*: number of node
+  layers from the surface to the far field.
 - *first cell, distance*: prescribed first-cell height, and distance of the far field, in the unit of the
   surface.
 - *tries*: number of marches, each with other smoothing parameters, until the grid was valid.

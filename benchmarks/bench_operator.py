@@ -247,8 +247,7 @@ programs used the machine. *ms* is the CPU time to generate the grid, including 
 writing and repair. Each time is the median over the shapes, with one run for each shape; the last digits
 are not significant. Bold rows are the networks and the default of `infer`.
 
-**Methods.** `infer, default` is the command without options; *infer, after repair* its grid after repair. The
-other rows:
+**Methods.** `infer, default` is the command without options. The other rows:
 
 | row | how the grid is made |
 | --- | --- |
@@ -288,16 +287,15 @@ Remarks:
   the model `hole-o`; its distances are then largest.
 - In the tables of distances, the nodes of a boundary are every fourth node of a finer boundary (every second
   node for 800x800 nodes). A corner of a blunt trailing edge may not be among these nodes; this changes the
-  largest angle by a few percent. In the table of grids without folded cells the boundaries are not taken from
-  finer ones.
+  largest angle by a few percent.
 - For walls with uniform spacing the reference is accurate only to about 1e-4, because Winslow's solution
   converges only with order 1.4 at trailing edges. The network also differs from the reference by design:
   its grid lines bisect the angle at the trailing edge.
 - The titles of tables give the number of shapes in brackets. A few of these shapes have no converged
   reference and are left out of the table.
 """
-DOMAINS_NOTE = """The reference of Winslow's methods and `quad-winslow` is Winslow's solution; that of
-variational methods and `quad-general` is the converged variational grid."""
+DOMAINS_NOTE = """The reference of `quad-winslow` is Winslow's solution, that of `quad-general` the
+converged variational grid."""
 FAMILIES_NOTE = """
 ## The six families of the MeshONet paper, 101x101, test members
 
@@ -321,12 +319,11 @@ WHICH = """
   `--model airfoil-o` or `--polish off` selects the network.
 - **Four-sided domains**: the default is the variational method, on fewer nodes with interpolation if these
   resolve all sides. For a single grid it is better than any network. For batches, `--model quad-general` is
-  many times faster than any solver ([measurements](quad-operator.md)).
+  many times faster ([measurements](quad-operator.md)).
 - **C grids**: the default is hyperbolic marching from the wall and the wake, or the variational method if
   marching fails. The network for four-sided domains generates worse C grids than TFI
   ([measurements](body-operator.md#c-grids-no-model)).
-- **Batches of airfoils** gain little from the network. The network is evaluated for 64 airfoils at once,
-  but the other steps treat one airfoil after the other.
+- **Batches of airfoils** gain little: only the network is evaluated for many airfoils at once.
 """
 
 if __name__ == "__main__":

@@ -53,8 +53,8 @@ interpolated between two real airfoils, one at the hub and one at the casing. Th
 
 Grids of random rows have about {cells} cells, or more if their layers need more, and first-cell heights of
 {first:g} chords. Radial rows are centrifugal impellers, radial turbines, mixed-flow pumps (about half of
-these three with a tip gap) and vaned diffusers. The last two lines of the table are for groups of rows: "30
-of 30" have a valid grid, and *nodes* and *CPU s* are medians.
+these three with a tip gap) and vaned diffusers. The last two lines are for groups of rows: "30 of 30" have a
+valid grid, and *nodes* and *CPU s* are medians.
 
 - *folded*: number of cells with a corner Jacobian of zero or less / number of cells in which a Bezier
   coefficient of the Jacobian is zero or less.

@@ -217,10 +217,10 @@ HEAD = """# Four-sided domains: TFI, Winslow and variational grids
 <!-- made by python benchmarks/bench_variational.py --page docs/benchmarks/variational.md -->
 
 Use this page to choose between `tfi`, `solve-pde --method winslow` and `solve-pde --method variational`. The
-option `--coarse N` solves on N x N nodes and interpolates; the tables show how much time this saves and how
-much the angles change. [Elliptic grids](../theory/elliptic.md), [variational grids](../theory/variational.md)
-and [the neural operator](quad-operator.md) have their own pages. Rows of the variational method are bold.
-*bump*: a square with a half disc cut off. *infer, default*: conformal map.
+option `--coarse N` solves on N x N nodes and interpolates. [Elliptic grids](../theory/elliptic.md),
+[variational grids](../theory/variational.md) and [the neural operator](quad-operator.md) have their own
+pages. Rows of the variational method are bold. *bump*: a square with a half disc cut off. *infer, default*:
+conformal map.
 
 - *angle*: largest included angle of each cell, in degrees: maximum, 99th percentile and mean over the
   cells. The maximum cannot be below the largest corner angle of the boundary (arch 147.5, hexagon 135).
@@ -230,7 +230,7 @@ and [the neural operator](quad-operator.md) have their own pages. Rows of the va
   first row of the method in the table. The neural operator is compared with the variational grid. On 3200 x
   3200 nodes, where the variational method is not run on all nodes, distances are to the grid of `variational
   --coarse 33`.
-- *folded*: number of folded cells in the solution, before repair.
+- *folded*: number of folded cells, before repair.
 - *worse than Winslow's*: number of domains for which the maximum or the mean angle is larger than in
   Winslow's grid.
 - *CPU ms*: CPU time of one thread, best of several runs, while other programs used the machine.
@@ -238,8 +238,8 @@ and [the neural operator](quad-operator.md) have their own pages. Rows of the va
 
 Around the notch of the wrench the variational method takes many iterations on fine grids; `--coarse auto`
 then solves on fewer nodes. The distance between a solution on 33 x 33 nodes and the solution on all nodes is
-the discretisation error of the coarse solution, which is of second order. It is not an iteration error: it
-does not change if both solutions are converged to 1e-6.
+the discretisation error of the coarse solution, which is of second order. Converging both solutions to 1e-6
+does not change this distance.
 
 ![Grids by five methods, coloured by the largest included angle](../img/quad-grids.png)
 """

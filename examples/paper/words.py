@@ -8,11 +8,12 @@ HEAD = """
 Read this page to see which claims of the paper are confirmed: Xiao, Chen, Peng, Wang, Liu, *MeshONet: A Generalizable
 and Efficient Operator Learning Method for Structured Mesh Generation*, arXiv 2501.11937.
 
-MeshONet is a neural network that learns to predict the grid of a shape from its boundary. All values here come from
-`meshonet` commands: `make paper` samples the six [families of shapes](../../reference/families.md), solves for their grids, trains
-the networks, evaluates them and measures the results. The commands are in `examples/paper/Makefile`;
-[paper models](../../theory/paper-models.md) describes the networks. The paper measures quality by the largest included angle of a
-cell, and shows this angle in colour maps without numbers. This page therefore quotes the paper's claims in words next to our values.
+MeshONet is a neural network that learns to predict the grid of a shape from its boundary. All values here
+come from `meshonet` commands: `make paper` samples the six [families of shapes](../../reference/families.md),
+solves for their grids, trains the networks, evaluates them and measures the results. The commands are in
+`examples/paper/Makefile`; [paper models](../../theory/paper-models.md) describes the networks. The paper
+measures quality by the largest included angle of a cell, and shows this angle in colour maps without numbers.
+This page therefore quotes the paper's claims.
 """
 
 STANDS = """
@@ -21,7 +22,7 @@ STANDS = """
 
 LOWEST = """The paper claims that MeshONet's loss is orders of magnitude below the losses of four other networks, the
 baselines. Here all networks are trained on one *budget*: the same shapes, equally often, with the same
-learning-rate schedule. Values are mean and spread over the random seeds.
+learning-rate schedule. Values are mean ± standard deviation over the random seeds.
 
 """
 
@@ -47,11 +48,11 @@ solver, which takes 140 s for 100 x 100 nodes. `solve-pde` takes {times} times a
 QUALITY = """
 ## Quality, case by case
 
-Each case has 36 shapes of 101 x 101 nodes: 30 for training and 6 for tests, as in the paper. *Interpolation*
-tests the middle of the parameter range and trains on both ends. *Extrapolation* tests one end of the range.
-*Random* tests random parameters. All values are for test grids. *Relative L2* is the distance from the
-converged Winslow solution. *Boundary error* is the largest distance of a predicted boundary node from
-the given node. *Max angle* and *mean angle* are the largest included angle of a cell, in degrees: maximum and mean over a grid.
+Each case has 36 shapes of 101 x 101 nodes: 30 for training and 6 for tests. *Interpolation* tests the middle
+of the parameter range and trains on both ends. *Extrapolation* tests one end of the range. *Random* tests
+random parameters. All values are for test grids. *Relative L2* is the distance from the converged Winslow
+solution. *Boundary error* is the largest distance of a predicted boundary node from the given node. *Max
+angle* and *mean angle* are the largest included angle of a cell, in degrees: maximum and mean over a grid.
 
 The networks learn from the grids of the rows *PDE*. For the wrench, Winslow's equations fold 4 to 18
 cells of each grid at the two corners of 270 degrees; these cells are repaired. For wrench and airfoil, modes that are
@@ -71,9 +72,9 @@ PAPER = {
 RACE = """
 ## Loss on one budget
 
-All models are trained on the same shapes, equally often, with the same learning-rate schedule and the same random points
-in each step. Values are mean ± spread over the random seeds. A figure of the paper, over 100,000 iterations, shows
-MeshONet's loss orders of magnitude below the others.
+All models are trained on the same budget, with the same random points in each step. Values are mean ±
+standard deviation over the random seeds. A figure of the paper, over 100,000 iterations, shows MeshONet's
+loss orders of magnitude below the others.
 
 `meshonet-hard` learns a correction of an initial grid. Its loss is the error of this correction and
 cannot be compared with the other losses; compare the relative L2 errors instead. `fno2d` learns
@@ -89,7 +90,8 @@ the same schedule and the same random points in each step. The tables of quality
 above have fifty times this budget (ten times for `meshonet-hard` on the airfoil). Settings are the defaults of each model.
 
 For each random seed (0 and 1) the median of the relative L2 distances of the network's output from the test
-grids is taken; the table gives mean ± spread of the two medians. The least value of each row is bold.
+grids is taken; the table gives mean ± standard deviation of the two medians. The least value of each row is
+bold.
 """
 
 AGAINST = """The paper compares MeshONet's loss with those of four baselines on one case; it only cites WNO, KNO and
@@ -115,7 +117,7 @@ times are those of one thread on {machine}, the paper's MeshONet ran on an RTX 4
 MAPS = """
 ## Maps of the largest included angle
 
-The maps show the first test shape of each case. Colour is the largest included angle of each cell.
+The maps show the first test shape of each case.
 """
 
 SETTINGS = """

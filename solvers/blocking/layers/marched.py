@@ -1,4 +1,4 @@
-"""Marches the levels of layers from the columns of a wall, with a prescribed thickness for each column."""
+"""Marches layers from a wall, with a prescribed thickness for each column."""
 
 from collections.abc import Callable, Sequence
 

@@ -1,4 +1,4 @@
-"""Lines of a seamless map as pieces in triangles, with access to points by length."""
+"""Coordinate lines of a seamless map as pieces in triangles; points on the lines by arc length."""
 
 from __future__ import annotations
 
