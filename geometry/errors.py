@@ -68,6 +68,11 @@ class InputError(MeshonetError):
         return f"{text}; {spelled(self.remedy, spelling)}" if self.remedy else text
 
 
+def place_of(point: Iterable[float]) -> str:
+    """Return the position of a point in space as text, ``x=0.1, y=0.2, z=0.3``."""
+    return ", ".join(f"{name}={value:.6g}" for name, value in zip("xyz", point, strict=True))
+
+
 def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
     """Return ``did you mean ...?`` with the word in `known` most similar to `word`, or ''.
 

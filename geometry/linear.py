@@ -149,23 +149,6 @@ def nearest_rotation(maps: Any) -> Floats:
     )
 
 
-def gauss_legendre(count: int) -> tuple[Floats, Floats]:
-    """Return the ascending nodes and the weights of Gauss-Legendre quadrature on [-1, 1]."""
-    nodes, weights = np.zeros(count), np.zeros(count)
-    for k in range((count + 1) // 2):
-        x, slope = math.cos(math.pi * (k + 0.75) / (count + 0.5)), 1.0
-        for _ in range(8):  # from these initial values four suffice
-            before, value = 1.0, x
-            for n in range(2, count + 1):
-                before, value = value, ((2 * n - 1) * x * value - (n - 1) * before) / n
-            slope = count * (before - x * value) / ((1.0 - x) * (1.0 + x))
-            x -= value / slope
-        x = 0.0 if 2 * k + 1 == count else x
-        nodes[k], nodes[-1 - k] = -x, x
-        weights[k] = weights[-1 - k] = 2.0 / ((1.0 - x) * (1.0 + x) * slope * slope)
-    return nodes, weights
-
-
 def _rotation(first: Any, second: Any, off: Any) -> tuple[Any, Any]:
     """Return cosine and sine of the rotations that diagonalise [[first, off], [off, second]]."""
     half = 0.5 * (second - first)

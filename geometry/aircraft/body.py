@@ -83,8 +83,7 @@ class Body:
     @cached_property
     def arc(self) -> Floats:
         """(n,) arc length at the points, along chords."""
-        step = np.diff(self.meridian, axis=0)
-        return np.concatenate([[0.0], np.cumsum(np.hypot(step[:, 0], step[:, 1]))])
+        return arc_lengths(self.meridian)
 
     @cached_property
     def _spline(self) -> CubicTable:

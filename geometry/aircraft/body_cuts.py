@@ -9,7 +9,7 @@ import numpy as np
 from meshonet.geometry.aircraft.axes import FLAT
 from meshonet.geometry.arrays import Floats, Indices, extent_of, norms
 from meshonet.geometry.elementary import arctan2, cos, sin
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, place_of
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.notes import Change
 from meshonet.geometry.surface.merge import merged
@@ -159,7 +159,7 @@ def _refuse_holes(nodes: Floats, lattices: Sequence[Indices], within: tuple[floa
     middle = ends.mean(axis=1)
     inner = (middle[:, 0] > within[0]) & (middle[:, 0] < within[1]) & (np.abs(ends[..., 2]).max(axis=1) > 0.0)
     if inner.any():
-        x, y, z = middle[int(inner.argmax())]
-        problem = f"the {name} has a hole or a side without a neighbour at x={x:.6g}, y={y:.6g}, z={z:.6g}"
+        where = place_of(middle[int(inner.argmax())])
+        problem = f"the {name} has a hole or a side without a neighbour at {where}"
         remedy = "give the whole body, also where wings begin; for a surface with holes use solve-pde"
         raise InputError(problem, remedy)

@@ -10,7 +10,7 @@ import numpy as np
 from meshonet.geometry.aircraft.wing_strips import at_heights, on_line
 from meshonet.geometry.arrays import Floats, arc_lengths, cross2, norms
 from meshonet.geometry.curves.cubic import CubicTable
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, place_of
 from meshonet.geometry.notes import Change
 from meshonet.geometry.sections.stack import Tip
 
@@ -49,10 +49,8 @@ class SurfaceWing:
             steps = np.diff(strip[..., 2], axis=0)
             if not steps.min() > 0.0:
                 row, column = np.unravel_index(int(steps.argmin()), steps.shape)
-                x, y, z = strip[row, column]
-                problem = (
-                    f"a line along the span of the {self.name} turns back at x={x:.6g}, y={y:.6g}, z={z:.6g}"
-                )
+                where = place_of(strip[row, column])
+                problem = f"a line along the span of the {self.name} turns back at {where}"
                 raise InputError(problem, "give lines along which the distance from the body rises")
 
     @classmethod

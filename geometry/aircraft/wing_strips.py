@@ -10,7 +10,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.curves.monotone import monotone_cubic
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, place_of
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import angle_between
 
@@ -104,8 +104,7 @@ def _chained(strips: Sequence[_Strip], chord: Floats, name: str) -> list[_Strip]
     gaps.append(float((norms(chain[0].rows[:, 0] - chain[-1].rows[:, -1]) / chord).mean()))
     if max(gaps) > _GAP:
         at = int(np.argmax(gaps))
-        x, y, z = chain[at].rows[0, -1]
-        where = f"at x={x:.6g}, y={y:.6g}, z={z:.6g}"
+        where = f"at {place_of(chain[at].rows[0, -1])}"
         problem = f"a patch of the {name} ends {gaps[at]:.2g} chords from the next one, {where}"
         raise InputError(problem, "give all patches around the wing, from its root to its tip")
     return chain

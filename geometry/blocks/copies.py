@@ -20,14 +20,12 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.motion import Motion
-from meshonet.geometry.blocks.screw import Screw, screw_of
+from meshonet.geometry.blocks.screw import Screw, by_period, period_of
 from meshonet.geometry.blocks.shared_nodes import node_table, with_equal_nodes
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 
 MOST_COPIES = 10_000
-_SAME = 1e-9
-"""Relative difference that counts as rounding: of two motions, or of a whole turn and a number of periods."""
 
 
 def copied(grid: Grid, copies: int | Sequence[int]) -> Grid:
@@ -49,15 +47,15 @@ def copied(grid: Grid, copies: int | Sequence[int]) -> Grid:
         problem = f"{'x'.join(map(str, counts))} copies"
         raise InputError(problem, f"use at most {MOST_COPIES} in all", parameter="copies")
     for count in counts:  # the period of the copies made last becomes the last one
-        grid = _along(grid, _periods(grid)[0], count)
+        grid = _along(grid, *_periods(grid)[0], count)
     if len(counts) > 1:  # shifted in another order, corners differ by rounding
         grid = replace(grid, blocks=with_equal_nodes(grid.blocks, grid.connections))
     return grid.with_provenance(copies=math.prod(counts))
 
 
-def _along(grid: Grid, periodic: Sequence[Connection], copies: int) -> Grid:
-    """Return copies of a grid along the period of its connections `periodic`."""
-    screw, turn = _period(periodic[0].transform or Motion())
+def _along(grid: Grid, motion: Motion, periodic: Sequence[Connection], copies: int) -> Grid:
+    """Return copies of a grid along the period of its connections `periodic`, a `motion`."""
+    screw, turn = period_of(motion)
     most = int(turn) or MOST_COPIES
     if not 1 <= copies <= most:
         problem = f"{copies} copies of {math.degrees(abs(screw.angle)):.6g} degrees" if turn else f"{copies}"
@@ -89,50 +87,26 @@ def _along(grid: Grid, periodic: Sequence[Connection], copies: int) -> Grid:
     )
 
 
-def _periods(grid: Grid) -> list[list[Connection]]:
-    """Return the periodic connections grouped by their motions; those of a group get its first motion."""
-    periods: list[list[Connection]] = []
-    for each in grid.connections:
-        if each.transform is None:
-            continue
-        for group in periods:
-            period = group[0].transform or Motion()
-            ways = each, each.reversed()
-            way = next((way for way in ways if period.alike(way.transform or Motion(), _SAME)), None)
-            if way is not None:
-                group.append(replace(way, transform=period))
-                break
-        else:
-            periods.append([each])
+def _periods(grid: Grid) -> list[tuple[Motion, list[Connection]]]:
+    """Return the motions of a grid's periods, and the connections of each."""
+    periods = by_period(grid.connections)
     if not periods:
         remedy = "copy one with periodic sides, such as a passage between blades"
         raise InputError("the grid is not periodic", remedy, parameter="copies")
-    if len(periods) > 1 and any(group[0].transform and group[0].transform.turn for group in periods):
+    if len(periods) > 1 and any(motion.turn for motion, _ in periods):
         remedy = "copy a grid with one period, or with shifts only"
         raise InputError("the grid is periodic in several ways", remedy, parameter="copies")
     return periods
 
 
-def _unlike(periods: Sequence[Sequence[Connection]], numbers: int) -> InputError:
+def _unlike(periods: Sequence[tuple[Motion, list[Connection]]], numbers: int) -> InputError:
     """Return the error for another number of copies than of periods."""
     if len(periods) == 1:
         return InputError(f"{numbers} numbers for a grid with one period", "give one", parameter="copies")
-    shifts = [group[0].transform.shift for group in periods if group[0].transform]
-    ways = " and ".join(f"({', '.join(f'{x:.6g}' for x in shift)})" for shift in shifts)
+    ways = " and ".join(f"({', '.join(f'{x:.6g}' for x in motion.shift)})" for motion, _ in periods)
     problem = f"the grid is periodic by shifts of {ways}"
-    counts = "x".join(["3", *["2"] * (len(shifts) - 1)])
+    counts = "x".join(["3", *["2"] * (len(periods) - 1)])
     return InputError(problem, f"give a number for each, such as {counts}", parameter="copies")
-
-
-def _period(motion: Motion) -> tuple[Screw, float]:
-    """Return a motion as a screw, and the number of such motions, rounded, in a turn; 0 for a translation."""
-    screw = screw_of(motion)
-    if not screw.angle:
-        return screw, 0.0
-    turn = 2.0 * math.pi / abs(screw.angle)
-    if abs(turn - round(turn)) > _SAME * turn:
-        return screw, turn
-    return screw._replace(angle=math.copysign(2.0 * math.pi / round(turn), screw.angle)), float(round(turn))
 
 
 def _repeated(screw: Screw, times: int, dimension: int) -> Motion:

@@ -1,11 +1,13 @@
 """A rigid motion as axis, centre, angle and shift, as flow solvers describe periodic sides."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import solve
@@ -27,6 +29,38 @@ class Screw(NamedTuple):
     centre: Floats
     shift: Floats
     angles: Floats
+
+
+SAME_PERIOD = 1e-9
+"""Relative difference that counts as rounding: of two motions, or of a whole turn and a number of periods."""
+
+
+def period_of(motion: Motion) -> tuple[Screw, float]:
+    """Return a motion as a screw, and the number of such motions, rounded, in a turn; 0 for a translation."""
+    screw = screw_of(motion)
+    if not screw.angle:
+        return screw, 0.0
+    turn = 2.0 * math.pi / abs(screw.angle)
+    if abs(turn - round(turn)) > SAME_PERIOD * turn:
+        return screw, turn
+    return screw._replace(angle=math.copysign(2.0 * math.pi / round(turn), screw.angle)), float(round(turn))
+
+
+def by_period(connections: Sequence[Connection]) -> list[tuple[Motion, list[Connection]]]:
+    """Return the different motions of periodic connections, and the connections of each, turned its way."""
+    periods: list[tuple[Motion, list[Connection]]] = []
+    for each in connections:
+        if each.transform is None:
+            continue
+        ways = [(way, way.transform or Motion()) for way in (each, each.reversed())]
+        pairs = ((way, turn, *period) for period in periods for way, turn in ways)
+        known = ((way, own) for way, turn, motion, own in pairs if motion.alike(turn, SAME_PERIOD))
+        way, own = next(known, (each, None))
+        if own is None:
+            periods.append((each.transform, [each]))
+        else:
+            own.append(way)
+    return periods
 
 
 def screw_of(motion: Motion) -> Screw:

@@ -22,7 +22,7 @@ from meshonet.geometry.blocks.block import PLACES, Block, face_counts, face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.curves.cubic import cubic_spline
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, place_of
 
 FACES: tuple[Side, ...] = tuple(PLACES)
 """West, east, south, north, bottom, top."""
@@ -180,11 +180,6 @@ def share_edges(faces: dict[Side, Floats]) -> None:
         faces[side] = np.array(faces[side])
     for side, second in edges():
         edge_of(faces[second], second, side)[...] = edge_of(faces[side], side, second)
-
-
-def place_of(node: Floats) -> str:
-    """Return the position of a node (3,) as text, ``x=0.1, y=0.2, z=0.3``."""
-    return ", ".join(f"{name}={value:.6g}" for name, value in zip("xyz", node, strict=True))
 
 
 def _sides(counts: tuple[int, ...]) -> tuple[Patch, ...]:

@@ -11,8 +11,8 @@ from meshonet.geometry.arrays import Floats, Indices, Side, norms
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.handedness import flux_through
-from meshonet.geometry.blocks.six_faces import FACES, SixFaces, edge_of, edges, place_of, share_edges
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.blocks.six_faces import FACES, SixFaces, edge_of, edges, share_edges
+from meshonet.geometry.errors import InputError, place_of
 from meshonet.geometry.notes import Change
 
 TOLERANCE = 1e-6

@@ -3,7 +3,7 @@
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.curves.monotone import hermite_piece
+from meshonet.geometry.curves.monotone import hermite_piece, piece_at
 from meshonet.kernels._native import cubic_values, sampled_lines, solve_tridiagonal
 
 
@@ -29,7 +29,8 @@ class CubicTable:
 
     def slope(self, places: Floats) -> Floats:
         """Return the derivatives (p, ...) of the spline at `places` (p,)."""
-        h, t, start, stop, begin, end = self._parts(places)
+        i, t, h = piece_at(self.knots, places, self.values.ndim)
+        start, stop, begin, end = self.values[i], self.values[i + 1], self.bends[i], self.bends[i + 1]
         left = 1.0 - t
         return np.asarray(
             (stop - start) / h + h / 6.0 * ((3.0 * t * t - 1.0) * end - (3.0 * left * left - 1.0) * begin)
@@ -49,14 +50,6 @@ class CubicTable:
         rise = np.diff(self.values, axis=0)
         first = rise - (2.0 * begin + end) / 6.0
         return np.stack([self.values[:-1], first, begin / 2.0, (end - begin) / 6.0])
-
-    def _parts(self, places: Floats) -> tuple[Floats, ...]:
-        first = np.clip(np.searchsorted(self.knots, places, side="right") - 1, 0, len(self.knots) - 2)
-        shape = (*places.shape, *(1,) * (self.values.ndim - 1))
-        h = self.knots[first + 1] - self.knots[first]
-        t = ((places - self.knots[first]) / h).reshape(shape)
-        tables = self.values[first], self.values[first + 1], self.bends[first], self.bends[first + 1]
-        return (h.reshape(shape), t, *tables)
 
 
 def cubic_spline(values: Floats, knots: Floats, places: Floats) -> Floats:
@@ -113,10 +106,7 @@ class LimitedSpline:
 
     def __call__(self, places: Floats) -> Floats:
         """Return values (p, ...) at places (p,)."""
-        x, along = self.knots, (-1,) + (1,) * (self.values.ndim - 1)
-        i = np.clip(np.searchsorted(x, places, side="right") - 1, 0, len(x) - 2)
-        h = x[i + 1] - x[i]
-        t, h = ((places - x[i]) / h).reshape(along), h.reshape(along)
+        i, t, h = piece_at(self.knots, places, self.values.ndim)
         return hermite_piece(
             t, self.values[i], self.values[i + 1], h * self.slopes[i], h * self.slopes[i + 1]
         )

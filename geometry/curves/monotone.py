@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 
 
 def inner_slopes(h: Floats, delta: Floats) -> Floats:
@@ -22,17 +22,24 @@ def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = Fals
     It is piecewise cubic, monotone in each interval and flat at extrema, or `linear`; end slopes are those of
     parabolas.
     """
-    h = np.diff(x)
-    i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(h) - 1)
-    along = (-1,) + (1,) * (values.ndim - 1)
-    t = ((at - x[i]) / h[i]).reshape(along)
+    i, t, _ = piece_at(x, at, values.ndim)
     low, high = values[i], values[i + 1]
     if linear:
         return np.asarray((1.0 - t) * low + t * high)  # bitwise exact at both ends
-    step = h.reshape(along)
+    step = np.diff(x).reshape((-1,) + (1,) * (values.ndim - 1))
     slope = _slopes(step, np.diff(values, axis=0) / step)
     a, b = step[i] * slope[i], step[i] * slope[i + 1]
     return hermite_piece(t, low, high, a, b)
+
+
+def piece_at(x: Floats, at: Floats, dimension: int) -> tuple[Indices, Floats, Floats]:
+    """Return the piece between `x` (n,) at each place (m,), the fraction of it, and its length.
+
+    The last two have the shape (m, 1, ...), for tables of so many dimensions.
+    """
+    i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
+    h, shape = x[i + 1] - x[i], (*at.shape, *(1,) * (dimension - 1))
+    return i, ((at - x[i]) / h).reshape(shape), h.reshape(shape)
 
 
 def hermite_piece(t: Floats, low: Floats, high: Floats, a: Floats, b: Floats) -> Floats:

@@ -13,7 +13,6 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.curves.spline import checked_points, cubics, open_slopes, periodic_slopes
 from meshonet.geometry.elementary import cos, product, sin
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.linear import gauss_legendre
 
 
 class PathPoints(NamedTuple):
@@ -35,7 +34,10 @@ class Path(Protocol):
         ...
 
 
-_GAUSS, _WEIGHTS = gauss_legendre(5)  # quadrature of the speed in each part of an interval
+# Gauss's quadrature with five points, from -1 to 1, of the speed in each part of an interval
+_GAUSS = np.array([-0.906179845938664, -0.5384693101056831, 0.0, 0.5384693101056831, 0.906179845938664])
+_WEIGHTS = np.array([0.236926885056189, 0.47862867049936636, 0.5688888888888889, *[0.0] * 2])
+_WEIGHTS[3:] = _WEIGHTS[1::-1]
 _PARTS = 16  # parts of an interval in the table of arc length
 
 

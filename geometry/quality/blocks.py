@@ -16,21 +16,6 @@ from meshonet.geometry.summary import Quality
 
 
 @dataclass(frozen=True)
-class Deviation:
-    """Deviation of corner angles from 90 degrees, in degrees: mean, 99th percentile and maximum.
-
-    The mean is over all corners. The percentile is over cells, each with its largest deviation; it is None if
-    not computed. `at` is the cell (block, i, j[, k]) of the maximum. A corner of a volume has three angles,
-    of which the largest deviation counts.
-    """
-
-    mean: float
-    p99: float | None
-    max: float
-    at: tuple[int, ...]
-
-
-@dataclass(frozen=True)
 class BlockCounts:
     """Blocks and irregular vertices of a grid.
 
@@ -44,11 +29,15 @@ class BlockCounts:
 
 @dataclass(frozen=True)
 class BlockFigures(BlockCounts):
-    """Counts, angles and grid lines of a multi-block grid; `nodes` is the number of distinct nodes."""
+    """Counts, angles and grid lines of a multi-block grid; `nodes` is the number of distinct nodes.
+
+    `deviation` is that of corner angles from 90 degrees, in degrees; at a corner of a volume, the largest of
+    three. The mean is over corners, the percentile over cells, each with its largest deviation.
+    """
 
     nodes: int
     interfaces: int
-    deviation: Deviation
+    deviation: Extreme
     lines: Lines
 
     def as_dict(self) -> dict[str, Any]:
@@ -62,8 +51,9 @@ class BlockFigures(BlockCounts):
         if self.irregular is not None:
             places = [{"at": list(at), "cells": cells} for at, cells in self.irregular]
             facts |= {"irregular": len(self.irregular), "irregular_vertices": places}
+        worst = self.deviation
         return facts | {
-            "deviation": vars(self.deviation) | {"at": list(self.deviation.at)},
+            "deviation": {"mean": worst.mean, "p99": worst.p99, "max": worst.max, "at": list(worst.at)},
             "lines": {name: extreme_dict(getattr(self.lines, name)) for name in LINES},
         }
 
@@ -111,14 +101,14 @@ def extreme_dict(extreme: Extreme | None) -> dict[str, Any] | None:
     return facts if extreme.p99 is None else facts | {"p99": extreme.p99}
 
 
-def deviation(grid: Grid) -> Deviation:
+def deviation(grid: Grid) -> Extreme:
     """Return how far corner angles of planar blocks or patches deviate from 90 degrees, by up to 270."""
     every = [corner_deviations(block.nodes) for block in grid.blocks]
     worst = [corners.max(axis=0) for corners in every]
     block = int(np.argmax([cells.max() for cells in worst]))
     i, j = divmod(int(worst[block].argmax()), worst[block].shape[1])
     corners = sum(values.size for values in every)
-    return Deviation(
+    return Extreme(
         mean=float(sum(values.sum() for values in every)) / corners,
         p99=percentiles_of(np.concatenate([cells.ravel() for cells in worst]), (99,))[0],
         max=float(worst[block].max()),
@@ -126,11 +116,11 @@ def deviation(grid: Grid) -> Deviation:
     )
 
 
-def solid_deviation(quality: Quality) -> Deviation:
+def solid_deviation(quality: Quality) -> Extreme:
     """Return the deviation of the corner angles of volumes, from their `quality`."""
     worst = quality["skewness"]  # deviation over 90 degrees
     p99 = None if worst.p99 is None else 90.0 * worst.p99
-    return Deviation(quality["deviation"].mean, p99, 90.0 * worst.max, worst.worst)
+    return Extreme(90.0 * worst.max, quality["deviation"].mean, worst.worst, p99)
 
 
 def corner_deviations(nodes: Floats) -> Floats:

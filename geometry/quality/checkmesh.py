@@ -5,25 +5,20 @@ primitiveMeshCheck.C (thresholds 70 degrees, 4, 1000).
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import TypeAlias
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, cross2
+from meshonet.geometry.arrays import Floats, cross2, dots
 from meshonet.geometry.blocks.across import across, rows_at
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import arctan2, cos
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.checkmesh_solid import Cells, cell_at, cells_of, solid_faces
+from meshonet.geometry.quality.checkmesh_solid import Values, cell_at, cells_of, solid_faces
 from meshonet.geometry.quality.growth import Extreme, Tally, strips
 from meshonet.geometry.quality.metrics import FACE_NAMES
-
-FACES = FACE_NAMES  # names of the measures in `FaceMeasures`
-Values: TypeAlias = tuple[tuple[int, ...], Floats | None, Floats]
-"""Of faces (m, n[, l]): cell of the first, angles in degrees (None at the boundary), skewness."""
 
 
 @dataclass(frozen=True)
@@ -43,9 +38,9 @@ def faces(grid: Grid) -> FaceMeasures:
     if grid.form == "volume":
         cells = [cells_of(block.nodes) for block in grid.blocks]
         ratios = (((number, 0, 0, 0), own.aspect) for number, own in enumerate(cells))
-        return _summed(_of_volume(grid, cells), ratios)
+        return _summed(solid_faces(grid, cells), ratios)
     if grid.form == "surface":
-        problem = f"a surface has no faces between cells, of which {', '.join(FACES)} are"
+        problem = f"a surface has no faces between cells, of which {', '.join(FACE_NAMES)} are"
         raise InputError(problem, "make a volume of it, or judge it by other figures")
     boxes = (
         ((number, i, 0), _box_ratio(part))
@@ -66,19 +61,13 @@ def worst_faces(grid: Grid, name: str) -> list[Floats]:
     values = [np.zeros([count - 1 for count in block.counts]) for block in grid.blocks]
     measured = _of_blocks(grid)
     if grid.form == "volume":
-        measured = _of_volume(grid, [cells_of(block.nodes) for block in grid.blocks])
+        measured = solid_faces(grid, [cells_of(block.nodes) for block in grid.blocks])
     for (number, *first), angle, skew in measured:
         own = angle if name == "non_orthogonality" else skew
         if own is not None:
             part = values[number][tuple(slice(k, k + n) for k, n in zip(first, own.shape, strict=True))]
             np.maximum(part, own, out=part)
     return values
-
-
-def _of_volume(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
-    """Yield the measures of the faces of volumes with these `cells`."""
-    for place, axis, angle, skew in solid_faces(grid, cells):
-        yield place, None if angle is None else np.expand_dims(angle, axis), np.expand_dims(skew, axis)
 
 
 def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:
@@ -168,7 +157,7 @@ def _between(own: Floats, neighbour: Floats, a: Floats, b: Floats) -> tuple[Floa
     """Return angle and skewness of faces from `a` to `b`; (b - a) turned right points to `neighbour`."""
     edge, way = b - a, neighbour - own
     square = -cross2(edge, way)  # abs(S) abs(d) cos: the normal is the edge turned right
-    angle = np.degrees(arctan2(np.abs(_dot(edge, way)), square))
+    angle = np.degrees(arctan2(np.abs(dots(edge, way)), square))
     middle = 0.5 * (a + b) - own
     crossing = cross2(middle, edge) / np.where(square == 0, np.finfo(float).tiny, square)
     off = middle - crossing[..., None] * way
@@ -180,7 +169,7 @@ def _at_boundary(own: Floats, a: Floats, b: Floats) -> Floats:
     edge, middle = b - a, 0.5 * (a + b) - own
     length = np.hypot(edge[..., 0], edge[..., 1])
     unit = edge / np.maximum(length, np.finfo(float).tiny)[..., None]
-    off = _dot(middle, unit)[..., None] * unit
+    off = dots(middle, unit)[..., None] * unit
     return _face_skewness(off, edge, 0.4 * np.abs(cross2(middle, unit)))
 
 
@@ -188,7 +177,7 @@ def _face_skewness(off: Floats, edge: Floats, least: Floats) -> Floats:
     """Return abs(off) over the larger of `least` and half the face's extent in the direction of `off`."""
     size = np.hypot(off[..., 0], off[..., 1])
     tiny = np.finfo(float).tiny
-    reach = 0.5 * np.abs(_dot(off, edge)) / np.maximum(size, tiny)
+    reach = 0.5 * np.abs(dots(off, edge)) / np.maximum(size, tiny)
     return np.asarray(size / np.maximum(np.maximum(least, reach), tiny))
 
 
@@ -197,7 +186,3 @@ def _box_ratio(nodes: Floats) -> Floats:
     extent = along[:, :-1] + along[:, 1:] + across[:-1] + across[1:]
     least = np.maximum(extent.min(axis=-1), np.finfo(float).tiny)
     return np.asarray(extent.max(axis=-1) / least)
-
-
-def _dot(u: Floats, v: Floats) -> Floats:
-    return np.asarray(u[..., 0] * v[..., 0] + u[..., 1] * v[..., 1])

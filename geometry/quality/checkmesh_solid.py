@@ -7,7 +7,7 @@ src/OpenFOAM/meshes/primitiveMesh.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TypeAlias
 
 import numpy as np
 
@@ -21,17 +21,8 @@ from meshonet.geometry.elementary import arctan2, cbrt
 _TINY = 1e-300  # in place of 0 in divisors
 
 
-class SolidFaceMeasures(NamedTuple):
-    """Measures (n, m) of a layer of faces, all normal to the direction `axis`.
-
-    `place` is the cell (block, i, j, k) of the first face. `angle` is the non-orthogonality in degrees, None
-    at the boundary.
-    """
-
-    place: tuple[int, ...]
-    axis: int
-    angle: Floats | None
-    face_skewness: Floats
+Values: TypeAlias = tuple[tuple[int, ...], Floats | None, Floats]
+"""Of faces (m, n[, l]): cell of the first, angles in degrees (None at the boundary), skewness."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,15 +33,16 @@ class Cells:
     aspect: Floats
 
 
-def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[SolidFaceMeasures]:
+def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
     """Yield the measures of the faces of volumes, layer by layer; `cells` has one entry per block."""
     for number, (block, own) in enumerate(zip(grid.blocks, cells, strict=True)):
         nodes = np.moveaxis(block.nodes, -1, 0)
         for axis in range(3):
             layers, centres = (np.moveaxis(values, axis + 1, 0) for values in (nodes, own.centres))
             for m in range(1, len(layers) - 1):
-                angle, skew = _between(layers[m], centres[m - 1], centres[m], _turn(axis))
-                yield SolidFaceMeasures(_place(number, axis, m - 1, (0, 0)), axis, angle, skew)
+                measured = _between(layers[m], centres[m - 1], centres[m], _turn(axis))
+                angle, skew = (np.expand_dims(each, axis) for each in measured)
+                yield _place(number, axis, m - 1, (0, 0)), angle, skew
     yield from _across(grid, cells)
     for patch in grid.outer_patches():
         axis, end = patch.place
@@ -60,10 +52,10 @@ def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[SolidFaceMeasure
         at = (slice(None), *(slice(first, last) for first, last in spans))
         skew = _at_boundary(np.moveaxis(nodes, -1, 0), np.take(cells[patch.block].centres, end, axis + 1)[at])
         first = (spans[0][0], spans[1][0])
-        yield SolidFaceMeasures(cell_at(grid, patch.block, patch.side, first), axis, None, skew)
+        yield cell_at(grid, patch.block, patch.side, first), None, np.expand_dims(skew, axis)
 
 
-def _across(grid: Grid, cells: Sequence[Cells]) -> Iterator[SolidFaceMeasures]:
+def _across(grid: Grid, cells: Sequence[Cells]) -> Iterator[Values]:
     def face(block: int, side: Side) -> Floats:
         axis, end = PLACES[side]
         return np.moveaxis(np.take(cells[block].centres, end, axis + 1), 0, -1)
@@ -75,9 +67,10 @@ def _across(grid: Grid, cells: Sequence[Cells]) -> Iterator[SolidFaceMeasures]:
             nodes, own = each.transform(nodes), each.transform(own)
         axis, end = PLACES[each.side]
         planes = [np.moveaxis(values, -1, 0) for values in (nodes, own, donor)]
-        angle, skew = _between(planes[0], planes[1], planes[2], _turn(axis) * (1 if end else -1))
+        measured = _between(planes[0], planes[1], planes[2], _turn(axis) * (1 if end else -1))
+        angle, skew = (np.expand_dims(value, axis) for value in measured)
         first = (each.range[0][0], each.range[1][0])
-        yield SolidFaceMeasures(cell_at(grid, each.block, each.side, first), axis, angle, skew)
+        yield cell_at(grid, each.block, each.side, first), angle, skew
 
 
 def cells_of(nodes: Floats) -> Cells:

@@ -32,11 +32,7 @@ class Criteria:
     @property
     def percentiles(self) -> bool:
         """Whether a gate has a limit on a percentile of a metric."""
-        if not self.gates:
-            return False
-        from meshonet.geometry.quality.gates import need_percentiles
-
-        return need_percentiles(self.gates)
+        return any(gate.statistic in ("p01", "p99") for gate in self.gates)
 
     def judge(self, grid: Grid, quality: Quality) -> Judgement:
         """Return the judgement of `grid`. Raises InputError: a gate on a figure that it does not have."""

@@ -11,9 +11,9 @@ from meshonet.geometry.arrays import Floats, extent_of, norms
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.quality.blocks import BlockFigures, block_figures
-from meshonet.geometry.quality.checkmesh import FACES, FaceMeasures, faces
+from meshonet.geometry.quality.checkmesh import FaceMeasures, faces
 from meshonet.geometry.quality.growth import Extreme, Growth, growth, growth_off_walls, most_of
-from meshonet.geometry.quality.metrics import metrics_of
+from meshonet.geometry.quality.metrics import FACE_NAMES, metrics_of
 from meshonet.geometry.quality.walls import WallRow, wall_rows
 from meshonet.geometry.summary import Quality, named
 
@@ -97,7 +97,7 @@ class Figures:
             end = next(metric.worst for metric in metrics_of(self.grid) if metric.name == name)
             at = summary.worst if statistic == end else None
             return None if value is None else Figure(float(value), at)
-        if name in FACES:
+        if name in FACE_NAMES:
             return _figure(getattr(self.faces, name))
         if name == "growth":
             return _figure(most_of(self.growth.families().values())) or Figure(1.0)

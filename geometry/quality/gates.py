@@ -150,11 +150,6 @@ def parse_gates(texts: Iterable[str] | None, more: Sequence[str] = ()) -> tuple[
     return tuple(parse_gate(text, more) for text in texts or ())
 
 
-def need_percentiles(gates: Iterable[Gate]) -> bool:
-    """Return whether any gate needs a percentile, for which all cells must be sorted."""
-    return any(gate.statistic in ("p01", "p99") for gate in gates)
-
-
 VERDICTS = ("pass", "warn", "fail", "error")  # from best to worst; ``error``: there is no grid to judge
 
 

@@ -10,10 +10,8 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.motion import Motion
-from meshonet.geometry.blocks.screw import Screw, screw_of
+from meshonet.geometry.blocks.screw import Screw, by_period, period_of
 from meshonet.geometry.elementary import arctan2
-
-_ALIKE = 1e-9  # relative difference that is rounding: of two motions, or of a turn and a number of periods
 
 
 @dataclass(frozen=True)
@@ -28,18 +26,8 @@ class Period:
 
 def periods(grid: Grid) -> tuple[Period, ...]:
     """Return the different periods of a grid."""
-    groups: list[tuple[Motion, list[tuple[Floats, Floats]]]] = []
-    for each in grid.connections:
-        if each.transform is None:
-            continue
-        ways = [(way, way.transform or Motion()) for way in (each, each.reversed())]
-        known = ((way, sides) for way, own in ways for motion, sides in groups if motion.alike(own, _ALIKE))
-        way, sides = next(known, (each, None))
-        if sides is None:
-            sides = []
-            groups.append((each.transform, sides))
-        sides.append(_sides(grid, way))
-    return tuple(_period(screw_of(motion), sides) for motion, sides in groups)
+    groups = by_period(grid.connections)
+    return tuple(_period(motion, [_sides(grid, each) for each in own]) for motion, own in groups)
 
 
 def _sides(grid: Grid, each: Connection) -> tuple[Floats, Floats]:
@@ -50,19 +38,18 @@ def _sides(grid: Grid, each: Connection) -> tuple[Floats, Floats]:
     return own, donor
 
 
-def _period(screw: Screw, sides: Sequence[tuple[Floats, Floats]]) -> Period:
+def _period(motion: Motion, sides: Sequence[tuple[Floats, Floats]]) -> Period:
+    screw, _ = period_of(motion)
     own, donor = (np.concatenate(nodes) for nodes in zip(*sides, strict=True))
     if not screw.angle:
         length = float(norms(screw.shift))
         apart = float(norms(donor - own - screw.shift).max()) / length
         return Period(0.0, length, apart, tuple((screw.shift / length + 0.0).tolist()))
-    turn = 2.0 * math.pi / screw.angle
-    angle = 2.0 * math.pi / round(turn) if abs(turn - round(turn)) <= _ALIKE * abs(turn) else screw.angle
     (x, r, a), (x2, r2, b) = (_cylindrical(nodes, screw) for nodes in (own, donor))
     across = np.cross(a, b)
-    around = arctan2((across * screw.axis).sum(axis=1), (a * b).sum(axis=1)) - angle
+    around = arctan2((across * screw.axis).sum(axis=1), (a * b).sum(axis=1)) - screw.angle
     off = np.stack([x2 - x - (screw.shift * screw.axis).sum(), r2 - r, r * around])
-    return Period(math.degrees(abs(angle)), 0.0, float((norms(off.T) / np.maximum(r, 1e-300)).max()))
+    return Period(math.degrees(abs(screw.angle)), 0.0, float((norms(off.T) / np.maximum(r, 1e-300)).max()))
 
 
 def _cylindrical(nodes: Floats, screw: Screw) -> tuple[Floats, Floats, Floats]:

@@ -42,11 +42,6 @@ class WallRow:
     growth: Extreme | None = None  # with blocks: growth along the lines from the wall, through all blocks
 
 
-def wall_row(grid: Grid, patch: Patch) -> WallRow:
-    """Return the figures of the cells at the wall `patch` of `grid`."""
-    return _row(patch.name, patch.side, [_wall_part(grid, patch)])
-
-
 def wall_rows(
     grid: Grid, walls: Sequence[Patch], growth: Mapping[str, Extreme] = NO_GROWTH
 ) -> tuple[WallRow, ...]:
@@ -55,7 +50,7 @@ def wall_rows(
     `growth` is the growth along the lines from each wall, by the name of the wall.
     """
     if grid.topology != "blocks":
-        return tuple(wall_row(grid, wall) for wall in walls)
+        return tuple(_row(wall.name, wall.side, [_wall_part(grid, wall)]) for wall in walls)
     names = dict.fromkeys(wall.name for wall in walls)
     rows = []
     for name in names:

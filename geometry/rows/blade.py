@@ -13,7 +13,6 @@ from meshonet.geometry.rows.channel import Channel
 from meshonet.geometry.rows.common_corners import alike, common_corners
 from meshonet.geometry.rows.profile import BladeProfile
 from meshonet.geometry.rows.thick_edge import LEAST_EDGE, pointed, thick_edged
-from meshonet.geometry.rows.whole_pitches import whole_pitches
 from meshonet.kernels._native import spline_crossings
 
 MOST_EXTENDED = 0.2
@@ -24,6 +23,7 @@ _FARTHEST = 90.0  # degrees around the axis from one profile to the next: no bla
 _ORDER = "give profiles from hub to casing, all of one blade: splitters are not made"
 _SAME_HEIGHT = 1e-9  # difference of heights, in spans, that counts as rounding
 _HALF_TURN = np.pi
+_WHOLE = 0.2  # largest deviation of a displacement from whole pitches; beyond it the blade leans
 
 
 class BladeSurface:
@@ -138,7 +138,7 @@ class BladeSurface:
             if step > _FARTHEST:
                 problem = f"lies {step:.4g} degrees around the axis from the one before"
                 raise InputError(problem, "give profiles of one blade", place=self._place(k))
-        away = whole_pitches(turned, self.knots, self.pitch)
+        away = _whole_pitches(turned, self.knots, self.pitch)
         for k in np.flatnonzero(away).tolist():
             angle = -float(np.degrees(away[k] * self.pitch))
             what = (
@@ -194,3 +194,21 @@ def clustered(count: int) -> Floats:
     half = count // 2
     side = 0.25 * (1.0 - cos(_HALF_TURN * np.arange(half) / half))
     return np.concatenate([side, 0.5 + side])
+
+
+def _whole_pitches(angles: Floats, heights: Floats, pitch: float) -> Floats:
+    """Return by how many pitches (p,) each profile is away from the blade to which most profiles belong.
+
+    A step of theta between two profiles counts only if whole pitches remain after subtraction of the lean
+    between other profiles. `angles` (p,) are the mean theta of each profile in radians; `heights` (p,)
+    ascend.
+    """
+    steps, rises = np.diff(angles), np.diff(heights)
+    away = np.zeros(len(angles))
+    for k, step in enumerate(steps):
+        lean = np.append(np.delete(steps / rises, k) * rises[k], 0.0)
+        off = (step - lean)[np.abs(step - lean).argmin()] / pitch
+        whole = np.rint(off)
+        if abs(off - whole) < _WHOLE:
+            away[k + 1 :] += whole
+    return np.asarray(away - np.sort(away)[(len(away) - 1) // 2])

@@ -5,8 +5,6 @@ outlet; north is a half circle around the body with straight lines beside the wa
 """
 
 import math
-from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 
@@ -70,37 +68,23 @@ def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
     return np.asarray(chord / np.hypot(*chord))
 
 
-@dataclass(frozen=True)
-class WakeLine:
-    """The line of a wake: from a trailing edge along the bisector of its wedge, turning into the axis.
+def wake_line(wall: Floats, axis: Floats, chord: float, length: float, first: float, cells: int) -> Floats:
+    """Return the nodes (cells + 1, 2) of a wake from the sharp trailing edge of a closed `wall` (n, 2).
 
-    With x along the axis and y to its left, y = tan(b) l (1 - exp(-x/l)), with the angle b of the bisector
-    (at most 34°) and the relaxation length l.
+    With x along the `axis` and y to its left, y = tan(b) l (1 - exp(-x/l)), with the angle b of the bisector
+    of the edge (at most 34°) and the chord l. The first cell has the length `first`, the wake along the axis
+    the length `length`.
     """
-
-    begin: Floats  # (2,) the trailing edge
-    axis: Floats  # (2,) unit direction of the far end
-    slope: float  # slope tan(b) of the bisector of the trailing edge, relative to the axis
-    relaxation: float
-    length: float  # length of the wake along the axis
-
-    @classmethod
-    def behind(cls, wall: Floats, axis: Floats, chord: float, length: float) -> Self:
-        """Return the wake behind a closed `wall` (n, 2) from its sharp trailing edge."""
-        upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
-        along = upper / np.hypot(*upper) + lower / np.hypot(*lower)
-        angle = math.atan2(axis[0] * along[1] - axis[1] * along[0], product(axis, along))
-        slope = math.tan(min(max(angle, -_STEEPEST), _STEEPEST))
-        return cls(wall[0], axis, slope, chord, length)
-
-    def nodes(self, first: float, cells: int) -> Floats:
-        """Return nodes (cells + 1, 2) from the trailing edge; the first cell has the length `first`."""
-        x = growing(first / math.hypot(1.0, self.slope), self.length, cells)
-        x *= self.length / x[-1]
-        y = -self.slope * self.relaxation * expm1(-x / self.relaxation)
-        nodes = self.begin + x[:, None] * self.axis + y[:, None] * np.array([-self.axis[1], self.axis[0]])
-        nodes[0] = self.begin
-        return np.asarray(nodes)
+    upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
+    along = upper / np.hypot(*upper) + lower / np.hypot(*lower)
+    angle = math.atan2(axis[0] * along[1] - axis[1] * along[0], product(axis, along))
+    slope = math.tan(min(max(angle, -_STEEPEST), _STEEPEST))
+    x = growing(first / math.hypot(1.0, slope), length, cells)
+    x *= length / x[-1]
+    y = -slope * chord * expm1(-x / chord)
+    nodes = wall[0] + x[:, None] * axis + y[:, None] * np.array([-axis[1], axis[0]])
+    nodes[0] = wall[0]
+    return np.asarray(nodes)
 
 
 def growing(first: float, length: float, cells: int) -> Floats:

@@ -38,9 +38,9 @@ def stretch_arcs(
 
         distance = distances_by_curvature(curve, begin, sign * length, cells)
     elif spacing == "tanh" and cells > 3:
-        from meshonet.geometry.spacing.tanh_law import spacing_tanh
+        from meshonet.geometry.spacing.tanh_law import TanhLaw
 
-        distance = length * spacing_tanh(cells + 1, 0.25 / cells, 0.25 / cells)
+        distance = length * TanhLaw.fitted(cells, 0.25 / cells, 0.25 / cells)(q)
     else:
         distance = length * (place(q) if place else q)
     corners = np.sort((sign * (curve.corners - begin)) % curve.length)

@@ -98,8 +98,3 @@ def _inverse_sinc(b: float) -> float:
         if abs(step) < 1e-14 * d:
             break
     return d
-
-
-def spacing_tanh(n: int, first: float, last: float) -> Floats:
-    """Return n values from 0 to 1 with first step `first` and last step `last` (`TanhLaw`)."""
-    return TanhLaw.fitted(n - 1, first, last)(np.linspace(0.0, 1.0, n))

@@ -15,7 +15,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, arc_parts, extent_of, norms
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, place_of
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.surface.half_edges import open_sides, paired
 from meshonet.geometry.surface.merge import TOLERANCE, merged
@@ -64,10 +64,9 @@ def with_bases(patches: Sequence[Floats]) -> tuple[list[Floats], list[int], tupl
     out, above, notes = list(patches), [], []
     for upper, lower, _ in _trailing_edges(nodes, sides):
         base = _base(nodes, upper, lower.line, sides)
-        x, y, z = base[0, 0]
         notes.append(
             f"the open trailing edge between the {upper.name} side of patch {upper.patch} and the "
-            f"{lower.name} side of patch {lower.patch}, at x={x:.6g}, y={y:.6g}, z={z:.6g}, was closed by a "
+            f"{lower.name} side of patch {lower.patch}, at {place_of(base[0, 0])}, was closed by a "
             f"base of {base.shape[1] - 1} cells across, patch {len(out)}"
         )
         out.append(base)
@@ -142,11 +141,10 @@ def _base(nodes: Floats, one: _OpenSide, line: Indices, sides: list[_OpenSide]) 
     ends = [_across(nodes, int(one.line[k]), int(line[k]), sides) for k in (0, -1)]
     counts = {len(end) for end in ends if end is not None}
     if len(counts) > 1:
-        x, y, z = upper[0]
         few, many = sorted(counts)
         ends_differ = f"has {few} nodes across one end, {many} across the other"
         problem = f"the open trailing edge of patch {one.patch} {ends_differ}"
-        raise InputError(problem, "give both ends as many", place=f"x={x:.6g}, y={y:.6g}, z={z:.6g}")
+        raise InputError(problem, "give both ends as many", place=place_of(upper[0]))
     length = float(norms(one.inward[:, 1] - one.inward[:, 0]).mean())
     cells = round(float(norms(upper - lower).mean()) / length)
     count = counts.pop() if counts else min(max(cells, _CELLS[0]), _CELLS[1]) + 1

@@ -4,7 +4,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, distinct, norms
 from meshonet.geometry.elementary import product
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, place_of
 from meshonet.geometry.surface.half_edges import ends_of
 from meshonet.geometry.surface.merge import SLANT, near_pairs
 
@@ -13,13 +13,12 @@ _ON = 0.05  # a node nearer to an edge than this fraction of the edge's length l
 _SIDES = ("west", "east", "south", "north")
 
 
-def place_of(nodes: Floats, lattices: tuple[Indices, ...], node: int) -> str:
+def node_place(nodes: Floats, lattices: tuple[Indices, ...], node: int) -> str:
     """Return the position of a node as text: the first patch that has it, i, j, x, y, z."""
     for number, lattice in enumerate(lattices):
         at = np.argwhere(lattice == node)
         if len(at):
-            x, y, z = nodes[node]
-            return f"patch {number}, i={at[0, 0]}, j={at[0, 1]}, x={x:.6g}, y={y:.6g}, z={z:.6g}"
+            return f"patch {number}, i={at[0, 0]}, j={at[0, 1]}, {place_of(nodes[node])}"
     return ""
 
 
@@ -30,15 +29,15 @@ def check_quads(nodes: Floats, lattices: tuple[Indices, ...], quads: Indices) ->
             if (line == line[0]).all():
                 problem = f"the {side} side of patch {number} is a single point"
                 remedy = "close the surface there by a patch of its own (a core), not by a pole"
-                raise InputError(problem, remedy, place=place_of(nodes, lattices, int(line[0])))
+                raise InputError(problem, remedy, place=node_place(nodes, lattices, int(line[0])))
     first, last = ends_of(quads)
     none = np.flatnonzero(first == last)
     if len(none):
-        place = place_of(nodes, lattices, int(first[none[0]]))
+        place = node_place(nodes, lattices, int(first[none[0]]))
         raise InputError("an edge has no length", "keep neighbouring nodes apart", place=place)
     folded = np.flatnonzero((quads[:, 0] == quads[:, 2]) | (quads[:, 1] == quads[:, 3]))
     if len(folded):
-        place = place_of(nodes, lattices, int(quads[folded[0], 0]))
+        place = node_place(nodes, lattices, int(quads[folded[0], 0]))
         problem = "opposite corners of a face are the same node"
         raise InputError(problem, "close the surface there by a patch of its own", place=place)
 
@@ -49,7 +48,7 @@ def check_manifold(nodes: Floats, lattices: tuple[Indices, ...], crowded: Indice
         owners = [str(n) for n, k in enumerate(lattices) if (k == crowded[0]).any()]
         problem = f"an edge belongs to three faces or more (patches {', '.join(owners)})"
         remedy = "leave out the patch that lies inside or twice at the same place"
-        raise InputError(problem, remedy, place=place_of(nodes, lattices, int(crowded[0])))
+        raise InputError(problem, remedy, place=node_place(nodes, lattices, int(crowded[0])))
 
 
 def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
@@ -68,7 +67,7 @@ def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> 
     if not len(near):
         return
     widest = near[np.argmax(apart[near])]
-    places = [place_of(nodes, lattices, int(k)) for k in pairs[widest]]
+    places = [node_place(nodes, lattices, int(k)) for k in pairs[widest]]
     problem = f"a gap of {apart[widest]:.3g} between sides that nearly match, at {places[0]} and {places[1]}"
     raise InputError(problem, "make the nodes of both sides the same", place=f"{len(near)} nodes")
 
@@ -93,7 +92,7 @@ def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) ->
     lies = np.flatnonzero((np.abs(part - 0.5) < 0.5 - _GAP) & (away < _ON * length[edge]))
     if len(lies):
         at = lies[0]
-        own, other = (place_of(nodes, lattices, int(k)) for k in (node[at], edges[edge[at], 0]))
+        own, other = (node_place(nodes, lattices, int(k)) for k in (node[at], edges[edge[at], 0]))
         problem = f"sides that meet have other nodes, {len(lies)} in all, the first at {own}, next to {other}"
         raise InputError(problem, "give both sides the same nodes where they meet")
 
@@ -107,7 +106,7 @@ def check_sides(
     opened = np.bincount(first[twin < 0], minlength=len(nodes))
     torn = np.flatnonzero((faces != valence - (opened > 0)) | (opened > 1))
     if len(torn):
-        place = place_of(nodes, lattices, int(torn[0]))
+        place = node_place(nodes, lattices, int(torn[0]))
         raise InputError(
             "parts of the surface touch in a single node", "join them, or part them", place=place
         )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, extent_of, norms
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, place_of
 from meshonet.geometry.surface.merge import TOLERANCE
 from meshonet.geometry.surface.pole_core import core_of
 
@@ -59,10 +59,7 @@ def _replaced(patches: list[Floats], fan: list[_FanPatch]) -> tuple[Floats, str]
     slack = TOLERANCE * extent_of(joined.reshape(-1, 3))
     closed = bool((np.abs(joined[0] - joined[-1]) <= slack).all())
     quarters = 4 if closed else _right_angles(joined)
-    cells, place = (
-        len(joined) - 1,
-        ", ".join(f"{name}={x:.6g}" for name, x in zip("xyz", joined[0, 0], strict=True)),
-    )
+    cells, place = len(joined) - 1, place_of(joined[0, 0])
     whose = "patch " + ", ".join(str(member.patch) for member in fan)
     if cells < _LEAST[quarters] or (closed and cells % 2):
         problem = f"{cells} cells run around the pole of {whose}, a side that is a single point"
@@ -94,11 +91,10 @@ def _check_ends(patches: Sequence[Floats], fan: list[_FanPatch], joined: Floats,
     for node in joined[[0, -1], 1]:
         for number, patch in enumerate(patches):
             if number not in members and (np.abs(patch - node) <= slack).all(axis=-1).any():
-                x, y, z = joined[0, 0]
                 whose = ", ".join(map(str, sorted(members)))
                 problem = f"the pole of patch {whose} is where a seam with patch {number} ends"
                 remedy = "give the patch a side of several cells there, for example beside a core"
-                raise InputError(problem, remedy, place=f"x={x:.6g}, y={y:.6g}, z={z:.6g}")
+                raise InputError(problem, remedy, place=place_of(joined[0, 0]))
 
 
 def _right_angles(fan: Floats) -> int:

@@ -16,7 +16,7 @@ from meshonet.geometry.surface.checks import (
     check_quads,
     check_seams,
     check_sides,
-    place_of,
+    node_place,
 )
 from meshonet.geometry.surface.half_edges import ends_of, open_sides, paired, rings
 from meshonet.geometry.surface.merge import merged
@@ -71,7 +71,7 @@ class Surface:
 
     def place(self, node: int) -> str:
         """Return the place of a node as text: patch, i, j, x, y, z."""
-        return place_of(self.nodes, self.lattices, node)
+        return node_place(self.nodes, self.lattices, node)
 
 
 def surface_of(grid: Grid, *, poles: Literal["replace", "refuse"] = "replace") -> Surface:

@@ -7,7 +7,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.cad.model import CadEdge, CadFace, CadModel, Curve, EdgeUse
 from meshonet.geometry.elementary import product, sin
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, place_of
 from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.spacing.gradual_sizes import limited_sizes
 
@@ -147,5 +147,4 @@ def corner_turns(model: CadModel, uses: tuple[EdgeUse, ...]) -> Floats:
 
 def place_on(points: Floats) -> str:
     """Return the mean of points (n, 3) as text."""
-    x, y, z = product(np.full(len(points), 1.0 / len(points)), points)
-    return f"x={x:.6g}, y={y:.6g}, z={z:.6g}"
+    return place_of(product(np.full(len(points), 1.0 / len(points)), points))

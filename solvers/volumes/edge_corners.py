@@ -4,8 +4,8 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side, norms
 from meshonet.geometry.blocks.block import PLACES
-from meshonet.geometry.blocks.six_faces import SixFaces, edges, place_of
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.blocks.six_faces import SixFaces, edges
+from meshonet.geometry.errors import InputError, place_of
 from meshonet.solvers.volumes.near_faces import closed_place
 
 

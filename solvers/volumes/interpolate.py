@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, norms
-from meshonet.geometry.blocks.six_faces import SixFaces, place_of
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.blocks.six_faces import SixFaces
+from meshonet.geometry.errors import InputError, place_of
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import tfi_volume
 

@@ -10,8 +10,9 @@ from test_grid import c_grid
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality import growth as steps
-from meshonet.geometry.quality.checkmesh import FACES, faces
+from meshonet.geometry.quality.checkmesh import faces
 from meshonet.geometry.quality.measure import per_cell_of_blocks
+from meshonet.geometry.quality.metrics import FACE_NAMES
 
 HEIGHT = 0.3
 
@@ -149,7 +150,7 @@ def test_one_cell_has_no_faces_inside() -> None:
     assert result.face_skewness is not None
 
 
-@pytest.mark.parametrize("name", FACES)
+@pytest.mark.parametrize("name", FACE_NAMES)
 @pytest.mark.parametrize(
     "make",
     [

@@ -5,8 +5,9 @@ import pytest
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.criteria import Criteria
 from meshonet.geometry.quality.figures import FIGURES, Figure, Figures
-from meshonet.geometry.quality.gates import need_percentiles, parse_gate, parse_gates
+from meshonet.geometry.quality.gates import parse_gate, parse_gates
 from meshonet.geometry.quality.measure import measure
 
 
@@ -87,8 +88,8 @@ def test_equality_counts_only_when_asked_for() -> None:
 
 
 def test_percentiles_are_asked_for_only_when_needed() -> None:
-    assert need_percentiles(parse_gates(["max_angle>1", "skewness.p01<0"]))
-    assert not need_percentiles(parse_gates(["max_angle>1", "skewness.mean>0"]))
+    assert Criteria(parse_gates(["max_angle>1", "skewness.p01<0"])).percentiles
+    assert not Criteria(parse_gates(["max_angle>1", "skewness.mean>0"])).percentiles
     assert parse_gates(None) == ()
 
 

@@ -5,9 +5,13 @@ from hypothesis import strategies as st
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.laws import LAWS
-from meshonet.geometry.spacing.tanh_law import TanhLaw, spacing_tanh
+from meshonet.geometry.spacing.tanh_law import TanhLaw
 
 Q = np.linspace(0.0, 1.0, 33)
+
+
+def spacing_tanh(n, first, last):
+    return TanhLaw.fitted(n - 1, first, last)(np.linspace(0.0, 1.0, n))
 
 
 def test_cosine_is_the_half_circle_seen_from_the_side():

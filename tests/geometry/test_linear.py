@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.linear import (
-    gauss_legendre,
     inverse,
     least_squares,
     nearest_rotation,
@@ -186,17 +185,3 @@ def test_flat_and_mirrored_maps_have_a_rotation_as_near_as_any(values):
 
 def test_a_plane_map_without_rotation_is_not_turned():
     assert np.array_equal(nearest_rotation(np.diag([1.0, -1.0])), np.eye(2))
-
-
-@pytest.mark.parametrize("count", [1, 2, 3, 5, 8, 20])
-def test_gauss_nodes_and_weights_are_numpy_s(count):
-    nodes, weights = gauss_legendre(count)
-    expected = np.polynomial.legendre.leggauss(count)
-    np.testing.assert_allclose(nodes, expected[0], atol=1e-15)
-    np.testing.assert_allclose(weights, expected[1], rtol=1e-13)
-
-
-def test_gauss_quadrature_is_exact_for_polynomials_of_twice_its_degree():
-    nodes, weights = gauss_legendre(5)
-    assert weights @ nodes**8 == pytest.approx(2.0 / 9.0, rel=1e-14)
-    assert abs(weights @ nodes**9) < 1e-15

@@ -5,7 +5,12 @@ import pytest
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
-from meshonet.geometry.quality.walls import wall_row
+from meshonet.geometry.quality.walls import WallRow, wall_rows
+
+
+def wall_row(grid: Grid, patch: Patch) -> WallRow:
+    (row,) = wall_rows(grid, [patch])
+    return row
 
 
 def channel(sheared: float = 0.0) -> Grid:

@@ -279,7 +279,7 @@ class Airfoil:
 
     def _c_boundary(self, sampling: Sampling, original: Airfoil, notes: tuple[str, ...]) -> Boundary:
         """Return the C boundary around this body, in the units of the `original` airfoil."""
-        from meshonet.geometry.shapes.wake import C_EDGE, WakeLine, c_boundary, cells_of_wake, wake_axis
+        from meshonet.geometry.shapes.wake import C_EDGE, c_boundary, cells_of_wake, wake_axis, wake_line
 
         if self.base_is_round:
             remedy = "leave {te} out, close it with {te} wedge, or use {topology} o"
@@ -295,9 +295,8 @@ class Airfoil:
         te = sampling.te_spacing if law in ("uniform", "cosine", "conformal") else step / self.chord
         wall = self.wall(ni - 2 * cells, replace(sampling, spacing=law, te_spacing=te))
         axis = wake_axis(original.leading_edge, original.trailing_edge)
-        line = WakeLine.behind(wall, axis, chord, length)
         first = 0.5 * float(np.hypot(*(wall[[1, -2]] - wall[0]).T).sum())
-        wake = line.nodes(first, cells)
+        wake = wake_line(wall, axis, chord, length, first, cells)
         centre = 0.5 * (original.leading_edge + original.trailing_edge)
         return c_boundary(
             wall,

@@ -1,7 +1,7 @@
 """The start of a C grid around a blunt section: wall, base, and wake lines from both corners of the base.
 
 Wake lines start along their surfaces, or turned off a rounded one, and turn into the axis of the wake, as far
-apart as the base is wide. Their mean is the line behind a sharp edge (`shapes.wake.WakeLine`).
+apart as the base is wide. Their mean is the line behind a sharp edge (`shapes.wake.wake_line`).
 """
 
 from __future__ import annotations
