@@ -105,7 +105,7 @@ MESHONET_INLINE void spread_line(const double *f, const ptrdiff_t *restrict firs
 {
     const double *restrict w0 = weights, *restrict w1 = w0 + count;
     MESHONET_INDEPENDENT
-    for (ptrdiff_t j = range.from; j < range.to; j++)
+    for (ptrdiff_t j = range.first; j < range.last; j++)
         out[j] = w0[j] * f[first[j]] + w1[j] * f[first[j] + 1];
 }
 
@@ -138,7 +138,7 @@ MESHONET_INLINE void reach_in(double *restrict x, double *restrict y, double dx,
 {
     const double x0 = dx * w[0], x1 = dx * w[1], y0 = dy * w[0], y1 = dy * w[1];
     MESHONET_INDEPENDENT
-    for (ptrdiff_t j = range.from; j < range.to; j++)
+    for (ptrdiff_t j = range.first; j < range.last; j++)
         x[j] += x0 * low[j] + x1 * high[j], y[j] += y0 * low[j] + y1 * high[j];
 }
 
@@ -258,9 +258,8 @@ static void evaluate_share(void *data, Member member)
     const ptrdiff_t nj = pass->e->nj;
     Parts own = pass->parts;
     own.rows = pass->scratch + member.rank * 12 * nj, own.ends = own.rows + 8 * nj;
-    ptrdiff_t first, last;
-    team_share(pass->e->ni, member, &first, &last);
-    evaluate_rows(pass, own, first, last);
+    const Range mine = team_share(pass->e->ni, member);
+    evaluate_rows(pass, own, mine.first, mine.last);
 }
 
 void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch, double *nodes)

@@ -4,6 +4,7 @@
 #include <stddef.h>
 
 #include "clones.h"
+#include "team.h"
 
 MESHONET_INLINE double length(double dx, double dy)
 {
@@ -81,13 +82,8 @@ MESHONET_INLINE void inwards(const double *x, ptrdiff_t m, ptrdiff_t n, double r
     }
 }
 
-/* Fine columns `from` to before `to` at which something is felt. */
-typedef struct {
-    ptrdiff_t from, to;
-} Range;
-
-/* That of a row of a table (n) among nj columns; what is felt of south begins at the first column, of north it ends
-   at the last. */
+/* The fine columns, of nj, at which something is felt of a row of a table (n); what is felt of south begins at the
+   first column, of north it ends at the last. */
 MESHONET_INLINE Range felt(const double *row, ptrdiff_t n, ptrdiff_t nj, int north)
 {
     ptrdiff_t first = 0, last = n - 1;
@@ -104,5 +100,5 @@ MESHONET_INLINE Range felt(const double *row, ptrdiff_t n, ptrdiff_t nj, int nor
 
 MESHONET_INLINE Range joined(Range a, Range b)
 {
-    return (Range){a.from < b.from ? a.from : b.from, a.to > b.to ? a.to : b.to};
+    return (Range){a.first < b.first ? a.first : b.first, a.last > b.last ? a.last : b.last};
 }

@@ -157,10 +157,9 @@ static double groups(const Pass *p, ptrdiff_t i, ptrdiff_t end, double *scratch)
 static void share(void *data, Member member)
 {
     Pass *p = data;
-    ptrdiff_t first, last;
-    team_share((p->count + ROWS - 1) / ROWS, member, &first, &last);
-    const ptrdiff_t end = ROWS * last < p->count ? ROWS * last : p->count;
-    p->sums[member.rank] = groups(p, ROWS * first, end, p->scratch + 8 * member.rank * (p->s->m + LANES));
+    const Range mine = team_share((p->count + ROWS - 1) / ROWS, member);
+    const ptrdiff_t end = ROWS * mine.last < p->count ? ROWS * mine.last : p->count;
+    p->sums[member.rank] = groups(p, ROWS * mine.first, end, p->scratch + 8 * member.rank * (p->s->m + LANES));
 }
 
 double strip_rows(const StripRows *s, const ptrdiff_t *order, ptrdiff_t count, double *x, double *y, ptrdiff_t nj,

@@ -281,21 +281,20 @@ typedef void (*Colour)(const Level *g, ptrdiff_t k, int forced);
 /* In a ring the first group is done before any other begins. */
 static void zebra(const Level *g, Member member, ptrdiff_t groups, Colour first, Colour second, int ring, int forced)
 {
-    ptrdiff_t own, last;
-    team_share(groups, member, &own, &last);
-    if (own == 0 && own < last)
-        first(g, own, forced);
+    const Range own = team_share(groups, member);
+    if (own.first == 0 && own.first < own.last)
+        first(g, own.first, forced);
     if (ring)
         team_wait(member);
-    for (ptrdiff_t k = own; k < last; k++) {
+    for (ptrdiff_t k = own.first; k < own.last; k++) {
         if (k > 0)
             first(g, k, forced);
-        if (k > own || own == 0)
+        if (k > own.first || own.first == 0)
             second(g, k, forced);
     }
     team_wait(member);
-    if (own > 0 && own < last)
-        second(g, own, forced);
+    if (own.first > 0 && own.first < own.last)
+        second(g, own.first, forced);
     team_wait(member);
 }
 

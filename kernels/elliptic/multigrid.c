@@ -35,11 +35,11 @@ static Level own_level(const Level *g, const Level *sized, Member member)
 }
 
 /* This thread's of the rows solved for. */
-static void own_rows(const Level *g, Member member, ptrdiff_t *first, ptrdiff_t *last)
+static Range own_rows(const Level *g, Member member)
 {
     const ptrdiff_t start = g->periodic ? 0 : 1;
-    team_share(g->mi - start, member, first, last);
-    *first += start, *last += start;
+    const Range share = team_share(g->mi - start, member);
+    return (Range){share.first + start, share.last + start};
 }
 
 static void smooth_share(void *data, Member member)
@@ -110,9 +110,8 @@ static void residual_share(void *data, Member member)
 {
     const Task *task = data;
     const Level own = own_level(task->level, task->level, member);
-    ptrdiff_t first, last;
-    own_rows(&own, member, &first, &last);
-    residual_rows(&own, first, last, task->forced, task->level->scratch);
+    const Range mine = own_rows(&own, member);
+    residual_rows(&own, mine.first, mine.last, task->forced, task->level->scratch);
 }
 
 double multigrid_residual(const Level *g, int forced)
@@ -196,14 +195,12 @@ static void restrict_share(void *data, Member member)
 {
     const Task *task = data;
     const Level fine = own_level(task->level, task->level, member), coarse = own_level(task->coarse, task->level, member);
-    ptrdiff_t first, last;
-    team_share(coarse.mi + 1, member, &first, &last);
-    for (ptrdiff_t I = first; I < last; I++)
+    const Range all = team_share(coarse.mi + 1, member), mine = own_rows(&coarse, member);
+    for (ptrdiff_t I = all.first; I < all.last; I++)
         inject_row(&fine, &coarse, I);
-    own_rows(&coarse, member, &first, &last);
-    restrict_residual(&fine, &coarse, first, last, task->forced);
+    restrict_residual(&fine, &coarse, mine.first, mine.last, task->forced);
     team_wait(member);
-    add_operator(&coarse, first, last);
+    add_operator(&coarse, mine.first, mine.last);
 }
 
 void multigrid_restrict(const Level *fine, const Level *coarse, int forced)
@@ -255,9 +252,8 @@ static void correct_share(void *data, Member member)
 {
     const Task *task = data;
     const Level fine = own_level(task->level, task->level, member);
-    ptrdiff_t first, last;
-    own_rows(&fine, member, &first, &last);
-    correct_rows(&fine, task->coarse, first, last, task->level->scratch);
+    const Range mine = own_rows(&fine, member);
+    correct_rows(&fine, task->coarse, mine.first, mine.last, task->level->scratch);
 }
 
 double multigrid_correct(const Level *fine, const Level *coarse)

@@ -178,13 +178,12 @@ static void precondition_share(void *data, Member member)
     const Preconditioning *p = data;
     const Spectrum *s = &p->d->spectrum;
     float *own = p->room + member.rank * member_floats(s);
-    ptrdiff_t first, last;
-    team_share(s->xi.even.nodes, member, &first, &last);
-    fold_rows(p, first, last, own);
+    const Range mine = team_share(s->xi.even.nodes, member);
+    fold_rows(p, mine.first, mine.last, own);
     team_wait(member);
     divide(s, p->w, p->spare, own, member);
     team_wait(member);
-    unfold_rows(p, first, last, own);
+    unfold_rows(p, mine.first, mine.last, own);
 }
 
 /* Sᵀ of one coordinate of the gradient. */
@@ -199,9 +198,8 @@ static void restrict_share(void *data, Member member)
     const Preconditioning *p = r->p;
     const ptrdiff_t mi = p->d->spectrum.mi, mj = p->d->spectrum.mj;
     float *own = p->room + member.rank * member_floats(&p->d->spectrum);
-    ptrdiff_t first, last;
-    team_share(space_blocks(mi), member, &first, &last);
-    for (ptrdiff_t k = first; k < last; k++)
+    const Range mine = team_share(space_blocks(mi), member);
+    for (ptrdiff_t k = mine.first; k < mine.last; k++)
         restrict_block(&p->d->space, p->gradient + r->coordinate * mi * mj, mi, mj, k, own,
                        p->blocks + k * SPACE * SPACE);
 }
@@ -277,10 +275,9 @@ typedef struct {
 static void largest_share(void *data, Member member)
 {
     Largest *l = data;
-    ptrdiff_t first, last;
-    team_share(l->d->spectrum.mi, member, &first, &last);
+    const Range mine = team_share(l->d->spectrum.mi, member);
     float most = 0.0f;
-    for (ptrdiff_t i = first; i < last; i++) { /* row by row: whatever the share, they are rounded alike */
+    for (ptrdiff_t i = mine.first; i < mine.last; i++) { /* row by row: whatever the share, they are rounded alike */
         const float row = largest_of(l->d, i * l->d->spectrum.mj, (i + 1) * l->d->spectrum.mj);
         most = row > most ? row : most;
     }

@@ -124,13 +124,6 @@ static void along_rows(const float *w, const Transform *t, float *to, ptrdiff_t 
     }
 }
 
-/* This thread's of `rows` rows, in the groups that products take. */
-static void rows_of(ptrdiff_t rows, Member member, ptrdiff_t *first, ptrdiff_t *last)
-{
-    team_share((rows + ROWS - 1) / ROWS, member, first, last);
-    *first *= ROWS, *last = *last * ROWS < rows ? *last * ROWS : rows;
-}
-
 /* Divide the transforms along eta, planes (2, mi, width), by the symbol: columns `first` to before `last`. */
 static void divide_columns(const Spectrum *s, float *right, float *both, ptrdiff_t first, ptrdiff_t last, float *packed)
 {
@@ -155,12 +148,11 @@ static void divide(const Spectrum *s, float *restrict w, float *restrict spare, 
 {
     const ptrdiff_t mi = s->mi, width = modes_of(&s->eta), nodes = values_of(&s->eta);
     float *restrict right = spare, *restrict both = spare + 2 * mi * (width > nodes ? width : nodes);
-    ptrdiff_t first, last, from, to;
-    rows_of(2 * mi, member, &first, &last);
+    const Range groups = team_share((2 * mi + ROWS - 1) / ROWS, member), panels = team_share(width / PANEL, member);
+    const ptrdiff_t first = groups.first * ROWS, last = groups.last * ROWS < 2 * mi ? groups.last * ROWS : 2 * mi;
     along_rows(w + first * nodes, &s->eta, right + first * width, last - first, 0, packed);
     team_wait(member);
-    team_share(width / PANEL, member, &from, &to);
-    divide_columns(s, right, both, PANEL * from, PANEL * to, packed);
+    divide_columns(s, right, both, PANEL * panels.first, PANEL * panels.last, packed);
     team_wait(member);
     const ptrdiff_t start = first * nodes, end = last * nodes;
     if (s->rest > 0.0f) { /* some modes are left out: rest (w - Q Qᵀ w), the second part in the scale already */

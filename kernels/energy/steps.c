@@ -14,48 +14,62 @@
 #define SPAN (64 * CHUNK) /* values of vectors that one sum is over; these are added in their order */
 #define ROUND 256  /* sums of threads that are kept until they are added */
 
-/* Products of the rows of a table with a vector, by a team. */
+/* Sums of `width` numbers over parts of fixed size, added in the order of these, by a team. */
+typedef void (*Part)(const void *data, ptrdiff_t k, double *sums);
+
+typedef struct {
+    Part part; /* the sums of part k */
+    const void *data;
+    ptrdiff_t count;
+    int width;
+    double *sums, found[ROUND][2 * PAIRS];
+} Parts;
+
+static void parts_share(void *data, Member member)
+{
+    Parts *p = data;
+    for (ptrdiff_t start = 0; start < p->count; start += ROUND) {
+        const ptrdiff_t count = p->count - start < ROUND ? p->count - start : ROUND;
+        const Range mine = team_share(count, member);
+        for (ptrdiff_t k = mine.first; k < mine.last; k++)
+            p->part(p->data, start + k, p->found[k]);
+        team_wait(member);
+        for (ptrdiff_t k = 0; member.rank == 0 && k < count; k++)
+            for (int w = 0; w < p->width; w++)
+                p->sums[w] += p->found[k][w];
+        team_wait(member);
+    }
+}
+
+static void add_parts(Part part, const void *data, ptrdiff_t count, int width, int threads, double *sums)
+{
+    Parts p;
+    p.part = part, p.data = data, p.count = count, p.width = width, p.sums = sums;
+    memset(sums, 0, (size_t)width * sizeof *sums);
+    team_run(threads, parts_share, &p);
+}
+
 typedef struct {
     const float *table;
     int rows;
     const double *v;
     ptrdiff_t n;
-    double *products, parts[ROUND][2 * PAIRS];
 } Products;
 
 MESHONET_CLONES
-static void chunk_products(const Products *p, ptrdiff_t start, double *products)
+static void chunk_products(const void *data, ptrdiff_t k, double *products)
 {
-    const ptrdiff_t n = p->n, stop = start + CHUNK < n ? start + CHUNK : n;
+    const Products *p = data;
+    const ptrdiff_t n = p->n, start = k * CHUNK, stop = start + CHUNK < n ? start + CHUNK : n;
     for (int r = 0; r < p->rows; r++)
         products[r] = product_of_mixed(p->table + r * n + start, p->v + start, stop - start);
-}
-
-static void products_share(void *data, Member member)
-{
-    Products *p = data;
-    const ptrdiff_t chunks = (p->n + CHUNK - 1) / CHUNK;
-    for (ptrdiff_t start = 0; start < chunks; start += ROUND) {
-        const ptrdiff_t count = chunks - start < ROUND ? chunks - start : ROUND;
-        ptrdiff_t first, last;
-        team_share(count, member, &first, &last);
-        for (ptrdiff_t k = first; k < last; k++)
-            chunk_products(p, (start + k) * CHUNK, p->parts[k]);
-        team_wait(member);
-        for (ptrdiff_t k = 0; member.rank == 0 && k < count; k++)
-            for (int r = 0; r < p->rows; r++)
-                p->products[r] += p->parts[k][r];
-        team_wait(member);
-    }
 }
 
 /* Products of every row of the table (rows, n) with v. */
 static void row_products(const float *table, int rows, const double *v, ptrdiff_t n, int threads, double *products)
 {
-    Products p;
-    p.table = table, p.rows = rows, p.v = v, p.n = n, p.products = products;
-    memset(products, 0, (size_t)rows * sizeof *products);
-    team_run(threads, products_share, &p);
+    const Products p = {table, rows, v, n};
+    add_parts(chunk_products, &p, (n + CHUNK - 1) / CHUNK, rows, threads, products);
 }
 
 /* A new direction, by a team. */
@@ -119,59 +133,33 @@ static double choose_direction(Steps *s)
     return slope;
 }
 
-/* What a step and the gradient's change have in common, summed by a team. */
-typedef struct {
-    double steps, changes, curvature, turned;
-} Change;
-
-typedef struct {
-    Steps *s;
-    float factor;
-    int slot; /* of the table, or -1 */
-    Change change, parts[ROUND];
-} Remembered;
+/* What a step and the gradient's change have in common, over one span. */
+enum { STEPS, CHANGES, CURVATURE, TURNED, MEASURES };
 
 MESHONET_CLONES
-static Change span_change(const Steps *s, ptrdiff_t start, ptrdiff_t stop)
+static void span_change(const void *data, ptrdiff_t span, double *sums)
 {
-    enum { PARTS = 64 };
-    Change sum = {0.0, 0.0, 0.0, 0.0};
-    for (ptrdiff_t k = start; k < stop; k += PARTS) {
-        const ptrdiff_t n = stop - k < PARTS ? stop - k : PARTS;
-        double step[PARTS], change[PARTS], turned[PARTS];
+    enum { TOGETHER = 64 };
+    const Steps *s = data;
+    const ptrdiff_t start = span * SPAN, stop = start + SPAN < s->n ? start + SPAN : s->n;
+    memset(sums, 0, MEASURES * sizeof *sums);
+    for (ptrdiff_t k = start; k < stop; k += TOGETHER) {
+        const ptrdiff_t n = stop - k < TOGETHER ? stop - k : TOGETHER;
+        double step[TOGETHER], change[TOGETHER], turned[TOGETHER];
         for (ptrdiff_t l = 0; l < n; l++) {
             step[l] = (double)s->direction[k + l], change[l] = s->fresh[k + l] - s->gradient[k + l];
             turned[l] = (double)(s->turned[k + l] - s->steepest[k + l]);
         }
-        sum.steps += product_of(step, step, n), sum.changes += product_of(change, change, n);
-        sum.curvature += product_of(step, change, n), sum.turned += product_of(s->gradient + k, turned, n);
-    }
-    return sum;
-}
-
-static ptrdiff_t end_of_span(const Steps *s, ptrdiff_t k)
-{
-    return (k + 1) * SPAN < s->n ? (k + 1) * SPAN : s->n;
-}
-
-static void change_share(void *data, Member member)
-{
-    Remembered *r = data;
-    const ptrdiff_t spans = (r->s->n + SPAN - 1) / SPAN;
-    for (ptrdiff_t start = 0; start < spans; start += ROUND) {
-        const ptrdiff_t count = spans - start < ROUND ? spans - start : ROUND;
-        ptrdiff_t first, last;
-        team_share(count, member, &first, &last);
-        for (ptrdiff_t k = first; k < last; k++)
-            r->parts[k] = span_change(r->s, (start + k) * SPAN, end_of_span(r->s, start + k));
-        team_wait(member);
-        for (ptrdiff_t k = 0; member.rank == 0 && k < count; k++) {
-            r->change.steps += r->parts[k].steps, r->change.changes += r->parts[k].changes;
-            r->change.curvature += r->parts[k].curvature, r->change.turned += r->parts[k].turned;
-        }
-        team_wait(member);
+        sums[STEPS] += product_of(step, step, n), sums[CHANGES] += product_of(change, change, n);
+        sums[CURVATURE] += product_of(step, change, n), sums[TURNED] += product_of(s->gradient + k, turned, n);
     }
 }
+
+typedef struct {
+    Steps *s;
+    float factor;
+    int slot; /* of the table */
+} Remembered;
 
 /* The step and the change of P gradient into the table. */
 MESHONET_CLONES
@@ -190,10 +178,10 @@ TEAM_ROWS(kept_share, Remembered, task->s->n, keep_step)
    step; then the products of all rows with the new gradient. Those with y are the changes of these. */
 static void remember(Steps *s, double factor, double slope)
 {
-    double before[2 * PAIRS];
-    Remembered r = {.s = s, .factor = (float)factor, .slot = s->count};
-    team_run(s->threads, change_share, &r);
-    const int bends = r.change.curvature > 1e-12 * sqrt(r.change.steps * r.change.changes);
+    double before[2 * PAIRS], change[MEASURES];
+    Remembered r = {s, (float)factor, s->count};
+    add_parts(span_change, s, (s->n + SPAN - 1) / SPAN, MEASURES, s->threads, change);
+    const int bends = change[CURVATURE] > 1e-12 * sqrt(change[STEPS] * change[CHANGES]);
     memcpy(before, s->products, sizeof before);
     if (bends) {
         if (s->count == PAIRS) {
@@ -203,7 +191,7 @@ static void remember(Steps *s, double factor, double slope)
         }
         s->order[s->count++] = r.slot;
         team_run(s->threads, kept_share, &r);
-        before[2 * r.slot] = factor * slope, before[2 * r.slot + 1] = r.change.turned;
+        before[2 * r.slot] = factor * slope, before[2 * r.slot + 1] = change[TURNED];
     }
     row_products(s->table, 2 * s->count, s->fresh, s->n, s->threads, s->products);
     for (int k = 0; bends && k < s->count; k++) {

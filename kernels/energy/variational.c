@@ -104,11 +104,10 @@ static double *member_rows(const Task *t, Member member)
 static void corner_share(void *data, Member member)
 {
     const Task *t = data;
-    ptrdiff_t first, last;
-    team_share(t->ni, member, &first, &last);
-    memset(t->gx + first * t->nj, 0, (size_t)((last - first) * t->nj) * sizeof *t->gx);
-    memset(t->gy + first * t->nj, 0, (size_t)((last - first) * t->nj) * sizeof *t->gy);
-    to_own_nodes(t, corner_terms, first, last, t->cells, member_rows(t, member));
+    const Range mine = team_share(t->ni, member);
+    memset(t->gx + mine.first * t->nj, 0, (size_t)((mine.last - mine.first) * t->nj) * sizeof *t->gx);
+    memset(t->gy + mine.first * t->nj, 0, (size_t)((mine.last - mine.first) * t->nj) * sizeof *t->gy);
+    to_own_nodes(t, corner_terms, mine.first, mine.last, t->cells, member_rows(t, member));
 }
 
 MESHONET_CLONES
@@ -121,22 +120,20 @@ static void measure_rows(const Task *t, const Family *f, ptrdiff_t first, ptrdif
 static void along_share(void *data, Member member)
 {
     const Task *t = data;
-    ptrdiff_t first, last;
-    team_share(t->ni, member, &first, &last);
-    measure_rows(t, &t->along, first, last);
+    const Range mine = team_share(t->ni, member);
+    measure_rows(t, &t->along, mine.first, mine.last);
     team_wait(member);
-    to_own_nodes(t, along_terms, first, last, t->lengths, member_rows(t, member));
+    to_own_nodes(t, along_terms, mine.first, mine.last, t->lengths, member_rows(t, member));
 }
 
 static void across_share(void *data, Member member)
 {
     const Task *t = data;
     const ptrdiff_t nj = t->nj;
-    ptrdiff_t first, last;
-    team_share(t->ni, member, &first, &last);
-    measure_rows(t, &t->across, first, last);
+    const Range mine = team_share(t->ni, member);
+    measure_rows(t, &t->across, mine.first, mine.last);
     team_wait(member);
-    across_terms(t, first, last, t->gx + first * nj, t->gy + first * nj, t->lengths, member_rows(t, member));
+    across_terms(t, mine.first, mine.last, t->gx + mine.first * nj, t->gy + mine.first * nj, t->lengths, member_rows(t, member));
 }
 
 double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights,

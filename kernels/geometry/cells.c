@@ -48,10 +48,9 @@ static void count_share(void *data, Member member)
 {
     Count *count = data;
     const ptrdiff_t nj = count->nj;
-    ptrdiff_t first, last;
     int64_t folded = 0;
-    team_share(count->ni - 1, member, &first, &last);
-    for (ptrdiff_t i = first; i < last; ++i)
+    const Range mine = team_share(count->ni - 1, member);
+    for (ptrdiff_t i = mine.first; i < mine.last; ++i)
         folded += cells_folded_in_row(count->x + i * nj, count->y + i * nj, nj, nj - 1);
     team_add(&count->folded, folded);
 }
@@ -173,16 +172,6 @@ static void cells_row(const double *restrict x, const double *restrict y, ptrdif
     }
 }
 
-/* Store where in row i `value` stands first. */
-static void first_place(const double *row, ptrdiff_t cells, double value, ptrdiff_t i, int64_t *where)
-{
-    ptrdiff_t j = 0;
-    while (j < cells - 1 && row[j] != value)
-        ++j;
-    where[0] = i;
-    where[1] = j;
-}
-
 /* What one thread knows of its rows, and room for one row. */
 typedef struct {
     double *areas;   /* of four rows of cells, (nj + 1) each */
@@ -226,15 +215,12 @@ static void take_row(const Cells *c, const Own *own, ptrdiff_t i)
     for (ptrdiff_t k = 0; k < METRICS; ++k) {
         const double *row = own->metrics + k * cells;
         double *summary = own->summary + 2 * k;
+        int64_t *where = own->where + 4 * k;
         values_reduce(row, cells, &low, &high, c->sums + i * METRICS + k);
-        if (fresh || low < summary[0]) {
-            summary[0] = low;
-            first_place(row, cells, low, i, own->where + 4 * k);
-        }
-        if (fresh || high > summary[1]) {
-            summary[1] = high;
-            first_place(row, cells, high, i, own->where + 4 * k + 2);
-        }
+        if (fresh || low < summary[0])
+            summary[0] = low, where[0] = i, where[1] = value_place(row, cells, low);
+        if (fresh || high > summary[1])
+            summary[1] = high, where[2] = i, where[3] = value_place(row, cells, high);
     }
 }
 
@@ -278,10 +264,9 @@ static void run_share(void *data, Member member)
 {
     const Cells *c = data;
     const Own own = own_of(c, member.rank);
-    ptrdiff_t first, last;
-    team_share(c->ni - 1, member, &first, &last);
-    if (first < last)
-        run_rows(c, &own, first, last);
+    const Range mine = team_share(c->ni - 1, member);
+    if (mine.first < mine.last)
+        run_rows(c, &own, mine.first, mine.last);
 }
 
 /* Add what a thread knows of its rows to what is known of those before. */

@@ -34,3 +34,11 @@ void values_reduce(const double *restrict row, ptrdiff_t cells, double *low, dou
     *high = highs[0];
     *sum = sums[0];
 }
+
+ptrdiff_t value_place(const double *row, ptrdiff_t cells, double value)
+{
+    ptrdiff_t j = 0;
+    while (j < cells - 1 && row[j] != value)
+        ++j;
+    return j;
+}

@@ -62,24 +62,22 @@ static void move_nodes(HexDescent *d, ptrdiff_t first, ptrdiff_t last)
 static void value_work(void *data, Member member)
 {
     HexDescent *d = data;
-    ptrdiff_t first, last;
-    team_share(d->count, member, &first, &last);
-    move_nodes(d, first, last);
+    const Range mine = team_share(d->count, member);
+    move_nodes(d, mine.first, mine.last);
     team_wait(member);
     hex_energy(&d->mesh, &d->weights, d->x, d->room + (size_t)member.rank * hex_room(&d->mesh), member);
-    gather(d, 3, d->steps.fresh, first, last);
+    gather(d, 3, d->steps.fresh, mine.first, mine.last);
 }
 
 static void stiffness_work(void *data, Member member)
 {
     HexDescent *d = data;
-    ptrdiff_t first, last;
-    team_share(d->count, member, &first, &last);
-    set_nodes(d, d->here, first, last);
+    const Range mine = team_share(d->count, member);
+    set_nodes(d, d->here, mine.first, mine.last);
     team_wait(member);
     hex_stiffness(&d->mesh, &d->weights, d->x, d->spectrum.m[0] == 0,
                   d->room + (size_t)member.rank * hex_room(&d->mesh), member);
-    gather(d, 1, d->stiffness, first, last);
+    gather(d, 1, d->stiffness, mine.first, mine.last);
 }
 
 static double attempt(void *problem, double factor, double *smallest)

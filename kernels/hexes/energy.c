@@ -44,13 +44,13 @@ typedef void (*PlaneWork)(const Task *t, const HexBlock *b, ptrdiff_t i);
 
 static void on_planes(const Task *t, PlaneWork work, Member member)
 {
-    ptrdiff_t first, last, all = 0, before = 0;
+    ptrdiff_t all = 0, before = 0;
     for (ptrdiff_t b = 0; b < t->mesh->blocks; b++)
         all += t->mesh->block[b].n[0];
-    team_share(all, member, &first, &last);
+    const Range mine = team_share(all, member);
     for (ptrdiff_t b = 0; b < t->mesh->blocks; b++) {
         const ptrdiff_t n = t->mesh->block[b].n[0];
-        for (ptrdiff_t i = first > before ? first - before : 0; i < n && before + i < last; i++)
+        for (ptrdiff_t i = mine.first > before ? mine.first - before : 0; i < n && before + i < mine.last; i++)
             work(t, t->mesh->block + b, i);
         before += n;
     }

@@ -138,11 +138,9 @@ static void divide_share(void *data, Member member)
     const Spectrum3 *s = p->s;
     const ptrdiff_t *m = s->m, inner = m[0] * m[1] * m[2], plane = m[1] * s->pitch, columns = plane / PANEL;
     float *panel = s->panels + (size_t)member.rank * panel_floats(s);
-    ptrdiff_t first, last, start, stop;
-    team_share(m[0], member, &first, &last);
-    team_share(columns, member, &start, &stop);
+    const Range mine = team_share(m[0], member), stacks = team_share(columns, member);
     for (int c = 0; c < 3; c++) {
-        for (ptrdiff_t i = first; i < last; i++) {
+        for (ptrdiff_t i = mine.first; i < mine.last; i++) {
             float *w = s->w + i * plane, *v = s->v + i * plane;
             for (ptrdiff_t j = 0; j < m[1]; j++) {
                 const ptrdiff_t at = (i * m[1] + j) * m[2];
@@ -152,10 +150,10 @@ static void divide_share(void *data, Member member)
             along_eta(s, v, w, panel);
         }
         team_wait(member);
-        for (ptrdiff_t column = start; column < stop; column++)
+        for (ptrdiff_t column = stacks.first; column < stacks.last; column++)
             along_xi(s, s->w, column * PANEL / s->pitch, column * PANEL % s->pitch, panel);
         team_wait(member);
-        for (ptrdiff_t i = first; i < last; i++) {
+        for (ptrdiff_t i = mine.first; i < mine.last; i++) {
             float *w = s->w + i * plane, *v = s->v + i * plane;
             along_eta(s, w, v, panel);
             along_zeta(s, v, w);

@@ -114,31 +114,26 @@ MESHONET_INLINE void widen(const March *m, ptrdiff_t n, const double *widening, 
             m->volume[i] *= pow(widening[i], part);
 }
 
-/* Nodes `from` to before `to` of a level. */
-typedef struct {
-    ptrdiff_t from, to;
-} Nodes;
-
-/* Block k of a level. */
-MESHONET_INLINE Nodes block_of(ptrdiff_t k, ptrdiff_t n)
+/* The nodes of block k of a level. */
+MESHONET_INLINE Range block_of(ptrdiff_t k, ptrdiff_t n)
 {
     const ptrdiff_t each = n < WIDE ? n : BLOCK;
-    return (Nodes){k * each, (k + 1) * each < n ? (k + 1) * each : n};
+    return (Range){k * each, (k + 1) * each < n ? (k + 1) * each : n};
 }
 
 /* Unit edges and their lengths. */
 MESHONET_INLINE void measure_edges(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
-                                   Nodes own, int closed)
+                                   Range own, int closed)
 {
     double *restrict ex = m->ex, *restrict ey = m->ey, *restrict length = m->length;
-    const int end = own.to == n && own.from < n;
-    for (ptrdiff_t i = own.from; i < own.to - end; i++)
+    const int end = own.last == n && own.first < n;
+    for (ptrdiff_t i = own.first; i < own.last - end; i++)
         ex[i] = x[i + 1] - x[i], ey[i] = y[i + 1] - y[i];
     if (end && closed)
         ex[n - 1] = x[0] - x[n - 1], ey[n - 1] = y[0] - y[n - 1];
     else if (end)
         ex[n - 1] = x[n - 1] - x[n - 2], ey[n - 1] = y[n - 1] - y[n - 2];
-    for (ptrdiff_t i = own.from; i < own.to; i++) {
+    for (ptrdiff_t i = own.first; i < own.last; i++) {
         length[i] = sqrt(ex[i] * ex[i] + ey[i] * ey[i]);
         ex[i] /= length[i], ey[i] /= length[i];
     }
@@ -170,7 +165,7 @@ MESHONET_INLINE double limited_power(double ratio, double exponent)
 /* Coefficients p, s of (1 + theta) C/2 = [p s / s -p], dissipation and the right side of every node.
    `growth` is sqrt(level / levels): the dissipation's, and in the exponent of the convergence of lines; `bend`
    the settings' times step and height. */
-MESHONET_INLINE void assemble(const March *m, Nodes own, int first, double growth, double bend,
+MESHONET_INLINE void assemble(const March *m, Range own, int first, double growth, double bend,
                               const MarchSettings *settings)
 {
     const double *restrict ex = m->ex, *restrict ey = m->ey, *restrict length = m->length, *restrict v = m->volume;
@@ -179,12 +174,12 @@ MESHONET_INLINE void assemble(const March *m, Nodes own, int first, double growt
     const double smooth = settings->dissipation * growth, exponent = 2.0 / growth, flux = 0.5 * settings->implicit;
     const double least_even = settings->even, tolerated = settings->tolerated;
     if (first)
-        for (ptrdiff_t i = own.from; i < own.to; i++) {
+        for (ptrdiff_t i = own.first; i < own.last; i++) {
             before[i] = length[i] + length[i - 1];
             let[i] = larger(fabs(length[i] - length[i - 1]) / smaller(length[i], length[i - 1]), tolerated);
         }
     MESHONET_INDEPENDENT
-    for (ptrdiff_t i = own.from; i < own.to; i++) {
+    for (ptrdiff_t i = own.first; i < own.last; i++) {
         const double ux = ex[i], uy = ey[i], both = length[i] + length[i - 1], w = 0.5 * both;
         const double apart = fabs(length[i] - length[i - 1]) / smaller(length[i], length[i - 1]);
         double tx = ux + ex[i - 1], ty = uy + ey[i - 1];
@@ -275,7 +270,7 @@ MESHONET_INLINE void substitute_closed(const March *m, ptrdiff_t from, ptrdiff_t
 
 /* Add dr of a closed level to (x, y), giving (to_x, to_y), once the bordering node is known. */
 MESHONET_INLINE void add_closed(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
-                                Nodes own, double *restrict to_x, double *restrict to_y)
+                                Range own, double *restrict to_x, double *restrict to_y)
 {
     const ptrdiff_t k = n - 1; /* the bordering node */
     const double *restrict bx = m->bx, *restrict by = m->by;
@@ -286,12 +281,12 @@ MESHONET_INLINE void add_closed(const March *m, const double *restrict x, const 
     const double fy = m->ry[k] - (below.c * bx[k - 1] + below.d * by[k - 1]) - (above.c * bx[0] + above.d * by[0]);
     const Matrix over = inverse(centre);
     const double dx = over.a * fx + over.b * fy, dy = over.c * fx + over.d * fy;
-    const ptrdiff_t end = own.to < k ? own.to : k;
-    for (ptrdiff_t i = own.from; i < end; i++) {
+    const ptrdiff_t end = own.last < k ? own.last : k;
+    for (ptrdiff_t i = own.first; i < end; i++) {
         to_x[i] = x[i] + bx[i] - (m->last[i].a * dx + m->last[i].b * dy);
         to_y[i] = y[i] + by[i] - (m->last[i].c * dx + m->last[i].d * dy);
     }
-    if (own.from <= k && own.to > k)
+    if (own.first <= k && own.last > k)
         to_x[k] = x[k] + dx, to_y[k] = y[k] + dy;
 }
 
@@ -345,7 +340,7 @@ typedef struct {
 } Task;
 
 /* A level solved for from its own block rows, by the first thread from below and by the last from above. */
-MESHONET_INLINE void solve_closed(const Task *t, Member member, Nodes own, double *x, double *y)
+MESHONET_INLINE void solve_closed(const Task *t, Member member, Range own, double *x, double *y)
 {
     const March *m = &t->parts;
     const ptrdiff_t n = t->n, k = n - 1, middle = n < WIDE ? k : k / 2, known = middle < k ? middle : k - 1;
@@ -363,7 +358,7 @@ MESHONET_INLINE void solve_closed(const Task *t, Member member, Nodes own, doubl
     if (last && middle < k)
         substitute_closed(m, known, k, 1);
     team_wait(member);
-    for (ptrdiff_t k = own.from; k < own.to; k++)
+    for (ptrdiff_t k = own.first; k < own.last; k++)
         add_closed(m, x, y, n, block_of(k, n), x + n, y + n);
 }
 
@@ -402,13 +397,12 @@ static void march(void *data, Member member)
     const int closed = t->ends == NULL;
     double *x = t->x, *y = t->y;
     double height = 0.0;
-    Nodes own; /* blocks */
-    team_share(n < WIDE ? 1 : (n + BLOCK - 1) / BLOCK, member, &own.from, &own.to);
+    const Range own = team_share(n < WIDE ? 1 : (n + BLOCK - 1) / BLOCK, member); /* blocks */
     for (ptrdiff_t level = 0; level < levels; level++, x += n, y += n) {
         const double step = t->steps[level];
         const ptrdiff_t risen = level + 1 < settings->rise ? level + 1 : settings->rise;
         const double growth = sqrt((double)risen / (double)levels);
-        for (ptrdiff_t k = own.from; k < own.to; k++)
+        for (ptrdiff_t k = own.first; k < own.last; k++)
             measure_edges(&m, x, y, n, block_of(k, n), closed);
         team_wait(member);
         if (member.rank == 0) {
@@ -420,7 +414,7 @@ static void march(void *data, Member member)
         }
         team_wait(member);
         height += step;
-        for (ptrdiff_t k = own.from; k < own.to; k++)
+        for (ptrdiff_t k = own.first; k < own.last; k++)
             assemble(&m, block_of(k, n), level == 0, growth, settings->bend * step * height, settings);
         team_wait(member);
         if (closed)

@@ -103,11 +103,14 @@ static inline void team_add(int64_t *total, int64_t count)
 #endif
 }
 
-/* First and last (excluded) of `count` things that are this thread's. */
-static inline void team_share(ptrdiff_t count, Member member, ptrdiff_t *first, ptrdiff_t *last)
+typedef struct {
+    ptrdiff_t first, last; /* the last is not in it */
+} Range;
+
+/* This thread's of `count` things. */
+static inline Range team_share(ptrdiff_t count, Member member)
 {
-    *first = count * member.rank / member.size;
-    *last = count * (member.rank + 1) / member.size;
+    return (Range){count * member.rank / member.size, count * (member.rank + 1) / member.size};
 }
 
 /* NAME: what a team does to a T, ROWS(task, first, last) by each member for its share of COUNT things. */
@@ -115,7 +118,6 @@ static inline void team_share(ptrdiff_t count, Member member, ptrdiff_t *first, 
     static void NAME(void *data, Member member)        \
     {                                                  \
         const T *task = data;                          \
-        ptrdiff_t first, last;                         \
-        team_share(COUNT, member, &first, &last);      \
-        ROWS(task, first, last);                       \
+        const Range own = team_share(COUNT, member);   \
+        ROWS(task, own.first, own.last);               \
     }

@@ -236,10 +236,9 @@ static double sample_lines(const Sampling *all, ptrdiff_t i, ptrdiff_t end, doub
 static void sample_share(void *data, Member member)
 {
     Sampling *all = data;
-    ptrdiff_t first, last;
     double largest = 1.0;
-    team_share((all->ni + TOGETHER - 1) / TOGETHER, member, &first, &last);
-    for (ptrdiff_t k = first; k < last; k++) {
+    const Range mine = team_share((all->ni + TOGETHER - 1) / TOGETHER, member);
+    for (ptrdiff_t k = mine.first; k < mine.last; k++) {
         const ptrdiff_t end = TOGETHER * (k + 1) < all->ni ? TOGETHER * (k + 1) : all->ni;
         const double ratio = sample_lines(all, TOGETHER * k, end, all->scratch + member.rank * (10 * all->nj + all->NJ));
         largest = ratio > largest ? ratio : largest;
@@ -287,9 +286,8 @@ static void move_lines(const Moving *all, ptrdiff_t start, ptrdiff_t end, double
 static void move_share(void *data, Member member)
 {
     const Moving *all = data;
-    ptrdiff_t first, last;
-    team_share(all->ni, member, &first, &last);
-    move_lines(all, first, last, all->scratch + member.rank * 5 * all->nj);
+    const Range mine = team_share(all->ni, member);
+    move_lines(all, mine.first, mine.last, all->scratch + member.rank * 5 * all->nj);
 }
 
 void redistribute_lines(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const double *first, const double *fade,

@@ -98,9 +98,8 @@ static void count_rows(void *data, Member member)
 {
     const Count *count = data;
     const ptrdiff_t nj = count->nodes->nj - 1;
-    ptrdiff_t first, last;
-    team_share((count->nodes->ni - 1) * nj, member, &first, &last);
-    for (ptrdiff_t row = first; row < last; row++) {
+    const Range mine = team_share((count->nodes->ni - 1) * nj, member);
+    for (ptrdiff_t row = mine.first; row < mine.last; row++) {
         const SolidLines lines = solid_lines(count->nodes, row / nj, row % nj);
         count->counts[row] = fails_in_row(&lines, count->nodes->nk - 1, count->test);
     }

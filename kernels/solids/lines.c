@@ -52,13 +52,10 @@ static void take(const Lines *lines, ptrdiff_t m, const double *row, ptrdiff_t c
     summary[1] += sum;
     if (high <= summary[0])
         return;
-    ptrdiff_t k = 0;
-    while (k < count - 1 && row[k] != high)
-        k++;
     summary[0] = high;
     where[0] = at[0];
     where[1] = at[1];
-    where[2] = at[2] + k;
+    where[2] = at[2] + value_place(row, count, high);
 }
 
 static void of_planes(void *data, Member member)
@@ -67,14 +64,13 @@ static void of_planes(void *data, Member member)
     const SolidNodes *nodes = lines->nodes;
     const ptrdiff_t steps[3] = {nodes->nj * nodes->nk, nodes->nk, 1};
     double *growth = malloc(2 * (size_t)nodes->nk * sizeof(double));
-    ptrdiff_t first, last;
     if (!growth) {
         lines->failed = 1;
         return;
     }
     double *bend = growth + nodes->nk;
-    team_share(nodes->ni, member, &first, &last);
-    for (ptrdiff_t i = first; i < last; i++)
+    const Range mine = team_share(nodes->ni, member);
+    for (ptrdiff_t i = mine.first; i < mine.last; i++)
         for (ptrdiff_t j = 0; j < nodes->nj; j++)
             for (int axis = 0; axis < 3; axis++) {
                 if ((axis == 0 && (i == 0 || i == nodes->ni - 1)) || (axis == 1 && (j == 0 || j == nodes->nj - 1)))

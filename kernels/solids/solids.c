@@ -36,9 +36,8 @@ static void volumes_of_rows(void *data, Member member)
     const Volumes *to = data;
     const SolidNodes *nodes = to->nodes;
     const ptrdiff_t nj = nodes->nj - 1;
-    ptrdiff_t first, last;
-    team_share((nodes->ni - 1) * nj, member, &first, &last);
-    for (ptrdiff_t row = first; row < last; row++) {
+    const Range mine = team_share((nodes->ni - 1) * nj, member);
+    for (ptrdiff_t row = mine.first; row < mine.last; row++) {
         const ptrdiff_t i = row / nj, j = row % nj;
         const SolidLines lines = solid_lines(nodes, i, j);
         row_volumes(&lines, nodes->nk - 1, to->volumes + ((i + 1) * (nodes->nj + 1) + j + 1) * (nodes->nk + 1) + 1);
@@ -113,16 +112,6 @@ static void measured_row(const SolidNodes *nodes, const SolidLines *lines, const
     solid_row(lines, lengths, own, beside, nodes->nk - 1, stride, out);
 }
 
-static void place(const double *row, double value, ptrdiff_t i, ptrdiff_t j, int64_t *where, ptrdiff_t cells)
-{
-    ptrdiff_t k = 0;
-    while (k < cells - 1 && row[k] != value)
-        k++;
-    where[0] = i;
-    where[1] = j;
-    where[2] = k;
-}
-
 /* Take the metrics of row (i, j) into what is known of its chunk. */
 static void take_row(const SolidRun *run, ptrdiff_t chunk, int fresh, ptrdiff_t i, ptrdiff_t j, double *rows)
 {
@@ -132,14 +121,10 @@ static void take_row(const SolidRun *run, ptrdiff_t chunk, int fresh, ptrdiff_t 
         double low, high, sum, *summary = run->summary + 3 * (chunk * SOLID_METRICS + metric);
         int64_t *where = run->where + 6 * (chunk * SOLID_METRICS + metric);
         values_reduce(row, cells, &low, &high, &sum);
-        if (fresh || low < summary[0]) {
-            summary[0] = low;
-            place(row, low, i, j, where, cells);
-        }
-        if (fresh || high > summary[2]) {
-            summary[2] = high;
-            place(row, high, i, j, where + 3, cells);
-        }
+        if (fresh || low < summary[0])
+            summary[0] = low, where[0] = i, where[1] = j, where[2] = value_place(row, cells, low);
+        if (fresh || high > summary[2])
+            summary[2] = high, where[3] = i, where[4] = j, where[5] = value_place(row, cells, high);
         summary[1] = fresh ? sum : summary[1] + sum;
         if (metric >= run->keep && metric < run->keep + run->n_kept) {
             const ptrdiff_t at = ((metric - run->keep) * (run->nodes.ni - 1) + i) * (run->nodes.nj - 1) + j;
@@ -175,13 +160,12 @@ static void run_chunks(void *data, Member member)
 {
     Task *task = data;
     Scratch scratch;
-    ptrdiff_t first, last;
     if (!scratch_made(&scratch, task->run->nodes.nk)) {
         task->failed = 1;
         return;
     }
-    team_share(solids_chunks(&task->run->nodes), member, &first, &last);
-    for (ptrdiff_t chunk = first; chunk < last; chunk++)
+    const Range mine = team_share(solids_chunks(&task->run->nodes), member);
+    for (ptrdiff_t chunk = mine.first; chunk < mine.last; chunk++)
         run_chunk(task->run, chunk, &scratch);
     free(scratch.memory);
 }

@@ -208,11 +208,11 @@ static void run(void *data, Member member)
     const Work *work = data;
     const Growth *s = work->growth;
     const Room room = room_of(work->room + (size_t)member.rank * work->each, s->levels);
-    ptrdiff_t first, last, found = 0;
-    team_share(s->nodes, member, &first, &last);
-    ptrdiff_t *some = work->some + first;
-    for (ptrdiff_t k = first; k < last; k += WIDE)
-        found += find_eight(s, &room, k, last, some + found);
+    ptrdiff_t found = 0;
+    const Range mine = team_share(s->nodes, member);
+    ptrdiff_t *some = work->some + mine.first;
+    for (ptrdiff_t k = mine.first; k < mine.last; k += WIDE)
+        found += find_eight(s, &room, k, mine.last, some + found);
     for (ptrdiff_t k = 0; k < found; k += WIDE)
         limit_eight(s, &room, some + k, found - k < WIDE ? found - k : WIDE);
 }

@@ -154,9 +154,8 @@ static void run(void *data, Member member)
 {
     const Work *work = data;
     const Room room = room_of(work->room + (size_t)member.rank * work->each, work->lines->levels);
-    ptrdiff_t first, last;
-    team_share((work->lines->nodes + WIDE - 1) / WIDE, member, &first, &last);
-    for (ptrdiff_t k = first; k < last; k++)
+    const Range mine = team_share((work->lines->nodes + WIDE - 1) / WIDE, member);
+    for (ptrdiff_t k = mine.first; k < mine.last; k++)
         eight_lines(work->lines, &room, k * WIDE);
 }
 

@@ -33,18 +33,17 @@ typedef struct {
     double *volume, *other;
     double gone, last, shortest; /* mean distance so far, the step before, the least reach */
     double yield;                /* mean distance that a step came to, over its length */
-    ptrdiff_t first, end;        /* chunks of this thread */
+    Range chunks;                /* of this thread */
     Member member;
 } Runner;
 
 static void measure(const March *m, Runner *r)
 {
-    for (ptrdiff_t c = r->first; c < r->end; c++) {
-        ptrdiff_t first, last;
-        chunk_range(&r->solver, c, &first, &last);
-        r->solver.sums[c] = step_sizes(&r->solver.step, first, last);
+    for (ptrdiff_t c = r->chunks.first; c < r->chunks.last; c++) {
+        const Range range = chunk_range(&r->solver, c);
+        r->solver.sums[c] = step_sizes(&r->solver.step, range.first, range.last);
         if (m->settings->relaxing > 0.0)
-            r->solver.sums[c] = nearest_reach(&r->solver.step, first, last);
+            r->solver.sums[c] = nearest_reach(&r->solver.step, range.first, range.last);
     }
     team_wait(r->member);
     r->shortest = r->solver.sums[0];
@@ -73,12 +72,11 @@ static double smooth_volumes(const March *m, Runner *r, double part)
     const ptrdiff_t sweeps = part > 0.0 ? set->sweeps : 0, chunks = r->solver.chunks;
     for (ptrdiff_t k = 0; k <= sweeps; k++) {
         const double *from = k ? r->volume : r->solver.step.area;
-        for (ptrdiff_t c = r->first; c < r->end; c++) {
-            ptrdiff_t first, last;
-            chunk_range(&r->solver, c, &first, &last);
+        for (ptrdiff_t c = r->chunks.first; c < r->chunks.last; c++) {
+            const Range range = chunk_range(&r->solver, c);
             double *values = (double *)from, *sums = r->solver.sums + chunks;
-            fill_equal_ghosts(g, values, first, last);
-            sums[c] = step_smooth(&r->solver.step, values, r->other, k ? set->weight : 0.0, first, last);
+            fill_equal_ghosts(g, values, range.first, range.last);
+            sums[c] = step_smooth(&r->solver.step, values, r->other, k ? set->weight : 0.0, range.first, range.last);
         }
         team_wait(r->member);
         swap(&r->volume, &r->other);
@@ -128,10 +126,9 @@ static void advance(Runner *r, double length)
 {
     double *sums = r->solver.sums;
     const ptrdiff_t chunks = r->solver.chunks;
-    for (ptrdiff_t c = r->first; c < r->end; c++) {
-        ptrdiff_t first, last;
-        chunk_range(&r->solver, c, &first, &last);
-        sums[2 * chunks + c] = advance_chunk(&r->solver.step, sums + 3 * chunks + c, first, last);
+    for (ptrdiff_t c = r->chunks.first; c < r->chunks.last; c++) {
+        const Range range = chunk_range(&r->solver, c);
+        sums[2 * chunks + c] = advance_chunk(&r->solver.step, sums + 3 * chunks + c, range.first, range.last);
     }
     team_wait(r->member);
     double swept = 0.0, area = 0.0;
@@ -157,11 +154,10 @@ static int solve_length(const March *m, Runner *r, double length, double again, 
     double *before = step->before;
     if (rule.first)
         step->before = step->along;
-    for (ptrdiff_t c = r->first; c < r->end; c++) {
-        ptrdiff_t first, last;
-        chunk_range(&r->solver, c, &first, &last);
-        heights_chunk(step, r->volume, length, part, keep, mean, again, first, last);
-        step_rows(step, &rule, first, last);
+    for (ptrdiff_t c = r->chunks.first; c < r->chunks.last; c++) {
+        const Range range = chunk_range(&r->solver, c);
+        heights_chunk(step, r->volume, length, part, keep, mean, again, range.first, range.last);
+        step_rows(step, &rule, range.first, range.last);
     }
     step->before = before;
     team_wait(r->member);
@@ -193,7 +189,7 @@ static int take_step(const March *m, Runner *r, double *left, ptrdiff_t level)
     const Relaxing relaxing = {set->relaxing * length, r->gone / (set->settled * set->size), r->gone * set->near};
     if (set->relaxing > 0.0)
         for (ptrdiff_t k = 0; k < set->relaxations; k++)
-            relax_front(&r->solver, m->moves, &relaxing, r->first, r->end, r->member);
+            relax_front(&r->solver, m->moves, &relaxing, r->chunks, r->member);
     return iterations;
 }
 
@@ -201,20 +197,19 @@ static void keep_level(const March *m, const Runner *r, ptrdiff_t level)
 {
     const Graph *g = r->solver.step.graph;
     const ptrdiff_t n = g->nodes, rows = n + g->ghosts;
-    for (ptrdiff_t c = r->first; c < r->end; c++) {
-        ptrdiff_t first, last;
-        chunk_range(&r->solver, c, &first, &last);
+    for (ptrdiff_t c = r->chunks.first; c < r->chunks.last; c++) {
+        const Range range = chunk_range(&r->solver, c);
         for (int d = 0; d < 3; d++)
-            memcpy(m->levels + (3 * level + d) * n + first, r->solver.step.x + d * rows + first,
-                   (size_t)(last - first) * sizeof(double));
+            memcpy(m->levels + (3 * level + d) * n + range.first, r->solver.step.x + d * rows + range.first,
+                   (size_t)(range.last - range.first) * sizeof(double));
     }
 }
 
 static void run(void *data, Member member)
 {
     const March *m = data;
-    Runner r = {.solver = m->solver, .volume = m->volume, .other = m->other, .member = member, .yield = 1.0};
-    team_share(r.solver.chunks, member, &r.first, &r.end);
+    Runner r = {.solver = m->solver, .volume = m->volume, .other = m->other, .member = member, .yield = 1.0,
+                .chunks = team_share(m->solver.chunks, member)};
     ptrdiff_t steps = 0, iterations = 0, level = 1;
     for (int fine = 1; fine && level <= m->count; level++) {
         ptrdiff_t here = 0;

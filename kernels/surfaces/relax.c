@@ -60,21 +60,19 @@ static void moves_chunk(const Step *step, double *moves, const Relaxing *relaxin
     hold_in_planes(g, moves, n, first, last);
 }
 
-void relax_front(Solver *solver, double *moves, const Relaxing *relaxing, ptrdiff_t first, ptrdiff_t end, Member member)
+void relax_front(Solver *solver, double *moves, const Relaxing *relaxing, Range chunks, Member member)
 {
     const Step *step = &solver->step;
     const ptrdiff_t n = step->graph->nodes, rows = n + step->graph->ghosts;
-    for (ptrdiff_t c = first; c < end; c++) {
-        ptrdiff_t from, to;
-        chunk_range(solver, c, &from, &to);
-        moves_chunk(step, moves, relaxing, from, to);
+    for (ptrdiff_t c = chunks.first; c < chunks.last; c++) {
+        const Range range = chunk_range(solver, c);
+        moves_chunk(step, moves, relaxing, range.first, range.last);
     }
     team_wait(member);
-    for (ptrdiff_t c = first; c < end; c++) {
-        ptrdiff_t from, to;
-        chunk_range(solver, c, &from, &to);
+    for (ptrdiff_t c = chunks.first; c < chunks.last; c++) {
+        const Range range = chunk_range(solver, c);
         for (int d = 0; d < 3; d++)
-            for (ptrdiff_t i = from; i < to; i++)
+            for (ptrdiff_t i = range.first; i < range.last; i++)
                 step->x[d * rows + i] += moves[d * n + i];
     }
     team_wait(member);

@@ -10,7 +10,7 @@ typedef struct {
 
 /* Relax the front once: each node goes a part of the way to the mean of its neighbours, along the front, so that
    squeezed cells spread, and outwards, so that hollows fill, but not inwards, so that convex edges stay. `moves`
-   (3, nodes) is room. Called by all members of a team, each for chunks first .. end - 1. */
-void relax_front(Solver *solver, double *moves, const Relaxing *relaxing, ptrdiff_t first, ptrdiff_t end, Member member);
+   (3, nodes) is room. Called by all members of a team, each for its chunks. */
+void relax_front(Solver *solver, double *moves, const Relaxing *relaxing, Range chunks, Member member);
 /* Reach as half the shorter pair of opposite edges, in place of their mean, for nodes first .. last - 1; the least. */
 double nearest_reach(const Step *step, ptrdiff_t first, ptrdiff_t last);

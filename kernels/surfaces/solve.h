@@ -16,13 +16,12 @@ typedef struct {
     double *sums;       /* (SUMS, chunks) */
 } Solver;
 
-/* First and last (excluded) node of a chunk: nodes of both kinds are not mixed. */
-static inline void chunk_range(const Solver *solver, ptrdiff_t chunk, ptrdiff_t *first, ptrdiff_t *last)
+/* The nodes of a chunk: those of both kinds are not mixed. */
+static inline Range chunk_range(const Solver *solver, ptrdiff_t chunk)
 {
     const ptrdiff_t red = solver->step.graph->red, from = chunk - solver->red_chunks;
-    const ptrdiff_t end = from < 0 ? red : solver->step.graph->nodes;
-    *first = from < 0 ? chunk * CHUNK : red + from * CHUNK;
-    *last = *first + CHUNK < end ? *first + CHUNK : end;
+    const ptrdiff_t first = from < 0 ? chunk * CHUNK : red + from * CHUNK, end = from < 0 ? red : solver->step.graph->nodes;
+    return (Range){first, first + CHUNK < end ? first + CHUNK : end};
 }
 
 /* Solve for step.change from what it holds. Returns the iterations, negative where they diverged. */

@@ -87,9 +87,8 @@ static void lines_share(void *data, Member member)
     const Lines *l = data;
     const ptrdiff_t plane = l->before * l->n * l->after;
     double *room = l->rooms + member.rank * ROWS * l->n;
-    ptrdiff_t first, last;
-    team_share(l->before, member, &first, &last);
-    for (ptrdiff_t b = first; b < last; b++)
+    const Range mine = team_share(l->before, member);
+    for (ptrdiff_t b = mine.first; b < mine.last; b++)
         for (ptrdiff_t a = 0; a < l->after; a++) {
             const ptrdiff_t at = b * l->after + a;
             respace(l, l->nodes + b * l->n * l->after + a, plane, l->low ? l->low[at] : 0.0,

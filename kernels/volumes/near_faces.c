@@ -114,12 +114,12 @@ static int closed_at(const Search *s, ptrdiff_t number)
 static void search(void *data, Member member)
 {
     Search *s = data;
-    ptrdiff_t first, last, count = 1;
+    ptrdiff_t count = 1;
     for (int e = 0; e < 3; e++)
         count *= s->last[e] - s->first[e];
-    team_share((count + CHUNK - 1) / CHUNK, member, &first, &last);
+    const Range mine = team_share((count + CHUNK - 1) / CHUNK, member);
     s->found[member.rank] = -1;
-    for (ptrdiff_t k = first * CHUNK; k < last * CHUNK && k < count && s->found[member.rank] < 0; k++)
+    for (ptrdiff_t k = mine.first * CHUNK; k < mine.last * CHUNK && k < count && s->found[member.rank] < 0; k++)
         if (closed_at(s, k))
             s->found[member.rank] = k;
 }

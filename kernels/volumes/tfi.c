@@ -213,14 +213,13 @@ static void fill_share(void *data, Member member)
     const ptrdiff_t n1 = p->v->n1, n2 = p->v->n2, n3 = p->v->n3, face = n2 * n3;
     const ptrdiff_t block = HELD / (6 * p->width) + 1;
     double *room = p->rooms + (size_t)member.rank * member_room(p);
-    ptrdiff_t first, last;
     memset(room, 0, member_room(p) * sizeof *room); /* what fills up vectors */
-    team_share(n1, member, &first, &last);
+    const Range mine = team_share(n1, member);
     for (ptrdiff_t j = 1; j < n2 - 1; j += block)
-        for (ptrdiff_t i = first > 1 ? first : 1; i < last && i < n1 - 1; i++)
+        for (ptrdiff_t i = mine.first > 1 ? mine.first : 1; i < mine.last && i < n1 - 1; i++)
             fill_rows(p, i, j, j + block < n2 - 1 ? j + block : n2 - 1, room);
     for (ptrdiff_t c = 0; c < 3; c++)
-        for (ptrdiff_t i = first; i < last; i++) {
+        for (ptrdiff_t i = mine.first; i < mine.last; i++) {
             double *to = p->nodes + c * p->v->plane + i * face;
             if (i == 0 || i == n1 - 1) {
                 memcpy(to, (i ? p->f->east : p->f->west) + c * face, (size_t)face * sizeof *to);

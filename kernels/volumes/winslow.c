@@ -183,10 +183,9 @@ static void smooth_share(void *data, Member member)
     double *rows = s->room + s->w->n1 + (size_t)member.rank * member_room(s->w);
     for (int direction = 0; direction < 3; direction++)
         for (ptrdiff_t colour = 0; colour < 2; colour++) {
-            ptrdiff_t first, last;
             const ptrdiff_t planes = (direction == 0 ? s->w->n2 : s->w->n1) - 2;
-            team_share((planes + 1 - colour) / 2, member, &first, &last);
-            for (ptrdiff_t p = first; p < last; p++) {
+            const Range mine = team_share((planes + 1 - colour) / 2, member);
+            for (ptrdiff_t p = mine.first; p < mine.last; p++) {
                 const ptrdiff_t plane = 1 + colour + 2 * p;
                 if (direction < 2)
                     relax_plane(s, direction == 0, plane, rows);
@@ -221,9 +220,8 @@ static void residual_share(void *data, Member member)
     const Winslow3 *w = s->w;
     const ptrdiff_t face = w->n2 * w->n3, nodes = w->n1 * face;
     double *rows = s->room + w->n1 + (size_t)member.rank * member_room(w);
-    ptrdiff_t first, last;
-    team_share(w->n1, member, &first, &last);
-    for (ptrdiff_t i = first; i < last; i++) {
+    const Range mine = team_share(w->n1, member);
+    for (ptrdiff_t i = mine.first; i < mine.last; i++) {
         s->squares[i] = 0.0;
         for (ptrdiff_t c = 0; c < 3; c++)
             memset(s->r + c * nodes + i * face, 0, (size_t)face * sizeof *s->r);
@@ -289,15 +287,13 @@ static void combine_values(const Combination *c, ptrdiff_t outer)
 static void combine_share(void *data, Member member)
 {
     const Combination *c = data;
-    ptrdiff_t first, last;
+    const Range mine = team_share(c->after == 1 ? c->before : c->before * c->m, member);
     if (c->after == 1) {
-        team_share(c->before, member, &first, &last);
-        for (ptrdiff_t outer = first; outer < last; outer++)
+        for (ptrdiff_t outer = mine.first; outer < mine.last; outer++)
             combine_values(c, outer);
         return;
     }
-    team_share(c->before * c->m, member, &first, &last);
-    for (ptrdiff_t each = first; each < last; each++)
+    for (ptrdiff_t each = mine.first; each < mine.last; each++)
         combine_row(c, each / c->m, each % c->m);
 }
 
