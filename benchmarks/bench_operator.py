@@ -254,10 +254,10 @@ are not significant. Bold rows are the networks and the default of `infer`.
 | TFI | transfinite interpolation |
 | multigrid Winslow | Winslow's equations on all nodes, to an iteration error below the discretisation error |
 | variational | minimum of the variational functional on all nodes |
-| Winslow (variational), coarse 65 | the same on 65 x 65 nodes; the solution is interpolated and smoothed |
-| harmonic base | harmonic extension of the boundary nodes; around airfoils in the conformal image, a strip |
+| Winslow (or variational), coarse N | the same on N x N nodes; the solution is interpolated and smoothed |
+| harmonic base | harmonic extension of boundary nodes; around airfoils in a [strip](../theory/o-grids.md) |
 | base + 1 Picard step | harmonic base; then one fixed-point step for Winslow's equations in the strip |
-| network alone; operator (airfoil) | the network `airfoil-o` corrects the harmonic base |
+| network alone | the network `airfoil-o` corrects the harmonic base |
 | network + 1 Picard step | one Picard step after the network |
 | network, polish auto | Picard steps after the network, until they hardly change the grid |
 | quad-general (5 steps) | the network for variational grids (then 5 steps of minimisation) |
