@@ -219,8 +219,7 @@ HEAD = """# Four-sided domains: TFI, Winslow and variational grids
 Use this page to choose between `tfi`, `solve-pde --method winslow` and `solve-pde --method variational`. The
 option `--coarse N` solves on N x N nodes and interpolates. [Elliptic grids](../theory/elliptic.md),
 [variational grids](../theory/variational.md) and [the neural operator](quad-operator.md) have their own
-pages. Rows of the variational method are bold. *bump*: a square with a half disc cut off. *infer, default*:
-conformal map.
+pages. The shape *bump* is a square with a half disc cut off; the row *infer, default* is the conformal map.
 
 - *angle*: largest included angle of each cell, in degrees: maximum, 99th percentile and mean over the
   cells. The maximum cannot be below the largest corner angle of the boundary (arch 147.5, hexagon 135).
