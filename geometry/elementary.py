@@ -66,7 +66,6 @@ def times(a: Any, b: Any) -> Any:
 
 
 def _is_complex(values: Any) -> bool:
-    """Return whether `values` is a complex number, or a NumPy array of them."""
     if isinstance(values, np.ndarray | np.generic):
         return values.dtype.kind == "c"
     return isinstance(values, complex)
@@ -142,7 +141,6 @@ def _function_of_two(kernel: Any, x: Any, y: Any) -> Any:
 
 
 def _doubles(values: Any) -> Floats:
-    """Return an array as contiguous float64."""
     answer = np.ascontiguousarray(values, np.float64)
     if answer.dtype.byteorder == "=" and answer.flags.aligned:
         return answer

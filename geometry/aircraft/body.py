@@ -75,7 +75,6 @@ class Body:
             raise self._wild(int(wild[0]))
 
     def _wild(self, at: int) -> InputError:
-        """Return the error for a wild spline behind point `at`."""
         problem = "the spline through the meridian turns back, bulges or reaches the axis"
         place = f"meridian: points {at + 1} and {at + 2}"
         return InputError(problem, "give more points between them", place=place)

@@ -152,10 +152,7 @@ def _mirrored(points: Floats) -> Floats:
 
 
 def _seen(points: Floats, middle: float, across: float, up: float) -> tuple[Floats, Floats]:
-    """Return angles and distances on a spline through the points of a section, from its middle.
-
-    Raises InputError: a ray from there meets the section twice.
-    """
+    """Return angles and distances on a spline through the points of a section, from its middle."""
     ring = _mirrored((points - [middle, 0.0]) / [up, across])
     arcs = arc_lengths(ring)
     first, count = len(points) - 1, len(points)

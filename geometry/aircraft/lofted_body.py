@@ -87,7 +87,6 @@ class LoftedBody(Body):
             raise InputError(problem, f"use at most {_FLATTEST:g} times as much of one", place=at)
 
     def _wild(self, at: int) -> InputError:
-        """Return the error for a wild surface behind `at` in the meridian."""
         problem = "the surface between it and the next one turns back, bulges or closes"
         number = int(np.searchsorted(self._at, at, side="right")) - 1
         return InputError(problem, "give more sections between them", place=f"sections[{number}]")
@@ -142,10 +141,6 @@ class LoftedBody(Body):
         spline = self._shapes_at
         return np.ascontiguousarray(np.stack([spline.values, spline.slopes], axis=-1))
 
-    def arc_position(self, s: Floats) -> Floats:
-        """Return x (n,) at arc lengths `s` (n,) of the meridian."""
-        return self.meridional(s)[:, 0]
-
     def sizes(self, s: Floats) -> tuple[Floats, Floats, Floats]:
         """Return half the width, half the height and the y of the middle, (n,) each, at arc lengths (n,)."""
         x, radius = self.meridional(s).T
@@ -172,7 +167,7 @@ class LoftedBody(Body):
         across, up, middle = self.sizes(arcs)
         shape = self.shape(arcs, angles)
         y, z = middle - up * shape * cos(angles), across * shape * sin(angles)
-        return np.stack([self.arc_position(arcs), y, z], axis=-1).reshape(*s.shape, 3)
+        return np.stack([self.meridional(arcs)[:, 0], y, z], axis=-1).reshape(*s.shape, 3)
 
     def outside(self, points: Floats) -> Floats:
         """Return distances (n,) of points (n, 3) from the surface along rays from the middle; inside < 0."""

@@ -72,14 +72,12 @@ def on_line(line: Floats, z: Floats) -> Floats:
 
 
 def _from_root(patch: Floats) -> Floats:
-    """Return the nodes of a patch, with the first row nearest to the root."""
     if np.abs(patch[-1, :, 2] - patch[0, :, 2]).mean() < np.abs(patch[:, -1, 2] - patch[:, 0, 2]).mean():
         patch = patch.swapaxes(0, 1)
     return patch if patch[-1, :, 2].mean() > patch[0, :, 2].mean() else patch[::-1]
 
 
 def _between_corners(nodes: Floats) -> list[Floats]:
-    """Return the parts of a strip (stations, n, 3) between its corners."""
     steps = np.diff(nodes, axis=1)
     turns = angle_between(steps[:, :-1], steps[:, 1:])
     corners = np.flatnonzero(np.median(turns, axis=0) > _CORNER) + 1
@@ -88,10 +86,7 @@ def _between_corners(nodes: Floats) -> list[Floats]:
 
 
 def _chained(strips: Sequence[_Strip], chord: Floats, name: str) -> list[_Strip]:
-    """Return the strips in order around the wing, each from where the last one ends.
-
-    Raises InputError: two gaps, or an end far from all others.
-    """
+    """Return the strips in order around the wing, each from where the last one ends."""
     chain, left, gaps = [strips[0]], list(strips[1:]), []
     while left:
         end = chain[-1].rows[:, -1]
@@ -118,10 +113,7 @@ def _is_base(strip: _Strip, back: Floats, chord: Floats) -> bool:
 
 
 def _from_edge(chain: list[_Strip], base: list[bool], back: Floats, chord: Floats, name: str) -> list[_Strip]:
-    """Return the chain from one side of the trailing edge to the other, without its base.
-
-    Raises InputError: a trailing edge within a patch.
-    """
+    """Return the chain from one side of the trailing edge to the other, without its base."""
     starts = [float(((back - strip.rows[:, 0, 0]) / chord).mean()) for strip in chain]
     known = [k for k in range(len(chain)) if base[k - 1] and not base[k]]
     first = known[0] if known else int(np.argmin(starts))

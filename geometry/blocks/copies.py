@@ -88,7 +88,6 @@ def _along(grid: Grid, motion: Motion, periodic: Sequence[Connection], copies: i
 
 
 def _periods(grid: Grid) -> list[tuple[Motion, list[Connection]]]:
-    """Return the motions of a grid's periods, and the connections of each."""
     periods = by_period(grid.connections)
     if not periods:
         remedy = "copy one with periodic sides, such as a passage between blades"
@@ -100,7 +99,6 @@ def _periods(grid: Grid) -> list[tuple[Motion, list[Connection]]]:
 
 
 def _unlike(periods: Sequence[tuple[Motion, list[Connection]]], numbers: int) -> InputError:
-    """Return the error for another number of copies than of periods."""
     if len(periods) == 1:
         return InputError(f"{numbers} numbers for a grid with one period", "give one", parameter="copies")
     ways = " and ".join(f"({', '.join(f'{x:.6g}' for x in motion.shift)})" for motion, _ in periods)

@@ -144,7 +144,6 @@ def thick(each: Connection, planes: int) -> Connection:
 
 
 def _flat(each: Connection) -> Connection:
-    """Return a connection of extruded blocks in their plane."""
     motion = each.transform
     if motion is not None:
         motion = Motion(motion.shift[:2], tuple(row[:2] for row in motion.turn[:2]))

@@ -90,6 +90,5 @@ def _ways(ways: tuple[int, ...], side: Side, *, donor: bool = False) -> tuple[in
 
 
 def _on(patch: Patch, side: Side, span: Range) -> Patch:
-    """Return a patch on a range of a side of its block."""
     across = patch.across and span[1]
     return replace(patch, side=side, start=span[0][0], stop=span[0][1], across=across)

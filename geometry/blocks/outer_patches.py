@@ -23,11 +23,6 @@ JOINED, UNNAMED = -2, -1
 """Owner numbers of connected cells, and of cells without a patch."""
 
 
-def listed_sides(counts: tuple[int, ...]) -> tuple[Side, ...]:
-    """Return the sides of a block with `counts` nodes per direction, in the order of its patches."""
-    return SIDES if len(counts) == 2 else (*SIDES, *tuple(PLACES)[4:])
-
-
 def owners_of(
     patches: Sequence[Patch], counts: tuple[int, ...], inside: Iterable[tuple[Side, Range]], side: Side
 ) -> NDArray[np.intp]:
@@ -58,7 +53,7 @@ def outer_patches(
     own = [patch for patch in patches if patch.block == block]
     inside = list(inside)
     outer: list[Patch] = []
-    for side in listed_sides(counts):
+    for side in (*SIDES, *tuple(PLACES)[4 : 2 * len(counts)]):
         for number, (first, *rest) in rectangles(owners_of(own, counts, inside, side)):
             patch = own[number] if number >= 0 else Patch(side, side, 0, 1, block=block)
             outer.append(replace(patch, start=first[0], stop=first[1], across=rest[0] if rest else None))

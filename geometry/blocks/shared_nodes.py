@@ -65,16 +65,6 @@ def node_table(
     return nodes, numbers
 
 
-def places_among(
-    pairs: Sequence[tuple[Indices, Indices]],
-) -> tuple[Indices, list[tuple[Indices, Indices]]]:
-    """Return the distinct numbers in `pairs`, ascending, and `pairs` as indices of these numbers."""
-    flat = [nodes.ravel() for pair in pairs for nodes in pair]
-    used, where = np.unique(np.concatenate(flat), return_inverse=True)
-    parts = np.split(where.ravel(), np.cumsum([len(nodes) for nodes in flat])[:-1])
-    return used, list(zip(parts[0::2], parts[1::2], strict=True))
-
-
 def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indices:
     """Return a label for each of `count` nodes, from 0 in the order in which they first appear.
 
@@ -94,7 +84,10 @@ def with_equal_nodes(blocks: Sequence[Block], connections: Sequence[Connection])
     if not connections:
         return tuple(blocks)
     ends, numbers = numbered([block.counts for block in blocks])
-    used, pairs = places_among([each.pairs(numbers) for each in connections])
+    flat = [nodes.ravel() for each in connections for nodes in each.pairs(numbers)]
+    used, where = np.unique(np.concatenate(flat), return_inverse=True)
+    parts = np.split(where.ravel(), np.cumsum([len(nodes) for nodes in flat])[:-1])
+    pairs = list(zip(parts[0::2], parts[1::2], strict=True))
     shared = np.empty((len(used), blocks[0].nodes.shape[-1]))
     places = []
     for block, first, last in zip(blocks, ends, ends[1:], strict=False):

@@ -64,10 +64,7 @@ def matched_patches(grid: Grid) -> SixFaces:
 
 
 def _vertices(patches: list[Floats]) -> Indices:
-    """Return the vertex number, 0 to 7, of each corner (6, 2, 2) of the patches.
-
-    Raises InputError: corners do not meet in threes.
-    """
+    """Return the vertex number, 0 to 7, of each corner (6, 2, 2) of the patches."""
     corners = np.array([patch[:: len(patch) - 1, :: patch.shape[1] - 1] for patch in patches])
     first, second = np.triu_indices(4, 1)
     fours = corners.reshape(6, 4, 3)
@@ -90,8 +87,7 @@ def _arranged(
 ) -> tuple[dict[Side, Floats], dict[Side, int]]:
     """Return the faces with patch `first` as the bottom, and the index of the patch of each face.
 
-    The directions of the bottom are i and j, or `turned` j and i. Raises InputError: the shared vertices are
-    not those of a volume.
+    The directions of the bottom are i and j, or `turned` j and i.
     """
     bottom = vertices[first].T if turned else vertices[first]
     lattice = np.empty((2, 2, 2), dtype=np.intp)
@@ -144,10 +140,7 @@ def _volume(faces: dict[Side, Floats]) -> float:
 
 
 def _closed(faces: dict[Side, Floats], order: dict[Side, int]) -> tuple[str, ...]:
-    """Make shared edges bitwise equal, in place; return a note if that moved nodes.
-
-    Raises InputError: different node counts, or a gap.
-    """
+    """Make shared edges bitwise equal, in place; return a note if that moved nodes."""
     size = math.hypot(*np.ptp(np.concatenate([face.reshape(-1, 3) for face in faces.values()]), axis=0))
     widest, where = 0.0, ""
     for side, second in edges():

@@ -76,5 +76,4 @@ def _dot(a: list[float], b: list[float]) -> float:
 
 
 def _less(a: list[float], b: list[float], times: float) -> list[float]:
-    """Return a - times b."""
     return [a[0] - times * b[0], a[1] - times * b[1], a[2] - times * b[2]]

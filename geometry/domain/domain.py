@@ -136,7 +136,6 @@ class Domain:
 
 
 def _named(polygons: Sequence[Floats], names: Sequence[str | Sequence[str]]) -> tuple[Loop, ...]:
-    """Return the loops along polygons, with the given boundary names."""
     if len(names) != len(polygons):
         raise InputError(f"names of {len(names)} polygons, and {len(polygons)} polygons", "name each of them")
     called = [(own,) if isinstance(own, str) else tuple(own) for own in names]

@@ -43,7 +43,6 @@ def _with_kinks(loop: Loop) -> Loop:
 
 
 def _kinks(loop: Loop) -> Indices:
-    """Return the indices of kinks between the corners of a loop."""
     points, count = loop.curve.points, len(loop.curve.points)
     parts = []
     for begin, end in zip(loop.corners, (*loop.corners[1:], loop.corners[0] + count), strict=True):

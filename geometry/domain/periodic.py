@@ -140,8 +140,7 @@ def _stretches(loop: Loop, name: str) -> list[tuple[float, float]]:
 def _with_cells(loop: Loop, pairs: Sequence[Periodic]) -> Loop:
     """Return the loop with numbers of cells at the ends of periodic sides for which both together have room.
 
-    A side that cuts a smooth wall has 180 degrees at both ends together, for one cell each. Raises
-    InputError: a side that ends where the boundary does not turn.
+    A side that cuts a smooth wall has 180 degrees at both ends together, for one cell each.
     """
     cells, arcs, length = loop.corner_cells.copy(), loop.corner_arcs, loop.length
     for each in pairs:

@@ -64,18 +64,10 @@ def _side(a: complex, b: complex, swing: float, rng: np.random.Generator) -> Com
     return np.asarray(a + times(b - a, t + 1j * swing * height))
 
 
-def _straight(t: Floats, rng: np.random.Generator) -> Floats:  # noqa: ARG001 - as the others
-    return 0.0 * t
-
-
 def _wave(t: Floats, rng: np.random.Generator) -> Floats:
     k = np.arange(1, 9)
     heights = rng.normal(size=8) / power(k, rng.uniform(1.2, 2.2)) * rng.uniform(0.05, 0.5)
     return np.asarray(product(heights, sin(np.pi * np.outer(k, t))))
-
-
-def _parabola(t: Floats, rng: np.random.Generator) -> Floats:
-    return np.asarray(rng.uniform(-1.3, 1.4) * t * (1 - t))
 
 
 def _kinks(t: Floats, rng: np.random.Generator) -> Floats:
@@ -98,8 +90,13 @@ def _arc(t: Floats, rng: np.random.Generator) -> Floats:
 
 
 DEFLECTIONS: tuple[Callable[[Floats, np.random.Generator], Floats], ...] = (
-    _straight, _wave, _parabola, _kinks, _bump, _arc,
-)  # fmt: skip
+    lambda t, _: 0.0 * t,
+    _wave,
+    lambda t, rng: np.asarray(rng.uniform(-1.3, 1.4) * t * (1 - t)),
+    _kinks,
+    _bump,
+    _arc,
+)
 SHARES = (0.12, 0.26, 0.16, 0.2, 0.16, 0.1)  # probabilities of these deflections
 
 

@@ -135,10 +135,7 @@ def _places(rings: list[_Ring], loops: tuple[Loop, ...], valence: Indices, count
 
 
 def _pairs(grid: Grid, numbers: tuple[Indices, ...]) -> tuple[Floats, Indices, Indices]:
-    """Return the shift of periodic sides, and the node numbers (n,) that it moves, and to which (n,).
-
-    Raises InputError: sides periodic by a rotation, or by more than one shift.
-    """
+    """Return the shift of periodic sides, and the node numbers (n,) that it moves, and to which (n,)."""
     shift = np.zeros(2)
     first, second = list[Indices](), list[Indices]()
     for each in grid.connections:

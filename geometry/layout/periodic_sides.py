@@ -68,7 +68,6 @@ def _chain(mesh: QuadMesh, after: Indices, stretch: tuple[float, float]) -> Indi
 
 
 def _at(mesh: QuadMesh, arc: float) -> int:
-    """Return the node at a corner of the outer loop."""
     corners = np.flatnonzero((mesh.places.loop == 0) & (mesh.places.cells > 0))
     length = mesh.domain.loops[0].length
     apart = np.abs(shortest_ways(mesh.places.arc[corners] - arc, length))

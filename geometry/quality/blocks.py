@@ -70,12 +70,15 @@ def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None 
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes
 
-        angles = solid_deviation(quality or measure_volumes(grid, percentiles=True))
+        quality = quality or measure_volumes(grid, percentiles=True)
+        worst = quality["skewness"]  # deviation over 90 degrees
+        p99 = None if worst.p99 is None else 90.0 * worst.p99
+        angles = Extreme(90.0 * worst.max, quality["deviation"].mean, worst.worst, p99)
         sizes = tuple(block.counts for block in grid.blocks)
         numbers = shared_nodes(sizes, grid.connections, periodic=True)
         count = 1 + max(int(number.max()) for number in numbers)
-        if not run or angles.p99 is not None:
-            run = solid_lines(grid, percentiles=angles.p99 is not None)
+        if not run or p99 is not None:
+            run = solid_lines(grid, percentiles=p99 is not None)
         return BlockFigures(sizes, None, count, len(grid.connections), angles, run)
     nodes = vertices(grid)
     counts, count = block_counts(grid, nodes), len(nodes.valence)
@@ -114,13 +117,6 @@ def deviation(grid: Grid) -> Extreme:
         max=float(worst[block].max()),
         at=(block, i, j),
     )
-
-
-def solid_deviation(quality: Quality) -> Extreme:
-    """Return the deviation of the corner angles of volumes, from their `quality`."""
-    worst = quality["skewness"]  # deviation over 90 degrees
-    p99 = None if worst.p99 is None else 90.0 * worst.p99
-    return Extreme(90.0 * worst.max, quality["deviation"].mean, worst.worst, p99)
 
 
 def corner_deviations(nodes: Floats) -> Floats:

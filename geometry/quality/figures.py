@@ -102,7 +102,8 @@ class Figures:
         if name == "growth":
             return _figure(most_of(self.growth.families().values())) or Figure(1.0)
         if name == "wall_growth":
-            return self._wall_growth()
+            many = self.grid.topology == "blocks"
+            return _figure(self.blocks.lines.leaving if many else growth_off_walls(self.growth, self.walls))
         if name == "equal_wall_cells":
             equal = [row.equal_cells for row in self.wall_rows]
             return Figure(float(min(equal))) if equal else None
@@ -119,11 +120,6 @@ class Figures:
             return _figure(getattr(blocks.lines, name)) or Figure(1.0 if name == "growth_across" else 0.0)
         value = blocks.deviation.mean if name == "deviation_mean" else blocks.deviation.p99
         return None if value is None else Figure(value)
-
-    def _wall_growth(self) -> Figure | None:
-        if self.grid.topology == "blocks":
-            return _figure(self.blocks.lines.leaving)
-        return _figure(growth_off_walls(self.growth, self.walls))
 
     def _far_field(self) -> Figure | None:
         grid = self.grid

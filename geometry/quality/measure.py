@@ -108,7 +108,6 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
 
 
 def _compiled(grid: Grid, percentiles: bool) -> Quality:
-    """Return the folded cells, and the metrics computed by the compiled kernels."""
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes
 

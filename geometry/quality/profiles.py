@@ -134,7 +134,6 @@ class ProfileReport:
 
 
 def _once(results: Iterable[CheckResult]) -> tuple[CheckResult, ...]:
-    """Return the results without repeated checks."""
     checks: dict[Check, CheckResult] = {}
     for result in results:
         checks.setdefault(result.check, result)

@@ -157,19 +157,16 @@ class QualityReport:
         return [(gate, figure, beyond(figure.value, gate.compare, gate.limit)) for gate, figure in pairs]
 
     def _compared(self) -> dict[str, Figure]:
-        """Return figures of the comparison and the greatest y+."""
         values = self.comparison.figures() if self.comparison else {}
         values |= {Y_PLUS: max(each.max for each in self.y_plus.values())} if self.y_plus else {}
         return {name: Figure(value) for name, value in values.items()}
 
     def _at_wall(self, name: str) -> dict[str, Any]:
-        """Return y+ and skewness of cells at a wall for JSON."""
         facts: dict[str, Any] = {Y_PLUS: vars(self.y_plus[name])} if name in self.y_plus else {}
         skewness = self.wall_skewness.get(name)
         return facts | ({"skewness": extreme_dict(skewness)} if skewness else {})
 
     def _metrics(self) -> dict[str, Any]:
-        """Return the metrics with centres of worst cells for JSON."""
         facts = quality_dict(self.quality)
         for name, summary in self.quality.metrics.items():
             facts[name]["worst_centre"] = centre_of(self.grid, summary.worst).tolist()

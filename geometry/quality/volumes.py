@@ -110,7 +110,6 @@ def _folded_of(grid: Grid, test: int) -> int:
 
 
 def _nodes_of(grid: Grid) -> list[int]:
-    """Return the number of nodes of each block."""
     return [block.nodes[..., 0].size for block in grid.blocks]
 
 

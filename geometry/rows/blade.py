@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, middle
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.elementary import cos
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.notes import Change
+from meshonet.geometry.polygon.corners import SHARP
 from meshonet.geometry.rows.channel import Channel
-from meshonet.geometry.rows.common_corners import alike, common_corners
 from meshonet.geometry.rows.profile import BladeProfile
 from meshonet.geometry.rows.thick_edge import LEAST_EDGE, pointed, thick_edged
 from meshonet.kernels._native import spline_crossings
@@ -23,6 +23,7 @@ _FARTHEST = 90.0  # degrees around the axis from one profile to the next: no bla
 _ORDER = "give profiles from hub to casing, all of one blade: splitters are not made"
 _SAME_HEIGHT = 1e-9  # difference of heights, in spans, that counts as rounding
 _HALF_TURN = np.pi
+_BASE_TURN = 0.7  # smallest part of the turns at an edge that its two largest have at a base
 _WHOLE = 0.2  # largest deviation of a displacement from whole pitches; beyond it the blade leans
 
 
@@ -63,7 +64,7 @@ class BladeSurface:
             self.notes = (*self.notes, note)
         self.knots = np.array([profile.height for profile in self.profiles])
         self._check()
-        self.profiles = alike(self.profiles)
+        self.profiles = _alike(self.profiles)
         self._turns = self._unwrapped()
         self._check_neighbours()
 
@@ -128,10 +129,7 @@ class BladeSurface:
             raise InputError(problem, "use fewer blades", place=self._place(k))
 
     def _unwrapped(self) -> Floats:
-        """Return angles (p,) added to theta of profiles: whole turns, and whole pitches, with notes.
-
-        Raises InputError: a profile lies far from the one before.
-        """
+        """Return angles (p,) added to theta of profiles: whole turns, and whole pitches, with notes."""
         mean = np.array([profile.curve.points[:, 1].mean() for profile in self.profiles])
         turned = np.unwrap(mean)
         for k, step in enumerate(np.degrees(np.abs(np.diff(turned))).tolist(), start=1):
@@ -186,7 +184,7 @@ class BladeSurface:
     @property
     def corners(self) -> Floats:
         """Ascending places u (c,) of the corners that all profiles have."""
-        return np.sort(np.mod(common_corners(self.profiles), 1.0))
+        return np.sort(np.mod(_common_corners(self.profiles), 1.0))
 
 
 def clustered(count: int) -> Floats:
@@ -212,3 +210,33 @@ def _whole_pitches(angles: Floats, heights: Floats, pitch: float) -> Floats:
         if abs(off - whole) < _WHOLE:
             away[k + 1 :] += whole
     return np.asarray(away - np.sort(away)[(len(away) - 1) // 2])
+
+
+def _alike(profiles: Sequence[BladeProfile]) -> list[BladeProfile]:
+    """Return the profiles with equal numbers of corners at equal places u.
+
+    Whether a turn is a corner depends on points near it, and so differs from profile to profile. Lines of
+    equal u would then jump along the span.
+    """
+    counts = np.array([profile.corner_counts for profile in profiles])
+    if not (counts == counts[0]).all():
+        same = [_corner_count(profiles, counts[:, k], bool(k)) for k in (0, 1)]
+        profiles = [profile.cornered(same) for profile in profiles]
+    places = _common_corners(profiles)
+    return [profile.aligned(places) for profile in profiles] if len(places) else list(profiles)
+
+
+def _corner_count(profiles: Sequence[BladeProfile], counts: Floats, trailing: bool) -> int:
+    """Return how many corners an edge has, from those of each profile (p,)."""
+    if (counts == counts[0]).all():
+        return int(counts[0])
+    turn, part = np.array([profile.sharpness(trailing) for profile in profiles]).T
+    return 2 if middle(part) > _BASE_TURN else int(middle(turn) > SHARP)
+
+
+def _common_corners(profiles: Sequence[BladeProfile]) -> Floats:
+    """Return the median places u (c,), -0.25 to 0.75, of the corners; empty if their numbers differ."""
+    places = [profile.corner_places() for profile in profiles]
+    if len({len(each) for each in places}) != 1 or not len(places[0]):
+        return np.empty(0)
+    return np.array([middle(column) for column in np.array(places).T])

@@ -212,7 +212,6 @@ def _distance(points: Floats, wall: CubicTable, s: Floats) -> Floats:
 
 
 def _by_arc(points: Floats, s: Floats, name: str) -> Floats:
-    """Return points (n, 2) at fractions s (n,) of a curve's length."""
     with in_place(name):
         curve = Curve(apart(np.ascontiguousarray(points, dtype=np.float64), closed=False))
     return curve.at(s * curve.length)

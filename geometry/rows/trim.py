@@ -68,7 +68,6 @@ class WallPlanes:
         return np.asarray(curve.at(arcs)), tuple(notes)
 
     def _arc(self, curve: Curve, plane: float | tuple[float, float], place: str, name: str) -> float:
-        """Return the arc length at which a curve meets a plane."""
         arcs = np.linspace(0.0, curve.length, _SAMPLES)
         at = curve.at(arcs)
         if not isinstance(plane, float):

@@ -143,7 +143,6 @@ def _bodies(shape: Shape, name: str) -> list[Loop]:
 
 
 def _section_loop(airfoil: Airfoil, name: str) -> Loop:
-    """Return the loop along the smooth curve of an airfoil."""
     curve = airfoil.curve
     turn = turning(curve.points, closed=True)[curve.corner_index]
     corners = curve.corner_index[turns_sharply(turn)]

@@ -128,7 +128,6 @@ class Outline:
         return Boundary(*sides, topology="quad", name=self.name, sampled=True, notes=sides_departure(curve))
 
     def _ordered_corners(self, chosen: tuple[int, int, int, int]) -> tuple[int, ...]:
-        """Return the given corners, counter-clockwise from the first."""
         n = len(self.curve.points)
         for corner in chosen:
             if not 0 <= corner < n:

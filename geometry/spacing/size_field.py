@@ -186,7 +186,6 @@ def _known(
 
 
 def _quartic(h: Floats) -> Floats:
-    """Return 1/h⁴."""
     square = h * h
     return np.asarray(1.0 / (square * square))
 

@@ -132,7 +132,6 @@ def _next_fan(patches: Sequence[Floats]) -> list[_FanPatch] | None:
 
 
 def _fans(number: int, patch: Floats, slack: float) -> list[_FanPatch]:
-    """Return a patch once for each of its poles."""
     points = {
         name: bool((np.ptp(np.rot90(patch, turns, (0, 1))[:, 0], axis=0) <= slack).all())
         for name, turns in TURNS.items()
@@ -146,6 +145,5 @@ def _fans(number: int, patch: Floats, slack: float) -> list[_FanPatch]:
 
 
 def _same(one: Floats, other: Floats, slack: float) -> bool:
-    """Return whether two curves out of a pole are the same as far as both go."""
     count = min(len(one), len(other))
     return bool((np.abs(one[:count] - other[:count]) <= slack).all())

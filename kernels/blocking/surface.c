@@ -40,13 +40,10 @@ ptrdiff_t surface_fans(const Surface *s, ptrdiff_t *start, ptrdiff_t *fan)
 
 ptrdiff_t surface_comb(const Surface *s, const ptrdiff_t *quarters, ptrdiff_t *turn, unsigned char *cut)
 {
-    ptrdiff_t *queue = malloc(((size_t)s->triangles + 1) * sizeof *queue), end = 0;
-    unsigned char *seen = calloc((size_t)s->triangles + 1, 1);
-    if (!queue || !seen) {
-        free(queue);
-        free(seen);
+    ptrdiff_t *queue = calloc((size_t)s->triangles + 1, sizeof *queue + 1), end = 0;
+    if (!queue)
         return -1;
-    }
+    unsigned char *seen = (unsigned char *)(queue + s->triangles + 1);
     for (ptrdiff_t c = 0; c < 3 * s->triangles; c++)
         cut[c] = s->neighbour[c] >= 0;
     turn[0] = 0;
@@ -63,7 +60,6 @@ ptrdiff_t surface_comb(const Surface *s, const ptrdiff_t *quarters, ptrdiff_t *t
             queue[end++] = g;
         }
     free(queue);
-    free(seen);
     return end;
 }
 
@@ -79,13 +75,10 @@ static ptrdiff_t cut_edge(const ptrdiff_t *fan, ptrdiff_t from, ptrdiff_t to, co
 int surface_prune(const Surface *s, const ptrdiff_t *start, const ptrdiff_t *fan, const unsigned char *keep,
                   unsigned char *cut)
 {
-    ptrdiff_t *stack = malloc(((size_t)s->vertices + 1) * sizeof *stack), top = 0;
-    ptrdiff_t *degree = calloc((size_t)s->vertices + 1, sizeof *degree);
-    if (!stack || !degree) {
-        free(stack);
-        free(degree);
+    ptrdiff_t *degree = calloc((size_t)s->vertices + 1, 2 * sizeof *degree), top = 0;
+    if (!degree)
         return -1;
-    }
+    ptrdiff_t *stack = degree + s->vertices + 1;
     for (ptrdiff_t c = 0; c < 3 * s->triangles; c++)
         degree[s->vertex[c]] += cut[c]; /* of the two halves of an edge one starts at either end */
     for (ptrdiff_t v = 0; v < s->vertices; v++)
@@ -101,7 +94,6 @@ int surface_prune(const Surface *s, const ptrdiff_t *start, const ptrdiff_t *fan
         if (--degree[other] == 1 && !keep[other])
             stack[top++] = other;
     }
-    free(stack);
     free(degree);
     return 0;
 }

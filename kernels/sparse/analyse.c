@@ -95,13 +95,9 @@ static int place_entries(const SparsePattern *a, ptrdiff_t m, const ptrdiff_t *r
                          const int *place, ptrdiff_t *slot)
 {
     const int n = a->n;
-    ptrdiff_t *end = a->start, *where = malloc(((size_t)n + 1) * sizeof *where);
-    ptrdiff_t *sorted = malloc(((size_t)m + 1) * sizeof *sorted);
-    if (!where || !sorted) {
-        free(where);
-        free(sorted);
+    ptrdiff_t *end = a->start, *where = malloc(((size_t)n + (size_t)m + 1) * sizeof *where), *sorted = where + n;
+    if (!where)
         return -1;
-    }
     for (int k = 0; k <= n; k++)
         end[k] = 0;
     for (ptrdiff_t e = 0; e < m; e++) {
@@ -134,7 +130,6 @@ static int place_entries(const SparsePattern *a, ptrdiff_t m, const ptrdiff_t *r
     }
     end[n] = kept;
     free(where);
-    free(sorted);
     return 0;
 }
 

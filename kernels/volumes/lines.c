@@ -100,7 +100,6 @@ int volume_lines(double *nodes, ptrdiff_t before, ptrdiff_t n, ptrdiff_t after, 
                   double reach, int threads)
 {
     Lines l = {nodes, NULL, before, n, after, low, high, reach};
-    threads = threads < 1 ? 1 : threads > TEAM_MOST ? TEAM_MOST : threads;
     l.rooms = malloc((size_t)threads * ROWS * (size_t)n * sizeof *l.rooms);
     if (!l.rooms)
         return -1;

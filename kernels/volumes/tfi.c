@@ -271,7 +271,6 @@ int tfi_volume(double *nodes, const Volume *v, const Faces *faces, const Laws *l
     const size_t face = 3 * (size_t)(v->n2 * width);
     const size_t lines = (size_t)((v->n1 + v->n2 + 5 * v->n3 + LANES - 1) / LANES * LANES);
     Interpolation p = {.nodes = nodes, .v = v, .f = faces, .laws = laws, .spline = spline, .width = width};
-    threads = threads < 1 ? 1 : threads > TEAM_MOST ? TEAM_MOST : threads;
     double *room = malloc((2 * face + lines + (size_t)threads * member_room(&p) + LANES) * sizeof *room);
     if (!room)
         return -1;

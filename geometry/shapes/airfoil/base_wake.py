@@ -204,7 +204,6 @@ def _wake_cells(
     every: tuple[int, ...],
     growth: float | None,
 ) -> int:
-    """Return the number of cells of each wake line."""
     if sampling.wake_nodes is not None:
         return sampling.wake_nodes - 1
     cells = cells_for_growth(first, length, ratio) + 6  # growth sets in slowly, and ends a little faster

@@ -85,7 +85,6 @@ def _split(designation: str) -> tuple[str, bool]:
 
 
 def _mean_line(digits: str, x: Floats) -> tuple[Floats, Floats]:
-    """Return the camber and its slope at x (n,)."""
     if len(digits) == 4:
         m, p = int(digits[0]) / 100, int(digits[1]) / 10
         if m == 0:

@@ -203,7 +203,6 @@ def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, option: Traili
 
 
 def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -> InputError:
-    """Return the error for surfaces that cross."""
     n = len(section.points)
     ends = [section.index[k % n] for c in (crossing.first, crossing.second) for k in (c, c + 1)]
     a, b, c, d = (places[k] if places else f"point {k}" for k in ends)

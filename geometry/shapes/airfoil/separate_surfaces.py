@@ -53,15 +53,11 @@ def _thickened(ring: Floats, nose: int, least: Callable[[Floats, Floats], Floats
     lower = np.arange(nose + 1)
     upper = np.append(np.arange(nose, len(ring)), 0)
     places = np.sort(along)
-    sides = [np.interp(places, *_single_valued(along[side], height[side])) for side in (lower, upper)]
+    rising = [side[np.argsort(along[side], kind="stable")] for side in (lower, upper)]
+    sides = [np.interp(places, along[side], height[side]) for side in rising]
     thickness = sides[1] - sides[0]
     need = np.clip(0.5 * (least(places, thickness) - thickness), 0.0, most)
     shift = np.interp(along, places, need)
     shift[[0, nose]] = 0.0
     sign = np.where(np.arange(len(ring)) < nose, -1.0, 1.0)
     return np.asarray(ring + (sign * shift)[:, None] * across)
-
-
-def _single_valued(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    order = np.argsort(x, kind="stable")
-    return x[order], y[order]

@@ -268,7 +268,6 @@ def _half_base(plan: WallCells, half_base: float) -> Floats:
 
 
 def _side(length: float, plan: WallCells, sampling: Sampling, q: Floats) -> Floats:
-    """Return the distances along a side from its trailing edge at parameters `q` from 0 to 1."""
     ends_set = sampling.te_spacing is not None or sampling.le_spacing is not None
     if plan.cells < 4 and not ends_set:
         return np.asarray(length * q)
