@@ -26,7 +26,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.aircraft.aircraft_grid import aircraft_grid
-from meshonet.solvers.aircraft.request import aircraft_request
+from meshonet.solvers.aircraft.request import AircraftRequest
 
 SEED = 3
 AROUND, SPAN, FAR = 65, 25, 50.0
@@ -89,7 +89,7 @@ def figures(drawn: DrawnAircraft) -> Figures:
     Raises MeshonetError: it is refused.
     """
     with limited_to(1):
-        request = aircraft_request(
+        request = AircraftRequest.of(
             around=AROUND, span=SPAN, first_cell=drawn.first, far_field=FAR, growth=1.2, threads=1
         )
         seconds, (grid, *_) = clocked(lambda: aircraft_grid(drawn.aircraft, request))

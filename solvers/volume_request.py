@@ -1,11 +1,12 @@
 """Options that the grids of stacks, aircraft and blade rows share."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar, Self
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.first_cell import FirstCell
 from meshonet.geometry.spacing.growth import check_growth
+from meshonet.solvers.keywords import request_from
 
 DEFAULT_FIRST_CELL = 1e-3  # chords
 MOST_CELLS = 200_000_000
@@ -15,12 +16,21 @@ MOST_CELLS = 200_000_000
 class VolumeRequest(FirstCell):
     """Fields of `StackRequest` and `RowRequest`; lengths are in chords."""
 
+    what: ClassVar[str]  # the kind of grid in messages
     fewest_cells: ClassVar[int]
     growth: float | None = None
     cells: int | None = None
     threads: int | None = None
     percentiles: bool = False
     allow_invalid: bool = False
+
+    @classmethod
+    def of(cls, **parameters: Any) -> Self:
+        """Return a request with the parameters as its fields; ``wall_spacing`` is ``first_cell``.
+
+        Raises InputError: a value out of its range; an unknown parameter.
+        """
+        return request_from(cls, cls.what, parameters)
 
     def check_volume(self) -> None:
         """Raise InputError for a growth ratio, number of cells or of threads out of range."""

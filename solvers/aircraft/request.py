@@ -1,10 +1,10 @@
 """Options of the grid of an aircraft."""
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.keywords import refuse_given, request_from
+from meshonet.solvers.keywords import refuse_given
 from meshonet.solvers.stacking.request import StackRequest
 
 _OTHERS = ("layers", "revolve", "axis", "copies")  # options of stacks that do not apply to an aircraft
@@ -14,15 +14,16 @@ _OTHERS = ("layers", "revolve", "axis", "copies")  # options of stacks that do n
 class AircraftRequest(StackRequest):
     """Options of the grid of an aircraft: those of `StackRequest`. `cells` may replace `around`."""
 
+    what: ClassVar[str] = "an aircraft"
     fewest_cells: ClassVar[int] = 20_000
 
+    @classmethod
+    def of(cls, **parameters: Any) -> Self:
+        """Return a request with the parameters as its fields.
 
-def aircraft_request(**parameters: Any) -> AircraftRequest:
-    """Return an `AircraftRequest` with the parameters as its fields.
-
-    Raises InputError: as `AircraftRequest`; a parameter of other stacks; both `cells` and `around`.
-    """
-    refuse_given("an aircraft", {name: name in parameters for name in _OTHERS})
-    if "cells" in parameters and "around" in parameters:
-        raise InputError("{cells} and {around} both say how fine the grid is", "give one of them")
-    return request_from(AircraftRequest, "an aircraft", parameters)
+        Raises InputError: as `StackRequest`; a parameter of other stacks; both `cells` and `around`.
+        """
+        refuse_given(cls.what, {name: name in parameters for name in _OTHERS})
+        if "cells" in parameters and "around" in parameters:
+            raise InputError("{cells} and {around} both say how fine the grid is", "give one of them")
+        return super().of(**parameters)

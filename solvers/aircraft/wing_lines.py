@@ -10,10 +10,10 @@ from meshonet.geometry.aircraft.body import Body
 from meshonet.geometry.aircraft.fin import Fin
 from meshonet.geometry.aircraft.surface_wing import SurfaceWing
 from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.section import turned
 from meshonet.geometry.sections.stack import Stack
 from meshonet.solvers.aircraft.lofts import Loft, fin_loft, section_loft, surface_loft
-from meshonet.solvers.aircraft.root_heights import root_heights
 from meshonet.solvers.rows.span_spacing import spaced_cells, two_sided
 from meshonet.solvers.stacking.section_nodes import GAP, Around, around, unit_nodes
 from meshonet.solvers.stacking.wing_surface import refuse_crossing
@@ -23,6 +23,9 @@ _TRIED = 1.2, 1.25, 1.3, 1.35, 1.4, 1.5, 2.0
 _BASE = 2  # number of cells across a base
 _SHARP = 0.001  # default smallest height of the base of a wing given as a surface, in chords
 _ROUNDS = 6  # scalings of a fraction: lines are nearly straight over a first cell
+_PLACES = 65  # number of heights at which a line is compared with the body in each step
+
+_PASSES = 6  # number of steps; each divides the interval around a crossing
 
 
 @dataclass(frozen=True)
@@ -71,7 +74,7 @@ class WingLines:
             notes = opened.notes
         else:
             loft, notes = _through_sections(wing, nodes, GAP if base is None else base)
-        roots, fin = root_heights(loft, name, body), isinstance(wing, Fin)
+        roots, fin = _root_heights(loft, name, body), isinstance(wing, Fin)
         if not fin:
             roots[-1] = roots[0]
         return cls(loft, name, roots, notes, fin)
@@ -114,3 +117,42 @@ def _through_sections(wing: Stack, nodes: int, base: float) -> tuple[Loft, tuple
     refuse_crossing(wing, unit)
     loft = fin_loft(wing, unit) if isinstance(wing, Fin) else section_loft(wing, unit)
     return loft, (*wing.notes, *dict.fromkeys(filter(None, notes)))
+
+
+def _root_heights(loft: Loft, name: str, body: Body) -> Floats:
+    """Return the heights z (n,) at which the lines of a wing's `loft` leave a body.
+
+    Raises InputError: a line that begins outside of the body, or never leaves it.
+    """
+    begin = loft.begin
+    out = body.outside(np.stack([loft.line(k, begin[k : k + 1])[0] for k in range(len(begin))]))
+    if out.max() >= 0.0:
+        worst = int(out.argmax())
+        raise _error(loft, name, worst, float(begin[worst]), body, "begins outside of")
+    heights = np.empty(len(begin))
+    for k in range(len(heights)):
+        low, high = float(begin[k]), loft.tip
+        for _ in range(_PASSES):
+            z = np.linspace(low, high, _PLACES)
+            out = body.outside(loft.line(k, z))
+            first = np.flatnonzero(out >= 0.0)
+            if not len(first):
+                raise _error(loft, name, k, high, body, "does not leave")
+            at = int(first[0])
+            low, high = float(z[at - 1]), float(z[at])
+        heights[k] = low + (high - low) * out[at - 1] / (out[at - 1] - out[at])
+    return heights
+
+
+def _error(loft: Loft, name: str, line: int, z: float, body: Body, what: str) -> InputError:
+    """Return the error for a line at the height z, with its place beside the body."""
+    x, y, z = point = loft.line(line, np.array([z]))[0]
+    nose, tail = body.meridian[0, 0], body.meridian[-1, 0]
+    if nose < x < tail:
+        where = body.beside(point)
+    else:
+        where = (
+            f"{'ahead of its nose' if x <= nose else 'behind its tail'}: it is from x={nose:g} to {tail:g}"
+        )
+    problem = f"a line of the {name} {what} the {body.name} at x={x:.6g}, y={y:.6g}, z={z:.6g}, {where}"
+    return InputError(problem, loft.remedy, place="wings")

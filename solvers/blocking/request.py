@@ -23,26 +23,15 @@ LARGEST_PITCH = 1e12  # largest pitch in the unit of the blade, so that squares 
 
 @dataclass(frozen=True)
 class BlockRequest(FirstCell):
-    """Options for the multi-block grid of a domain. Values are checked on construction.
+    """Options for the multi-block grid of a domain, checked on construction: fields of `GridRequest`.
 
     Parameters
     ----------
-    cells : approximate number of cells. If `cells`, `cell_size` and `res` are all missing, it is `CELLS`, or
-        `LAYERED_CELLS` with layers.
-    cell_size : target edge length away from walls, in the domain's unit.
+    cells : if `cells`, `cell_size` and `res` are all missing, it is `CELLS`, or `LAYERED_CELLS` with layers.
     res : number of cells along the longest extent of the domain.
-    first_cell : first-cell height at walls, in the domain's unit, or a mapping from names of walls to
-        heights.
-    y_plus, reynolds, chord_fraction : first-cell height as y+; see `meshonet.geometry.spacing.y_plus`.
     length : reference length of the Reynolds number; None is the extent of the bodies.
-    growth : largest ratio of neighbouring cells away from the wall.
-    constant_layers : number of first layers of equal height.
     walls : names of the stretches with layers; if empty, `Domain.layered_loops` have layers.
-    pitch : vector from one blade of a cascade to the next: the domain is the passage around it.
     inlet, outlet : lengths of the passage before and behind the blade, in its axial chords; None is 1.
-    periodic : pairs of sides of the outer boundary, by name, that are translated copies of each other.
-    layout : blocks that are used instead of a decomposition, of this domain or of a similar one.
-    count : numbers of cells along sides of the domain, by the names of the sides.
     refine : how often all cells are halved. `cells`, `cell_size` and `res` apply to the coarsest grid of the
         family; `first_cell` and `growth` apply to the finest grid, which is the result.
 

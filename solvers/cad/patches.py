@@ -1,4 +1,12 @@
-"""Structured patches on the faces of a CAD file, which match at their edges.
+r"""Structured patches on the faces of a CAD file, which match at their edges, by the faces' corners.
+
+::
+
+    four corners          two corners               no corner
+    +---------+           +------                   . - - .        ring of four patches
+    |         |    base   |         nodes across    /+----+\       around a core
+    |         |           |         the nose        |+----+|
+    +---------+           +------                   ` - - '
 
 Nodes inside a face are blended between its edges in the coordinates of its surface, and lie on it exactly.
 Nodes of an edge are made once, so that they are bitwise the same in all patches.
@@ -6,25 +14,30 @@ Nodes of an edge are made once, so that they are bitwise the same in all patches
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms, ring_of
+from meshonet.geometry.arrays import Floats, Indices, norms, ring_of
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.cad.model import CadFace, CadModel
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.geometry.ties import nearest_whole
 from meshonet.solvers.algebraic.tfi import between
-from meshonet.solvers.cad.edges import edge_laws, place_on
-from meshonet.solvers.cad.sides import FacePlan, cell_counts, planned
+from meshonet.solvers.cad.edges import CORNER_DEG, corner_turns, edge_laws, length_of, place_on
 from meshonet.solvers.solution import Solution, timed
+from meshonet.solvers.whole_numbers import Row, difference, whole_numbers
 
 CELLS = 40  # default number of cells along the longest extent of a file
 _CORE = 0.5  # ratio of the size of a disc's core to the size of the disc
 _OFF = 1e-8  # largest distance of edges from their faces, divided by the size of the file, without a note
+_REFUSED = 5  # faces named in an error
+_ACROSS = 8  # smallest number of cells across a base, and across the nose opposite to it
+_BASE = 0.7  # largest ratio of the base to the opposite side
 
 
 class _FaceLine(NamedTuple):
@@ -51,10 +64,10 @@ def patches_on(model: CadModel, sampling: Sampling) -> Solution:
     other fields of `sampling` are set.
     """
     _check_sampling(sampling)
-    plans = planned(model)
+    plans = _planned(model)
     extent = model.size
     laws = edge_laws(model, extent / (sampling.ni or CELLS), sampling.spacing)
-    counts = cell_counts(model, plans, np.array([law.total for law in laws]))
+    counts = _cell_counts(model, plans, np.array([law.total for law in laws]))
     nodes = [
         law.nodes(model, edge, int(count)) for law, edge, count in zip(laws, model.edges, counts, strict=True)
     ]
@@ -93,7 +106,7 @@ def _joined(lines: list[_FaceLine]) -> _FaceLine:
     )
 
 
-def _four(plan: FacePlan, sides: list[_FaceLine]) -> list[_FaceLine]:
+def _four(plan: _FacePlan, sides: list[_FaceLine]) -> list[_FaceLine]:
     """Return the four sides of a face, counter-clockwise; nose and base have equally many cells."""
     if plan.kind == "quad":
         return sides
@@ -154,3 +167,92 @@ def _check(patch: Floats, number: int) -> None:
         problem = f"{int(folded.sum())} cells of the patch on face {number} are folded"
         remedy = "split the face in the CAD program, or give a larger {res}"
         raise InputError(problem, remedy, place=place_on(patch[i : i + 1, j]))
+
+
+@dataclass(frozen=True)
+class _FacePlan:
+    """Division of a face into patches; a side lists consecutive edges by their positions in the face's loop.
+
+    A ``quad`` has four sides, a ``nose`` a short one and a long one, a ``disc`` a single one with all edges.
+    """
+
+    kind: Literal["quad", "nose", "disc"]
+    sides: tuple[tuple[int, ...], ...]
+
+
+def _planned(model: CadModel) -> tuple[_FacePlan, ...]:
+    """Return the division of each face into patches.
+
+    Raises InputError, with number, sides and place of a face: it cannot become patches.
+    """
+    plans, problems = [], []
+    for number, face in enumerate(model.faces, 1):
+        plan = _plan(model, face)
+        if isinstance(plan, str):
+            middle = [edge.points for use in face.uses if (edge := model.edges[use.edge])]
+            points = np.concatenate([each(np.array([0.5])) for each in middle if each is not None])
+            problems.append(f"face {number} near {place_on(points)} has {plan}")
+        else:
+            plans.append(plan)
+    if problems:
+        more = f" and {len(problems) - _REFUSED} faces more" if len(problems) > _REFUSED else ""
+        remedy = "split it there in the CAD program into faces of four sides"
+        raise InputError("; ".join(problems[:_REFUSED]) + more, remedy)
+    return tuple(plans)
+
+
+def _plan(model: CadModel, face: CadFace) -> _FacePlan | str:
+    """Return the plan of a face, or as text the property that prevents one."""
+    if face.holes:
+        return "a hole" if face.holes == 1 else f"{face.holes} holes"
+    turns = corner_turns(model, face.uses)
+    corners = np.flatnonzero(turns > CORNER_DEG)
+    if len(face.uses) == 4 and len(corners) >= 3:
+        corners = np.arange(4)
+    if len(corners) == 4:
+        return _FacePlan("quad", _runs(corners, len(face.uses)))
+    if len(corners) == 2:
+        runs = _runs(corners, len(face.uses))
+        lengths = [sum(_length(model, face, k) for k in run) for run in runs]
+        short, long = runs if lengths[0] <= lengths[1] else runs[::-1]
+        if min(lengths) > _BASE * max(lengths):
+            return "two sides that meet in two corners"
+        return _FacePlan("nose", (short, long))
+    if not len(corners):
+        return _FacePlan("disc", (tuple(range(len(face.uses))),))
+    words = {1: "one corner", 3: "three sides"}
+    return words.get(len(corners), f"{len(corners)} sides")
+
+
+def _runs(corners: Indices, count: int) -> tuple[tuple[int, ...], ...]:
+    """Return the positions of edges in a loop from each corner to the next."""
+    ends = [*corners.tolist(), int(corners[0]) + count]
+    return tuple(tuple(k % count for k in range(a, b)) for a, b in pairwise(ends))
+
+
+def _length(model: CadModel, face: CadFace, k: int) -> float:
+    points = model.edges[face.uses[k].edge].points
+    return 0.0 if points is None else length_of(points)
+
+
+def _cell_counts(model: CadModel, plans: tuple[_FacePlan, ...], wanted: Floats) -> Indices:
+    """Return even numbers of cells (edges,) near `wanted` (edges,) that agree on opposite sides of patches.
+
+    Raises InputError: there are no such numbers.
+    """
+    rows: list[Row] = []
+    for face, plan in zip(model.faces, plans, strict=True):
+        runs = [[face.uses[k].edge for k in side] for side in plan.sides]
+        if plan.kind == "quad":
+            rows += [difference(runs[0], runs[2]), difference(runs[1], runs[3])]
+        elif plan.kind == "nose":
+            rows.append(difference(runs[0], [], 0.5 * _ACROSS, np.inf))
+            rows.append(difference(runs[1], runs[0], 1.0, np.inf))
+        else:
+            rows.append(difference(runs[0], [], 2.0, np.inf))
+    halves = np.maximum(nearest_whole(0.5 * wanted), 1.0)
+    try:
+        return 2 * whole_numbers(halves, np.ones(len(halves)), [row for row in rows if row[0]])
+    except SolverError as error:
+        problem = "no numbers of cells agree on opposite sides of all faces"
+        raise InputError(problem, "split faces with several edges on a side") from error

@@ -1,23 +1,26 @@
 """Deformation of a grid to a changed boundary that preserves its boundary layers."""
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from meshonet.geometry.arrays import Indices
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet.geometry.notes import UNJUDGED
+from meshonet.geometry.polygon.area import contains
+from meshonet.geometry.polygon.self_intersection import find_crossings
 from meshonet.geometry.quality.measure import count_folded_in, worst_cells_of
-from meshonet.solvers.deformation.crossings import check_apart
 from meshonet.solvers.deformation.follow import Follow, sliding_notes
-from meshonet.solvers.deformation.outer import NodeTable, first_heights
+from meshonet.solvers.deformation.outer import NodeTable, Piece, first_heights, lines_of
 from meshonet.solvers.deformation.targets import NewWall, NodeTargets, targets_of
 from meshonet.solvers.solution import Outcome, Solution, timed
 
 METHOD = "deformation"
 STEPS = 2, 4, 8  # numbers of steps of the deformation, tried in turn while cells are folded
+_MOST = 4096  # crossings looked for; those at the joints of concatenated polylines are skipped
 
 
 @timed
@@ -57,7 +60,7 @@ def _ways(follow: Follow, targets: NodeTargets) -> Iterator[tuple[Grid, tuple[st
     made = _in_steps(follow, targets, 1)
     yield made, ()
     if made.form == "plane":
-        check_apart(follow.table, targets)
+        _check_apart(follow.table, targets)
     for steps in STEPS:
         made = _in_steps(follow, targets, steps)
         yield made, (f"{steps} steps",)
@@ -102,3 +105,38 @@ def _layers(table: NodeTable, after: Grid, targets: NodeTargets) -> tuple[str, .
     change = float(np.abs(new / old - 1.0).max())
     names = ", ".join(dict.fromkeys(piece.patch.name for piece in walls))
     return (f"first cells at {names}: heights changed by at most {100 * change:.2g} %",)
+
+
+def _check_apart(table: NodeTable, targets: NodeTargets) -> None:
+    """Raise InputError, with the place, if planar walls in their new positions cross other boundaries.
+
+    Sliding sides are not checked: the ends of such a side are known only after the deformation.
+    """
+    moved = targets.moved
+    walls = [piece for piece in table.pieces if moved[piece.numbers].all()]
+    rest = [piece for piece in table.pieces if not moved[piece.numbers].any()]
+    lines = [*lines_of(walls), *lines_of(rest)]
+    path = np.concatenate([targets.nodes[line] for line in lines])
+    joints = set((np.cumsum([len(line) for line in lines]) - 1).tolist())
+    numbers = np.concatenate(lines)
+    for crossing in find_crossings(path, closed=False, limit=_MOST):
+        a, b = crossing.first, crossing.second
+        if a in joints or b in joints or set(numbers[a : a + 2]) & set(numbers[b : b + 2]):
+            continue
+        names = dict.fromkeys(_name(table.pieces, numbers[k : k + 2]) for k in (a, b))
+        at = f"({crossing.x:.6g}, {crossing.y:.6g})"
+        raise InputError(f"{' and '.join(names)} cross at {at}", "keep them apart", parameter="wall")
+    for line in lines_of(walls):
+        closed = [other for other in lines if other[0] == other[-1] and other[0] != line[0]]
+        for other in closed if line[0] == line[-1] else ():
+            before = contains(table.nodes[other], table.nodes[line[0]])
+            if contains(targets.nodes[other], targets.nodes[line[0]]) != before:
+                name, beyond = (_name(table.pieces, each[:2]) for each in (line, other))
+                raise InputError(
+                    f"{name} is moved to the other side of {beyond}", "keep it", parameter="wall"
+                )
+
+
+def _name(pieces: Sequence[Piece], edge: Indices) -> str:
+    names = [piece.patch.name for piece in pieces if np.isin(edge, piece.numbers).all()]
+    return names[0] if names else "a side"

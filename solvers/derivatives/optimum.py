@@ -65,7 +65,7 @@ class OptimumDerivative:
         rim[:, 1:-1, 1:-1] = 0.0
         right = self._jacobian.times(rim.ravel())
         right += self._by_aspect * float(product(self._aspect_slope, rim.ravel()))
-        rim.ravel()[self._inner] = -self._solve(right[self._inner])
+        rim.ravel()[self._inner] = -self._system.solve(right[self._inner])
         return np.ascontiguousarray(np.moveaxis(rim, 0, -1))
 
     def transposed(self, pull: Floats) -> Floats:
@@ -75,7 +75,7 @@ class OptimumDerivative:
         """
         flat = np.array(np.moveaxis(pull, -1, 0), dtype=np.float64, order="C")
         adjoint = np.zeros(flat.size)
-        adjoint[self._inner] = self._solve(flat.ravel()[self._inner], transposed=True)
+        adjoint[self._inner] = self._system.solve(flat.ravel()[self._inner], transposed=True)
         back = self._jacobian.transposed_times(adjoint)
         back += self._aspect_slope * float(product(self._by_aspect, adjoint))
         result = flat - back.reshape(flat.shape)
@@ -94,7 +94,7 @@ class OptimumDerivative:
                 fresh = True
             residual = self._equations(self._aspect)(nodes).ravel()[self._inner]
             move = np.zeros(nodes.size)
-            move[self._inner] = -self._solve(residual)
+            move[self._inner] = -self._system.solve(residual)
             size = float((np.abs(move.reshape(nodes.shape)) / edges).max())
             if not size < _NEAR:
                 problem = (
@@ -123,9 +123,6 @@ class OptimumDerivative:
     def _linearise(self, nodes: Floats) -> None:
         self._jacobian = jacobian(self._equations(self._aspect), nodes, _REACH[self._method])
         self._system = self._systems(self._jacobian)
-
-    def _solve(self, right: Floats, *, transposed: bool = False) -> Floats:
-        return self._system.solve(right, transposed=transposed)
 
     def _aspect_term(self, nodes: Floats) -> Floats:
         """Return the derivative of the equations by the aspect ratio a; that of a by the nodes is stored."""
@@ -184,7 +181,7 @@ class _System:
     factor: Factor
     scale: Floats | None  # (n,) scaling of the equations; None for a symmetric system
 
-    def solve(self, right: Floats, *, transposed: bool) -> Floats:
+    def solve(self, right: Floats, *, transposed: bool = False) -> Floats:
         """Return the solution (n,) of A x = right, or of Aᵀ x = right."""
         if self.scale is None:
             return self.factor.refine(self.matrix, right, 1)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.elementary import log, product
 
@@ -29,9 +29,7 @@ class Factors:
         """Return the sum at every node, (ni, nj)."""
         return np.asarray(product(self.along.T, self.across))
 
-    def kept(
-        self, i: np.ndarray[tuple[int], np.dtype[np.intp]], j: np.ndarray[tuple[int], np.dtype[np.intp]]
-    ) -> Factors:
+    def kept(self, i: Indices, j: Indices) -> Factors:
         """Return the function on the nodes with indices `i` and `j`."""
         return Factors(np.ascontiguousarray(self.along[:, i]), np.ascontiguousarray(self.across[:, j]))
 

@@ -6,7 +6,7 @@ from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.aircraft.dimensions import aircraft_dimensions
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.threads import limited_to
-from meshonet.solvers.aircraft.request import AircraftRequest, aircraft_request
+from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import stage
@@ -25,7 +25,7 @@ def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) ->
     Raises InputError: a wing does not begin in the body, does not leave it, or reaches the far field. Raises
     NoValidGridError: cells are folded, and the request does not allow that.
     """
-    request = request or aircraft_request()
+    request = request or AircraftRequest()
     seconds: dict[str, float] = {}
     request.check_far_field()
     sizes = aircraft_dimensions(aircraft, request.height(), request.far_field)

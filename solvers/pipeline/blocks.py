@@ -122,18 +122,10 @@ def _blade(shape: Shape, sampling: Sampling) -> DomainShape:
     return around
 
 
-def _for_one(request: GridRequest) -> dict[str, bool]:
-    sampling = request.sampling
-    return {
-        "blocks": request.blocks == "single",
-        "topology": sampling.topology != "auto",
-        "corners": sampling.corners is not None,
-    }
-
-
 def _check_single(request: GridRequest, asks: tuple[str, ...]) -> bool:
     """Return whether an option asks for a single block. Raises InputError if others `asks` for many."""
-    single = [name for name, used in _for_one(request).items() if used]
+    given = {"topology": request.sampling.topology != "auto", "corners": request.sampling.corners is not None}
+    single = [name for name, used in {"blocks": request.blocks == "single", **given}.items() if used]
     if single and asks:
         problem = f"{{{asks[0]}}} asks for many blocks and {{{single[0]}}} for one"
         raise InputError(problem, "give one of them")

@@ -13,7 +13,6 @@ from meshonet.solvers.pipeline.request import OneBlock
 from meshonet.solvers.solution import Solution
 
 if TYPE_CHECKING:
-    from meshonet.solvers.pipeline.first_cells import FirstCells
     from meshonet.solvers.pipeline.methods import Method
 
 NETWORK_SETTINGS = ("model", "polish", "device", "fallback")
@@ -35,9 +34,9 @@ def method_of(request: OneBlock) -> Method:
     full = None if request.refine or isinstance(request.coarse, int) else base
     own = full is not None and base.name in ("winslow", "steger-sorenson")
     return Layered(
-        method, _first_cells(request), {**(request.settings if own else {}), **_angle(request)}, full,
+        method, request, {**(request.settings if own else {}), **_angle(request)}, full,
         marched=TOPOLOGIES if request.method == "hyperbolic" else ("o", "c") if automatic else (),
-        channels=automatic, slide=request.slide, chosen=request.chosen,
+        channels=automatic,
     )  # fmt: skip
 
 
@@ -78,14 +77,6 @@ def _at_any_resolution(request: OneBlock, base: Method) -> Method:
     from meshonet.solvers.pipeline.automatic import elliptic, fewer_on_quads
 
     return elliptic() if request.method == "auto" else fewer_on_quads(base)
-
-
-def _first_cells(request: OneBlock) -> FirstCells:
-    from meshonet.solvers.pipeline.first_cells import FirstCells
-
-    free_rows = request.growth is not None and request.sampling.nj is None
-    layers = request.constant_layers or 1, request.growth, free_rows, 2**request.refine
-    return FirstCells(request, getattr(request, "walls", ()), request.sides, *layers)
 
 
 def _angle(request: OneBlock) -> dict[str, float]:

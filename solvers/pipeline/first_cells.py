@@ -3,61 +3,45 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from meshonet.geometry.arrays import SIDES, Side
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
-from meshonet.geometry.spacing.first_cell import FirstCell, check_names
+from meshonet.geometry.spacing.first_cell import check_names
 from meshonet.solvers.layers.first_cells import Heights
 
 if TYPE_CHECKING:
     from meshonet.solvers.pipeline.request import GridRequest, OneBlock
 
 
-@dataclass(frozen=True)
-class FirstCells:
-    """First-cell heights, and the layers that start with them."""
+def heights_of(request: OneBlock, boundary: Boundary) -> Heights:
+    """Return the first-cell heights that a request prescribes, in the unit of `boundary`.
 
-    # height off walls, or off each named one: around a body in chords, else in the unit of the domain
-    prescribed: FirstCell
-    walls: tuple[str, ...] = ()  # names of the walls of a four-sided domain; empty for `wall_sides`
-    # heights off single sides of four-sided domains, in their unit
-    sides: Mapping[str, float] = field(default_factory=dict)
-    constant: int = 1  # so many first layers are equally high
-    growth: float | None = None  # largest ratio of neighbouring cells, or None
-    free_rows: bool = False  # whether growth decides how many rows there are
-    multiple: int = 1  # of which the number of rows is one then
+    Raises InputError: a wall whose name no side has.
+    """
+    off: dict[str, Any] = {}
+    if request.at_walls and boundary.around_body:
+        off = {"south": (request.height() or 0.0) * boundary.chord}
+    elif request.at_walls:
+        heights = request.heights(boundary.chord)
+        if isinstance(heights, Mapping):
+            off = {side: heights[name] for name in heights for side in sides_called(boundary, name)}
+        elif heights is not None:
+            named = [side for name in request.walls for side in sides_called(boundary, name)]
+            off = dict.fromkeys(named or wall_sides(boundary), heights)
+    rows = request.rows_at_walls
+    del rows["multiple"]
+    return Heights(**off | request.sides, **rows)
 
-    def in_chords(self) -> float:
-        """Return the height at a body, in chords. Raises InputError: no height is given, or one per wall."""
-        return self.prescribed.height() or 0.0
 
-    def heights(self, boundary: Boundary) -> Heights:
-        """Return the heights in the unit of `boundary`. Raises InputError: a wall whose name no side has."""
-        off: dict[str, float] = {}
-        if self.prescribed.at_walls and boundary.around_body:
-            off = {"south": self.in_chords() * boundary.chord}
-        elif self.prescribed.at_walls:
-            heights = self.prescribed.heights(boundary.chord)
-            if isinstance(heights, Mapping):
-                off = {side: heights[name] for name in heights for side in sides_called(boundary, name)}
-            elif heights is not None:
-                named = [side for name in self.walls for side in sides_called(boundary, name)]
-                off = dict.fromkeys(named or wall_sides(boundary), heights)
-        return Heights(
-            **off | dict(self.sides), constant=self.constant, growth=self.growth, free_rows=self.free_rows
-        )
-
-    def note(self, boundary: Boundary) -> str:
-        """Return a text that explains how the heights follow from y+; empty without y+."""
-        if boundary.around_body:
-            where = f"and x/c {self.prescribed.chord_fraction:g}"
-            return self.prescribed.height_note(where, in_unit=" chords")
-        where = f"on a length of {boundary.chord:.6g}, the extent of south,"
-        return self.prescribed.height_note(where, boundary.chord)
+def y_plus_note(request: OneBlock, boundary: Boundary) -> str:
+    """Return a text that explains how the heights follow from y+; empty without y+."""
+    if boundary.around_body:
+        return request.height_note(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
+    where = f"on a length of {boundary.chord:.6g}, the extent of south,"
+    return request.height_note(where, boundary.chord)
 
 
 def sides_called(boundary: Boundary, name: str) -> list[Side]:

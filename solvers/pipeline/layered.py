@@ -14,13 +14,14 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.layers.first_cells import Heights
 from meshonet.solvers.pipeline.fallback import guard
-from meshonet.solvers.pipeline.first_cells import FirstCells
+from meshonet.solvers.pipeline.first_cells import heights_of, y_plus_note
 from meshonet.solvers.pipeline.named import Each, Wrapper, method_named, solved
 from meshonet.solvers.pipeline.uses import CHANNEL, MARCHED, refuse
 from meshonet.solvers.solution import Solution
 
 if TYPE_CHECKING:
     from meshonet.solvers.pipeline.methods import Method
+    from meshonet.solvers.pipeline.request import OneBlock
 
 UPRIGHT_DEGREES = 0.3  # by which lines may lean at walls whose nodes have slid
 LEANING_DEGREES = 1.0  # by which they may lean when sources have turned them
@@ -31,7 +32,7 @@ OBLIQUE_DEGREES = 20.0  # beyond which layers that lean are worth a note
 class Layered(Wrapper):
     """Solves by `method`, then redistributes nodes to the prescribed first-cell heights."""
 
-    cells: FirstCells  # heights and layers
+    request: OneBlock  # its heights and layers; options that are of no use are refused
     # settings of ``steger-sorenson``, whose sources turn lines at walls
     turning: Mapping[str, Any] = field(default_factory=dict)
     full: Method | None = None  # `method` as it solves on all nodes; None when it is not to
@@ -39,41 +40,32 @@ class Layered(Wrapper):
     marched: tuple[Topology, ...] = ()
     # make lines leave the walls of four-sided domains at right angles when there is such a height
     channels: bool = False
-    # move wall nodes of four-sided domains; None: in channels, when they were sampled here
-    slide: bool | None = None
-    # options that are not the defaults; they are refused where they are of no use
-    chosen: tuple[str, ...] = ()
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
         """Return the solution of a boundary with the prescribed first-cell heights.
 
         Raises InputError: heights or settings that do not suit the boundary or the method.
         """
-        if boundary.around_body and self.cells.sides:
+        if boundary.around_body and self.request.sides:
             raise InputError(
                 f"a height off a single side, around a body (topology {boundary.topology})",
                 "use {first_cell}",
-                parameter=f"spacing_{next(iter(self.cells.sides))}",
+                parameter=f"spacing_{next(iter(self.request.sides))}",
             )
-        if self.cells.prescribed.at_walls and boundary.topology in self.marched:
+        if self.request.at_walls and boundary.topology in self.marched:
             return self._march(boundary)
-        heights = self.cells.heights(boundary)
-        if heights.any and "refine" in self.chosen:
+        heights = heights_of(self.request, boundary)
+        if heights.any and self.request.refine:
             raise InputError("{refine} with first cells of given heights", "use a finer {res} instead")
-        if not heights.any and not self.slide:
+        if not heights.any and not self.request.slide:
             return self._even(boundary, heights, start)
         return self._in_layers(boundary, heights, start)
 
     def _march(self, boundary: Boundary) -> Solution:
-        refuse(self.chosen, MARCHED)
-        cells, height, note = self.cells, self.cells.in_chords(), self.cells.note(boundary)
-        settings = {
-            "growth": cells.growth,
-            "free_rows": cells.free_rows,
-            "constant": cells.constant,
-            "multiple": cells.multiple,
-        }
-        solution = method_named("hyperbolic", wall_spacing=height, **settings).solve([boundary])[0]
+        refuse(self.request.chosen, MARCHED)
+        height, note = self.request.height() or 0.0, y_plus_note(self.request, boundary)
+        march = method_named("hyperbolic", wall_spacing=height, **self.request.rows_at_walls)
+        solution = march.solve([boundary])[0]
         return replace(solution, notes=(note, *solution.notes)) if note else solution
 
     def _in_layers(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
@@ -91,20 +83,20 @@ class Layered(Wrapper):
             solution = spread(guard(solution, edges, allow_invalid=True), edges, heights)
             solution = solution if slid else _noted_lean(solution, boundary, heights)
         seconds = {**solution.seconds, "grid": perf_counter() - begun}
-        notes = filter(None, [self.cells.note(boundary)])
+        notes = filter(None, [y_plus_note(self.request, boundary)])
         return replace(solution, notes=(*notes, *solution.notes), seconds=seconds)
 
     def _even(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
         """Return the grid of `boundary` without layers; wall nodes may slide or grid lines be turned."""
         channel = self.channels and not boundary.around_body and bool(heights.south or heights.north)
-        slide = channel and boundary.sampled if self.slide is None else self.slide
+        slide = channel and boundary.sampled if self.request.slide is None else self.request.slide
         if slide:
             solution = self._slid(boundary, start)
-            if channel and "model" not in self.chosen:
+            if channel and "model" not in self.request.chosen:
                 return self._upright(solution, boundary, heights, start)
             return solution
         if channel:
-            refuse((each for each in ("model", "polish", "answer") if each in self.chosen), CHANNEL)
+            refuse((each for each in ("model", "polish", "answer") if each in self.request.chosen), CHANNEL)
         if self.full is not None and (channel or self.name == "steger-sorenson"):
             return self._turned(boundary, heights, start)
         return self.inner(boundary, start)
@@ -121,7 +113,7 @@ class Layered(Wrapper):
         else:
             method = self.method
             if controls is not None and isinstance(self.full, Each) and self.full.takes("controls"):
-                method = self.full.having(controls=controls)
+                method = replace(self.full, settings={**self.full.settings, "controls": controls})
             solution = solved(method, slid, start)
         note = "wall nodes slid along south and north"
         return replace(solution, boundary=slid, notes=(*solution.notes, note))

@@ -259,14 +259,7 @@ def _of_base(lines: BaseWake, request: GridRequest, seconds: dict[str, float]) -
 
     reached("grid")
     begun = time.perf_counter()
-    solution = around_base(
-        lines,
-        first=lines.first,
-        growth=request.growth,
-        free_rows=request.growth is not None and request.sampling.nj is None,
-        constant=request.constant_layers or 1,
-        multiple=2**request.refine,
-    )
+    solution = around_base(lines, first=lines.first, **request.rows_at_walls)
     _add_times(seconds, solution, time.perf_counter() - begun)
     note = request.height_note(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
     notes = (*[note] * bool(note), *solution.notes)

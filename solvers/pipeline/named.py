@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any
 
@@ -53,10 +53,6 @@ class Each(OneByOne):
         """Return the function's solution of a boundary; `start` is used if the function has ``initial``."""
         more = {"initial": start} if start is not None and self.takes("initial") else {}
         return self.function(boundary, **self.settings, **more)
-
-    def having(self, **settings: Any) -> Each:
-        """Return the method with additional settings."""
-        return replace(self, settings={**self.settings, **settings})
 
 
 @dataclass(frozen=True)

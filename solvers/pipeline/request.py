@@ -76,6 +76,13 @@ class OneBlock(Request):
         return {side: h for side, h in zip(SIDES, heights, strict=True) if h is not None}
 
     @property
+    def rows_at_walls(self) -> dict[str, Any]:
+        """Growth limit and number of the rows at walls, as parameters of `march.hyperbolic`."""
+        free = self.growth is not None and self.sampling.nj is None
+        constant, multiple = self.constant_layers or 1, 2**self.refine
+        return {"growth": self.growth, "free_rows": free, "constant": constant, "multiple": multiple}
+
+    @property
     def algebraic(self) -> bool:
         """Whether the method solves no equations."""
         return self.method in METHODS and METHODS[self.method].algebraic

@@ -38,14 +38,14 @@ def stacked_surface(what: Stack | Aircraft, **parameters: Any) -> tuple[Grid, tu
     """
     if isinstance(what, Stack):
         from meshonet.solvers.pipeline.stacks import stack_surface
-        from meshonet.solvers.stacking.request import stack_request
+        from meshonet.solvers.stacking.request import StackRequest
 
-        return stack_surface(what, stack_request(**parameters))
+        return stack_surface(what, StackRequest.of(**parameters))
     from meshonet.geometry.blocks.wall_surface import wall_surface
-    from meshonet.solvers.aircraft.request import aircraft_request
+    from meshonet.solvers.aircraft.request import AircraftRequest
     from meshonet.solvers.pipeline.aircraft import make_aircraft
 
-    solution = make_aircraft(what, aircraft_request(**parameters)).solution
+    solution = make_aircraft(what, AircraftRequest.of(**parameters)).solution
     return wall_surface(solution.grid), solution.notes
 
 
@@ -57,17 +57,17 @@ def make_stacked(what: Sections, **parameters: Any) -> Result:
     """
     if isinstance(what, Stack):
         from meshonet.solvers.pipeline.stacks import make_stack
-        from meshonet.solvers.stacking.request import stack_request
+        from meshonet.solvers.stacking.request import StackRequest
 
-        return make_stack(what, stack_request(**parameters))
+        return make_stack(what, StackRequest.of(**parameters))
     from meshonet.geometry.rows.row import Row
 
     if isinstance(what, Row):
         from meshonet.solvers.pipeline.rows import make_row
-        from meshonet.solvers.rows.request import row_request
+        from meshonet.solvers.rows.request import RowRequest
 
-        return make_row(what, row_request(**parameters))
-    from meshonet.solvers.aircraft.request import aircraft_request
+        return make_row(what, RowRequest.of(**parameters))
+    from meshonet.solvers.aircraft.request import AircraftRequest
     from meshonet.solvers.pipeline.aircraft import make_aircraft
 
-    return make_aircraft(what, aircraft_request(**parameters))
+    return make_aircraft(what, AircraftRequest.of(**parameters))

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.keywords import request_from
 from meshonet.solvers.volume_request import VolumeRequest
 
 DEFAULT_GROWTH, DEFAULT_CELLS = 1.2, 500_000
@@ -42,6 +41,7 @@ class RowRequest(VolumeRequest):
         A value out of its range; parameters that need or exclude each other.
     """
 
+    what: ClassVar[str] = "a row"
     fewest_cells: ClassVar[int] = 20_000
     cells: int = DEFAULT_CELLS
     copies: int = 1
@@ -57,11 +57,3 @@ class RowRequest(VolumeRequest):
     def ratio(self) -> float:
         """Largest ratio of neighbouring cells."""
         return DEFAULT_GROWTH if self.growth is None else self.growth
-
-
-def row_request(**parameters: Any) -> RowRequest:
-    """Return a `RowRequest` with the parameters as its fields; ``wall_spacing`` is ``first_cell``.
-
-    Raises InputError: as `RowRequest`; an unknown parameter.
-    """
-    return request_from(RowRequest, "a row", parameters)

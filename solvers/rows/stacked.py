@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -16,13 +17,20 @@ from meshonet.solvers.rows.key_sections import KeySection
 from meshonet.solvers.rows.key_tables import KeyTables
 from meshonet.solvers.rows.node_group import NodeGroup
 from meshonet.solvers.rows.raised import Rise, rises_of
-from meshonet.solvers.rows.row_nodes import RowNodes
 from meshonet.solvers.rows.span_lines import SpanLines
 from meshonet.solvers.rows.span_spacing import LineArcs, Spacing
 from meshonet.solvers.rows.zones import Zone
 
 DEGREE = 5  # degree of the polynomials along the span; optima of neighbouring sections contain noise
 _AT_ONCE = 1 << 16  # number of nodes that are computed together, so that they fit into the cache
+
+
+@dataclass(frozen=True, eq=False)
+class RowNodes:
+    """Nodes of all levels, in space and beside the blade; theta = atan2(y, z)."""
+
+    space: Floats  # (levels, n, 3) x, y, z
+    beside: Floats  # (levels, k, 2, 3) s, theta, h of the blade's nodes, clockwise, and of those next to them
 
 
 class StackedRow:

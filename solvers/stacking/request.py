@@ -1,11 +1,10 @@
 """Options for the surface or volume of a stack."""
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from meshonet.geometry.blocks.revolve import AxisLine, Revolution, revolution
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.keywords import request_from
 from meshonet.solvers.stacking.section_nodes import GAP
 from meshonet.solvers.stacking.wing_surface import DEFAULT_AROUND, DEFAULT_SPAN, WingSurface
 from meshonet.solvers.volume_request import VolumeRequest
@@ -59,6 +58,7 @@ class StackRequest(VolumeRequest):
         A value out of its range; parameters that need or exclude each other.
     """
 
+    what: ClassVar[str] = "a stack"
     fewest_cells: ClassVar[int] = 1000
     around: int | None = None
     span: int | None = None
@@ -100,11 +100,3 @@ class StackRequest(VolumeRequest):
         return WingSurface(
             self.around or DEFAULT_AROUND, self.span or DEFAULT_SPAN, GAP if self.base is None else self.base
         )
-
-
-def stack_request(**parameters: Any) -> StackRequest:
-    """Return a `StackRequest` with the parameters as fields; ``wall_spacing`` also means ``first_cell``.
-
-    Raises InputError: as `StackRequest`; an unknown parameter.
-    """
-    return request_from(StackRequest, "a stack", parameters)

@@ -66,18 +66,14 @@ def variational(
     evaluated = time.perf_counter()
     reached("repair")
     folded = repair(planes)
-    facts = {"method": "variational", "energy": energy} | _terms(weights)
+    terms = {} if weights.of_cubes else {"shape": weights.shape, "smoothness": weights.smoothness}
+    facts = {"method": "variational", "energy": energy, **terms}
     counts = "x".join(map(str, optimum_faces.counts))
     grid = faces.grid(np.moveaxis(planes, 0, -1), {**facts, "cycles": iterations, "coarse": counts})
     done = time.perf_counter()
     spent = {"optimum": solved - begun, "evaluation": evaluated - solved, "repair": done - evaluated}
     outcome = Outcome.FOLDED if folded else Outcome.DONE
     return Solution(grid, "variational", cycles=iterations, seconds=spent, outcome=outcome)
-
-
-def _terms(weights: HexWeights) -> dict[str, float]:
-    """Return the weights for the grid's provenance."""
-    return {} if weights.of_cubes else {"shape": weights.shape, "smoothness": weights.smoothness}
 
 
 def optimum(

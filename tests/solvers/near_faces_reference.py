@@ -1,4 +1,4 @@
-"""The test of inner nodes next to faces, in NumPy: what `meshonet.solvers.volumes.near_faces` computes."""
+"""The test of inner nodes next to faces, in NumPy: what `edge_corners.closed_place` computes."""
 
 from itertools import combinations, product
 
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.six_faces import SixFaces
-from meshonet.solvers.volumes.near_faces import Place, Ranges, next_to_faces
+from meshonet.solvers.volumes.edge_corners import Place, Ranges, next_to_faces
 
 ROUNDING = 1e-12
 OPEN = 0.05

@@ -12,7 +12,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.solution import Outcome
-from meshonet.solvers.volumes.near_faces import closed_place
+from meshonet.solvers.volumes.edge_corners import closed_place
 from meshonet.solvers.volumes.planes_descent import PlanesDescent
 from meshonet.solvers.volumes.tfi import tfi
 from meshonet.solvers.volumes.variational import variational

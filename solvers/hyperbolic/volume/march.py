@@ -7,6 +7,7 @@ Folded cells are marched again with other smoothing (`settings`). The equations 
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.elementary import exp
-from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.quality.bad_cell import BadCell
 from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, least_jacobian, worst_solids
 from meshonet.geometry.surface.hollows import Hollows, hollows_of
@@ -29,7 +30,6 @@ from meshonet.solvers.hyperbolic.volume.limited_growth import (
     limit_growth,
     slower_steps,
 )
-from meshonet.solvers.hyperbolic.volume.parts import check_parts
 from meshonet.solvers.hyperbolic.volume.settings import Smoothing, VolumeMarch, attempts_for
 from meshonet.solvers.hyperbolic.volume.symmetry import in_planes, symmetry_of
 from meshonet.solvers.solution import Solution, timed
@@ -42,6 +42,7 @@ SWEEPS = 10  # of the smoothing of steps along lines
 _SLOWER = 2  # further marches by smaller steps where cells grow too much
 _POOR = 0.35  # least scaled Jacobian for which no other smoothing is tried
 WORST = 10  # folded cells named in the error message
+_SAMPLES = 2000  # nodes of a part, evenly drawn, by which its distance from others is measured
 
 
 class _Volume(NamedTuple):
@@ -72,7 +73,7 @@ def march_surface(
     the worst cells: in every attempt a corner Jacobian or a Bezier coefficient of a Jacobian is not positive.
     """
     steps, far = settings.steps(surface.size), settings.distance(surface.size)
-    check_parts(surface, far)
+    _check_parts(surface, far)
     planes, inside, assumed = symmetry_of(surface, settings.symmetry, far)
     nodes = in_planes(surface, planes, inside)
     hollows = hollows_of(surface)
@@ -223,3 +224,30 @@ def _worst(blocks: tuple[Block, ...]) -> list[BadCell]:
         worst = worst_solids(block.nodes, WORST, BEZIER)
         cells += [replace(cell, block=number) for cell in worst]
     return cells[:WORST]
+
+
+def _check_parts(surface: Surface, far: float) -> None:
+    """Raise InputError if the grids of two parts of a surface, marched to `far`, would overlap."""
+    for a, b in combinations(_parts(surface), 2):
+        gap = _distance(surface.nodes[a], surface.nodes[b])
+        if gap < 2.0 * far:
+            places = f"at {surface.place(int(a[0]))} and {surface.place(int(b[0]))}"
+            problem = f"parts of the surface, {places}, are {gap:.4g} apart: their grids would overlap"
+            remedy = f"give one of them, or a {{far_field}} below {0.5 * gap:.4g}"
+            raise InputError(problem, remedy)
+
+
+def _parts(surface: Surface) -> list[Indices]:
+    parts: list[Indices] = []
+    for lattice in surface.lattices:
+        nodes = np.unique(lattice)
+        touched = [part for part in parts if np.isin(nodes, part).any()]
+        parts = [part for part in parts if not any(part is other for other in touched)]
+        parts.append(np.unique(np.concatenate([nodes, *touched])))
+    return parts
+
+
+def _distance(a: Floats, b: Floats) -> float:
+    """Return about the smallest distance between points (n, 3) and (m, 3)."""
+    a, b = (points[:: 1 + len(points) // _SAMPLES] for points in (a, b))
+    return float(np.sqrt(min(((b - point) ** 2).sum(axis=1).min() for point in a)))

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,11 +33,9 @@ class AlongXi(Architecture):
         out   x and y at every eta, for every xi
     """
 
-    width: int = 48  # channels of the hidden state
+    native: ClassVar[bool] = True
 
-    @property
-    def native(self) -> bool:
-        return True
+    width: int = 48  # channels of the hidden state
 
     def shapes(self, frame: Frame) -> Shapes:
         lift = dense_shapes("lift", (SEEN, self.width))

@@ -31,13 +31,9 @@ class Architecture:
     physics: ClassVar[bool] = False  # whether it is trained on Winslow's equations, one network per geometry
     interior: ClassVar[float] = 1.0  # weights of interior and boundary in the loss
     boundary: ClassVar[float] = 1.0
+    native: ClassVar[bool] = False  # whether its output is known only at the nodes of its training grids
 
     sensors: int = 50  # points of the boundary that the branches read, m in the paper
-
-    @property
-    def native(self) -> bool:
-        """Whether the network's output is known only at the nodes of its training grids."""
-        return False
 
     def shapes(self, frame: Frame) -> Shapes:
         """Return the array shapes of the trained parameters, by name, for training grids of `frame`."""

@@ -100,12 +100,10 @@ class PODDeepONet(Architecture):
     et al., CMAME 393 (2022) 114778, sections 3.1.4 and 3.1.6.
     """
 
+    native: ClassVar[bool] = True
+
     hidden: tuple[int, ...] = (64, 128, 64)  # widths of the branch's hidden layers
     features: int = 16  # modes; fewer where the training set has fewer grids
-
-    @property
-    def native(self) -> bool:
-        return True
 
     def shapes(self, frame: Frame) -> Shapes:
         return dense_shapes("branch", (2 * self.sensors, *self.hidden, self.features))

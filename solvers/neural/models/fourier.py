@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,14 +66,12 @@ class FNO2D(Architecture):
     Inputs at (xi, eta) are x and y of south and north at xi and of west and east at eta, xi and eta.
     """
 
+    native: ClassVar[bool] = True
+
     width: int = 12  # channels of the hidden state
     modes: int = 8  # that are mixed, in each direction (of eta positive and negative ones)
     layers: int = 4  # Fourier layers
     padding: int = 9  # nodes of zeros before the transform, in each direction
-
-    @property
-    def native(self) -> bool:
-        return True
 
     def shapes(self, frame: Frame) -> Shapes:
         """Return the shapes of trained parameters. Raises InputError: more modes than the grids have."""

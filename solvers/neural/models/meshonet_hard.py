@@ -39,7 +39,7 @@ class MeshONetHard(Architecture):
     periodic: bool = False  # in xi (an O grid)
 
     @property
-    def native(self) -> bool:
+    def native(self) -> bool:  # type: ignore[override]
         return self.modes > 0
 
     def shapes(self, frame: Frame) -> Shapes:

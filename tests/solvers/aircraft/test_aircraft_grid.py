@@ -18,7 +18,7 @@ from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.solvers.aircraft.aircraft_grid import aircraft_grid
 from meshonet.solvers.aircraft.body_map import BodyMap
-from meshonet.solvers.aircraft.request import AircraftRequest, aircraft_request
+from meshonet.solvers.aircraft.request import AircraftRequest
 
 FIRST = 1e-3
 SMALL = AircraftRequest(around=65, span=9, first_cell=FIRST, far_field=8.0)
@@ -192,14 +192,14 @@ def cells_of(grid: Grid) -> int:
 
 
 def test_there_are_about_as_many_cells_as_wanted() -> None:
-    request = aircraft_request(cells=400_000, span=9, first_cell=1e-2, far_field=8.0)
+    request = AircraftRequest.of(cells=400_000, span=9, first_cell=1e-2, far_field=8.0)
     assert cells_of(aircraft_grid(aircraft(), request)[0]) == pytest.approx(400_000, rel=0.1)
 
 
 def test_cells_grow_more_where_there_would_be_too_many_of_them() -> None:
     """By 1.25 at most, which the note names; around the wing they grow by no more than 1.3, too."""
     made, _, notes = aircraft_grid(
-        aircraft(), aircraft_request(cells=500_000, first_cell=2e-4, far_field=8.0)
+        aircraft(), AircraftRequest.of(cells=500_000, first_cell=2e-4, far_field=8.0)
     )
     assert any("cells grow by 1.25 in place of 1.2" in note for note in notes)
     assert cells_of(made) < 600_000
@@ -210,7 +210,7 @@ def test_cells_grow_more_where_there_would_be_too_many_of_them() -> None:
 
 
 def test_a_growth_that_is_given_is_kept() -> None:
-    request = aircraft_request(cells=500_000, first_cell=2e-4, far_field=8.0, growth=1.2)
+    request = AircraftRequest.of(cells=500_000, first_cell=2e-4, far_field=8.0, growth=1.2)
     _, growth, notes = aircraft_grid(aircraft(), request)
     assert growth == 1.2
     assert not any("in place of" in note for note in notes)
@@ -218,7 +218,7 @@ def test_a_growth_that_is_given_is_kept() -> None:
 
 def test_layers_that_need_more_cells_are_named_in_a_note_with_the_number_that_is_made() -> None:
     """The sections beyond the tips of wings count, too: they are a tenth of all cells."""
-    made, _, notes = aircraft_grid(aircraft(), aircraft_request(cells=20_000, span=9, first_cell=1e-2))
+    made, _, notes = aircraft_grid(aircraft(), AircraftRequest.of(cells=20_000, span=9, first_cell=1e-2))
     note = next(note for note in notes if "layers need about" in note)
     assert int(note.split()[3]) == pytest.approx(cells_of(made), rel=0.02)
 
@@ -229,7 +229,7 @@ def test_layers_that_need_more_cells_are_named_in_a_note_with_the_number_that_is
 )
 def test_options_that_do_not_fit_are_refused(options: dict[str, int], words: str) -> None:
     with pytest.raises(InputError, match=words):
-        aircraft_request(**options)
+        AircraftRequest.of(**options)
 
 
 def test_first_cells_at_the_junction_have_their_height_from_both_walls(grid: Grid) -> None:

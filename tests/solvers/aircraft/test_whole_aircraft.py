@@ -13,7 +13,7 @@ from meshonet.geometry.blocks.handedness import signed_volume
 from meshonet.geometry.blocks.wall_surface import wall_surface
 from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids
 from meshonet.solvers.aircraft.aircraft_grid import aircraft_grid
-from meshonet.solvers.aircraft.request import AircraftRequest, aircraft_request
+from meshonet.solvers.aircraft.request import AircraftRequest
 
 SMALL = AircraftRequest(around=49, span=9, first_cell=2e-3, growth=1.4, far_field=8.0)
 
@@ -100,7 +100,7 @@ def test_its_surface_is_closed(whole: Grid) -> None:
 
 
 def test_the_number_of_cells_is_that_of_both_halves() -> None:
-    request = aircraft_request(cells=400_000, span=9, first_cell=1e-2, growth=1.4, far_field=8.0)
+    request = AircraftRequest.of(cells=400_000, span=9, first_cell=1e-2, growth=1.4, far_field=8.0)
     made, _, notes = aircraft_grid(replace(aircraft(), half=False), request)
     cells = sum(int(np.prod([count - 1 for count in block.counts])) for block in made.blocks)
     assert cells == pytest.approx(400_000, rel=0.2), notes

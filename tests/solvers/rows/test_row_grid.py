@@ -14,7 +14,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.pipeline.rows import make_row
 from meshonet.solvers.rows.key_tables import key_tables
-from meshonet.solvers.rows.request import RowRequest, row_request
+from meshonet.solvers.rows.request import RowRequest
 
 FIRST = 1e-3
 GAPS = {"none": (0.0, 0.0), "tip": (0.02, 0.0), "hub": (0.0, 0.02)}
@@ -162,4 +162,4 @@ def test_bits_do_not_depend_on_the_number_of_threads() -> None:
 )
 def test_parameters_out_of_range_are_refused(parameters, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        row_request(**parameters)
+        RowRequest.of(**parameters)
