@@ -98,6 +98,9 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
 
 def picture_format(output: str, to_format: str | None = None) -> Format:
     """Return the format of a picture `output`; ``-`` is ``png``. Raises InputError: not a picture."""
+    named = to_format or BY_SUFFIX.get(Path(output).suffix.lower()) or not Path(output).suffix
+    if not (named or output == "-"):
+        raise InputError("is no picture", "use .png, .svg, .pdf or .html", source=printable(output))
     record = format_for_output(output, to_format or ("png" if output == "-" else None))
     if record.name not in ("png", "svg", "pdf", "html"):
         raise InputError(f"{record.name} is no picture", "use .png, .svg, .pdf or .html", source=output)

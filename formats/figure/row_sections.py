@@ -39,7 +39,7 @@ class RowSections:
         names = {patch.name for patch in self.grid.patches}
         if self.grid.form != "volume" or not {"hub", "shroud"} <= names:
             problem = "the grid is no blade row with patches hub and shroud"
-            raise InputError(problem, "use {slice}", parameter="span")
+            raise InputError(problem, "use {slice}")
 
     @cached_property
     def pitch(self) -> float:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 COMPARE = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}
 NO_MORE: Mapping[str, Figure] = MappingProxyType({})
+NEEDED = {"y_plus": "{reynolds}", "relative_l2": "{compare}", "near_wall": "{compare}"}
+"""Parameters without which there are no such figures."""
 _STATISTICS = ("min", "mean", "max", "p01", "p99")
 _GATE = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*(>=|<=|>|<)\s*([-+.\w]+)\s*", re.ASCII)
 
@@ -136,6 +138,9 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
         )
     metric, statistic, compare = match[1], match[2], match[3]
     names = ("folded", *ALL_NAMES, "bezier_folded", *FIGURES, *more)
+    if metric not in names and metric in NEEDED:
+        needed = NEEDED[metric]
+        raise InputError(f"{metric} needs {needed}", f"use quality {needed}", parameter="fail_on")
     if metric not in names:
         known = meant(metric, names) + "use one of " + ", ".join(names)
         raise InputError(f"metric {metric!r} is not known", known, parameter="fail_on")

@@ -96,7 +96,7 @@ class Sampling:
     def __post_init__(self) -> None:
         for name, count in (("ni", self.ni), ("nj", self.nj), ("nk", self.nk)):
             if count is not None and not 2 <= count <= MOST_NODES:
-                raise InputError(f"{name} is {count} nodes", f"use 2 to {MOST_NODES}")
+                raise InputError(f"{name} = {count}", f"use 2 to {MOST_NODES}", parameter="res")
         for what, name, known in (
             ("topology", self.topology, ("auto", *TOPOLOGIES)),
             ("spacing", self.spacing, SPACINGS),
@@ -115,11 +115,10 @@ class Sampling:
         if self.far_field is not None and not 0.0 < self.far_field < math.inf:
             raise InputError(f"{self.far_field:g} is no distance", "give e.g. 20", parameter="far_field")
         if self.wake is not None and not 0.5 <= self.wake <= 1e6:
-            raise InputError(f"the wake is {self.wake:g} chords long", "use 0.5 to 1e6")
-        if self.wake_nodes is not None and not 3 <= self.wake_nodes <= MOST_NODES:
-            raise InputError(f"the wake has {self.wake_nodes} nodes", f"use 3 to {MOST_NODES}")
-        if self.base_nodes is not None and not 3 <= self.base_nodes <= MOST_NODES:
-            raise InputError(f"the base has {self.base_nodes} nodes", f"use 3 to {MOST_NODES}")
+            raise InputError(f"{self.wake:g} chords", "use 0.5 to 1e6", parameter="wake")
+        for name, count in (("wake_nodes", self.wake_nodes), ("base_nodes", self.base_nodes)):
+            if count is not None and not 3 <= count <= MOST_NODES:
+                raise InputError(f"{count} nodes", f"use 3 to {MOST_NODES}", parameter=name)
         if self.corners is not None and len(set(self.corners)) != 4:
             problem = f"corners {self.corners} are not four different points"
             raise InputError(problem, "give four point indices")
@@ -139,7 +138,7 @@ class Sampling:
         """Radius of the far field in chords. Raises InputError: not above 1."""
         radius = DEFAULT_FAR_FIELD if self.far_field is None else self.far_field
         if not 1.0 < radius <= 1e6:
-            raise InputError(f"the far field is at {radius:g} chords", "use more than 1 and at most 1e6")
+            raise InputError(f"{radius:g} chords", "use more than 1 and at most 1e6", parameter="far_field")
         return radius
 
 

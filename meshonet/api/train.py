@@ -185,7 +185,7 @@ def _points(text: str) -> tuple[int, int] | None:
     if text == "all":
         return None
     if not (text.isascii() and text.isdigit() and 6 <= int(text) <= 10**7):
-        problem = f"{text!r} is not a number of places"
+        problem = f"{text!r} is not a number of points"
         raise InputError(problem, "use all or e.g. 1200", parameter="points")
     boundary = int(text) // 6
     return int(text) - boundary, boundary

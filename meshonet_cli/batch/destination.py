@@ -101,7 +101,7 @@ class Destination:
     def check_room(self, remedy: str = "") -> None:
         """Raise InputError, with `remedy`, if there are several inputs and the file stores one."""
         if not (self.each or self.format.many):
-            remedies = filter(None, (f"use -o '{_escaped(_pattern(self.text))}' or one .h5", remedy))
+            remedies = filter(None, (self._named("stem"), remedy))
             problem = f"several inputs and one {self.format.name} file, which holds one"
             raise InputError(problem, "; ".join(remedies), source=self.text)
 
@@ -144,8 +144,12 @@ class Destination:
         """Raise InputError if the output stores one result and the file of `item` has several."""
         if not (self.each or self.format.many):
             problem = f"holds several grids or boundaries, and a {self.format.name} file holds one"
-            remedy = f"use -o '{_escaped(_pattern(self.text, 'index'))}' or one .h5"
-            raise InputError(problem, remedy, source=item.source)
+            raise InputError(problem, self._named("index"), source=item.source)
+
+    def _named(self, field: str) -> str:
+        """Return the remedy: a pattern, or a dataset if the results fit into one."""
+        dataset = " or one .h5" if self.kind != "layouts" and self._put == self.format.write_grids else ""
+        return f"name the output '{_escaped(_pattern(self.text, field))}'{dataset}"
 
     def write(self, path: str, what: Iterable[Any]) -> None:
         """Write `what` to `path` atomically."""

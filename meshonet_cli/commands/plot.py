@@ -63,8 +63,8 @@ def plot(
     )] = None,
     span: Annotated[str | None, _option(
         "--span", metavar="S,...",
-        help="Draw sections of a blade row, side by side, at these fractions of the span: 0 is the hub, 1 "
-        "the shroud.",
+        help="Draw sections of a blade row, side by side, at these fractions of the span, between 0 (hub) "
+        "and 1 (shroud).",
     )] = None,
     meridional: Annotated[bool, _option(
         "--meridional",

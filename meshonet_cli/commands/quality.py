@@ -24,7 +24,7 @@ def quality(
     gates: o.GateOptions,
     plot: Annotated[str | None, _output(
         "--plot", metavar="F.png",
-        help="Draw the grid into this file (.png, .svg or .pdf), coloured by max_angle.",
+        help="Draw the grid, coloured by max_angle, into this picture, or several into '{stem}.png'.",
     )] = None,
     html: Annotated[str | None, _output(
         "--html", metavar="F.html",
@@ -33,7 +33,7 @@ def quality(
     )] = None,
     per_cell: Annotated[str | None, _output(
         "--per-cell", metavar="F.vts",
-        help="Write a file with all metrics of every cell: .vts, or .vtm for a multi-block grid.",
+        help="Write all metrics of every cell into this file: .vts, or .vtm for a multi-block grid.",
     )] = None,
     compare: Annotated[str | None, _check(
         "--compare", metavar="OTHER",

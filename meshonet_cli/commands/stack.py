@@ -63,8 +63,7 @@ def stack(
     )] = None,
     copies: Annotated[int | None, _sampling(
         "--copies", metavar="K", min=1,
-        help="Number of adjacent passages of a blade row; the number of blades gives the whole annulus. "
-        "[default: 1]",
+        help="Number of adjacent passages of a blade row, up to the number of blades. [default: 1]",
     )] = None,
     far_field: Annotated[float | None, _sampling(
         "--far-field", metavar="R",

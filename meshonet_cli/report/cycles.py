@@ -44,8 +44,7 @@ def followed(session: Session, history: str | None) -> Iterator[Callable[[Report
     """
     if history is not None:
         if Path(history).suffix.lower() != ".csv":
-            remedy = "name a file, F.csv"
-            raise InputError("cycles are written as a table of commas", remedy, source="--history")
+            raise InputError(f"{history!r} is no CSV file", "name it FILE.csv", source="--history")
         check_place(Path(history), history)
     cycles: list[tuple[str, Iterable[HistoryRow]]] = []
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from functools import partial
+from pathlib import Path
 
 from meshonet import __version__
 from meshonet.api.quality import quality
@@ -82,7 +83,7 @@ def measure_grids(
 
 
 def _page(output: str, gates: Sequence[Gate]) -> QualityPage:
-    if format_for_output(output).name != "html":
+    if Path(output).suffix.lower() not in (".html", ".htm"):
         raise InputError("a report is a page", "name it FILE.html", parameter="html", source=output)
     return QualityPage(gates, f"meshonet {__version__}")
 

@@ -133,7 +133,7 @@ def _check_apart(table: NodeTable, targets: NodeTargets) -> None:
             if contains(targets.nodes[other], targets.nodes[line[0]]) != before:
                 name, beyond = (_name(table.pieces, each[:2]) for each in (line, other))
                 raise InputError(
-                    f"{name} is moved to the other side of {beyond}", "keep it", parameter="wall"
+                    f"{name} is moved to the other side of {beyond}", "move it less", parameter="wall"
                 )
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from meshonet.geometry.arrays import TOPOLOGIES
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
 from meshonet.solvers.pipeline.methods import OneByOne
 from meshonet.solvers.pipeline.request import OneBlock
 from meshonet.solvers.solution import Solution
@@ -45,6 +46,8 @@ def _base(request: OneBlock) -> Method:
     best = request.by_network or request.method == "best"
     chosen = ":" in request.method or not set(NETWORK_SETTINGS).isdisjoint(request.chosen)
     if best and not chosen and {*NETWORK_SETTINGS, "answer"}.issuperset(request.settings):
+        if "answer" in request.chosen and not (request.at_walls or request.sides):
+            raise InputError("{answer} without a network", "give {model} as well, or drop {answer}")
         return Best()
     from meshonet.solvers.pipeline.named import UnknownSettingError, method_named
 

@@ -227,6 +227,10 @@ def test_the_plot_is_a_picture(meshonet: Meshonet, grid_vts: Path) -> None:
         (("--per-cell", "cells.h5"), "only .vts and .vtm files hold metrics; name it FILE.vts"),
         (("--plot", "grid.vts"), "vts is no picture; use .png, .svg, .pdf or .html"),
         (("--compare", "missing.vts"), "missing.vts: no such file"),
+        (("--plot", "grid.gif"), "grid.gif: is no picture; use .png, .svg, .pdf or .html"),
+        (("--html", "grid.txt"), "grid.txt: --html: a report is a page; name it FILE.html"),
+        (("--fail-on", "y_plus>2"), "--fail-on: y_plus needs --reynolds; use quality --reynolds"),
+        (("--fail-on", "near_wall>2"), "--fail-on: near_wall needs --compare; use quality --compare"),
         (("--pair", "name"), "--pair without --compare; give --compare as well, or drop --pair"),
         (("--profile",), "option '--profile' requires an argument; see meshonet quality --help"),
         (("--compare", "grid.vts", "--pair", "luck"), "'luck' is not one of 'auto', 'name', 'order'"),
@@ -318,7 +322,7 @@ def test_gates_look_at_comparisons(meshonet: Meshonet, three_h5: Path) -> None:
     assert "t.h5[flat]" not in done.err
     assert meshonet(*words, "boundary>1e-12").code == 0
     without = meshonet("quality", "t.h5", "--fail-on", "relative_l2>0.01")
-    assert (without.code, "metric 'relative_l2' is not known" in without.err) == (2, True)
+    assert (without.code, "relative_l2 needs --compare" in without.err) == (2, True)
     report = meshonet(*words[:-2], "--json", "--fail-on", "max>9").objects[0]["compare"]
     assert set(COMPARED) <= set(report)
 

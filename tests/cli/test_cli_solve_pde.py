@@ -137,7 +137,7 @@ def test_variational_around_a_body(meshonet: Meshonet, topology: str) -> None:
     [
         (
             ("--history", "cycles.txt"),
-            "--history: cycles are written as a table of commas; name a file, F.csv",
+            "no CSV file; name it FILE.csv",
         ),
         (("--refine", "9"), "'--refine': 9 is not in the range 0<=x<=8"),
         (

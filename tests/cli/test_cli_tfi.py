@@ -181,9 +181,9 @@ def test_when_every_member_fails_there_is_no_file(meshonet: Meshonet, folding_h5
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("three.h5", "-o", "one.vts"), "and a vts file holds one; use -o 'one-{index}.vts'"),
-        (("three.h5", "duct.h5", "-o", "one.vts"), "several inputs and one vts file, which holds one; use"),
-        (("three.h5", "duct.h5", "-o", "one.vts"), "or one .h5; the walls of one channel belong in one file"),
+        (("three.h5", "-o", "one.vts"), "and a vts file holds one; name the output 'one-{index}.vts'"),
+        (("three.h5", "duct.h5", "-o", "one.vts"), "several inputs and one vts file, which holds one; name"),
+        (("three.h5", "duct.h5", "-o", "one.vts"), "one .h5; the walls of one channel belong in one file"),
         (("three.h5", "-o", "{stem}.vts"), "would overwrite three.vts of three.h5[flat]; put {index} into"),
         (("duct.h5", "-o", "{shape}.vts"), "has a field that is not known; use {stem}, {index} or {name}"),
         (("duct.h5", "-o", "{stem.vts"), "has a field that is not known"),

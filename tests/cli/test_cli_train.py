@@ -189,7 +189,7 @@ def test_a_model_of_one_family_is_not_for_another_topology(meshonet: Meshonet, a
             ("--split", "words.txt"),
             "--split: words.txt has 2 words for 8 grids; write train or test for each",
         ),
-        (("--points", "few"), "--points: 'few' is not a number of places; use all or e.g. 1200"),
+        (("--points", "few"), "--points: 'few' is not a number of points; use all or e.g. 1200"),
         (("--set", "sensors"), "--set: 'sensors' is not NAME=VALUE"),
         (("--set", "colour=1"), "meshonet has no setting 'colour'; use one of sensors"),
         (("--rate", "7"), "--rate: 7 is no learning rate"),

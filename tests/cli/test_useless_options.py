@@ -52,6 +52,14 @@ def test_a_fallback_without_a_network_is_refused(meshonet: Meshonet) -> None:
     assert not Path("none.h5").exists()
 
 
+@pytest.mark.parametrize("answer", ["raw", "pasted"])
+def test_an_answer_without_a_network_is_refused(meshonet: Meshonet, answer: str) -> None:
+    done = meshonet("infer", "naca:2412", "--answer", answer, "-o", "none.h5")
+    assert done.code == 2
+    assert done.err == "error: --answer without a network; give --model as well, or drop --answer\n"
+    assert not Path("none.h5").exists()
+
+
 MARCHED = ("naca:2412", "--res", "81x31", "--wall-spacing", "1e-4", "-o", "none.h5")
 
 

@@ -97,8 +97,8 @@ def test_history_of_refined_grids_has_every_level(meshonet: Meshonet, duct_h5: P
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("h.txt", "--history: cycles are written as a table of commas; name a file, F.csv"),
-        ("-", "--history: cycles are written as a table of commas; name a file, F.csv"),
+        ("h.txt", "--history: 'h.txt' is no CSV file; name it FILE.csv"),
+        ("-", "--history: '-' is no CSV file; name it FILE.csv"),
         ("none/h.csv", "none/h.csv: its folder does not exist"),
     ],
 )

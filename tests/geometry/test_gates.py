@@ -56,7 +56,7 @@ def test_a_gate_may_name_a_figure_beside_the_metrics() -> None:
     assert message == "relative_l2 is 0.02, which fails {fail_on} 'relative_l2>1e-2'"
     with pytest.raises(InputError, match="statistic 'mean' is not known; use no statistic with relative_l2"):
         parse_gate("relative_l2.mean>1e-2", ("relative_l2",))
-    with pytest.raises(InputError, match="metric 'relative_l2' is not known; use one of folded, max_angle"):
+    with pytest.raises(InputError, match="relative_l2 needs compare; use quality compare"):
         parse_gate("relative_l2>1e-2")
 
 

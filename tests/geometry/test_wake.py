@@ -175,8 +175,8 @@ def test_parts_nobody_named_are_told_by_the_nodes() -> None:
             {"ni": 20, "wake_nodes": 9},
             "twice 9 of them on the wake, leave too few for the wall; use at least 21",
         ),
-        ({"wake": 0.1}, "the wake is 0.1 chords long; use 0.5 to 1e6"),
-        ({"wake_nodes": 2}, "the wake has 2 nodes; use 3 to 100000"),
+        ({"wake": 0.1}, "wake: 0.1 chords; use 0.5 to 1e6"),
+        ({"wake_nodes": 2}, "wake_nodes: 2 nodes; use 3 to 100000"),
         ({"topology": "quad"}, "topology quad is not made from an airfoil; use o or c"),
     ],
 )

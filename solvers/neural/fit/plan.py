@@ -42,7 +42,7 @@ class Plan:
 
     def __post_init__(self) -> None:
         if not 0 < self.rate < 1:
-            raise InputError(f"{self.rate:g} is no learning rate", "use 0 to 1, e.g. 0.001", parameter="rate")
+            raise InputError(f"{self.rate:g} is no learning rate", "use 0.001, say", parameter="rate")
 
     @property
     def recipe(self) -> dict[str, Any]:
