@@ -247,7 +247,7 @@ four-sided domains. For the method see [neural operators](../theory/operators.md
 
 - `quad-general` predicts the variational grid, `quad-winslow` Winslow's grid. *n steps* and *n cycles* are
   `--polish n`: iterations of the variational method, or multigrid cycles for Winslow's grid.
-- *4 Picard steps, 33*: the grid that the network corrects, without the network: four Picard steps for
+- *4 Picard steps, 33*: the input of the network, without its correction: four Picard steps for
   Winslow's equations on 33 x 33 nodes.
 - *valid*: share of grids without a folded cell, before repair.
 - *no worse than Winslow*: share of grids that are valid, and in which neither the maximum nor the mean angle

@@ -123,7 +123,7 @@ def times(sizes: list[int]) -> str:
             "interpolation, linear": partial(interpolate, faces, uniform_laws(faces.counts), out=out),
             "interpolation, arc length": partial(interpolate, faces, arc_laws(faces), out=out),
             "spline of a 33³ grid: evaluation only": partial(interpolate, faces, laws, spline, out),
-            "spline of a 33³ grid: coefficients, memory and evaluation": partial(
+            "spline of a 33³ grid: coefficients, allocation and evaluation": partial(
                 refine_volume, planes, few, faces, laws
             ),
             "test of all corner Jacobians": partial(count_folded, np.moveaxis(out, 0, -1)),

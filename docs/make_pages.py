@@ -220,7 +220,7 @@ def strip_figures(figures: dict[str, Any], _: str) -> list[str]:
         "[conformal map](../theory/o-grids.md) takes each domain to a strip. The error is the root mean",
         "square distance from Winslow's solution in the strip, in radians. *base* is the initial grid (the",
         "harmonic extension of the boundary), which the network corrects. *n Picard* adds n Picard steps",
-        "towards Winslow's solution. The weights of the network are in float16.\n",
+        "towards Winslow's solution. The weights are stored in float16.\n",
         "| method | median | 90th percentile | maximum |",
         "| --- | --- | --- | --- |",
     ]
@@ -232,9 +232,10 @@ def strip_figures(figures: dict[str, Any], _: str) -> list[str]:
 
 def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     """Return the held-out errors of a network for four-sided domains or bodies."""
-    counts = "33 x 33" if topology == "quad" else "65 x 33"
+    bodies = topology != "quad"
+    counts, domains = ("65 x 33", "domains around bodies") if bodies else ("33 x 33", "four-sided domains")
     lines = [
-        f"The held-out samples are {figures['domains']} random domains. One network predicts both the",
+        f"The held-out samples are {figures['domains']} random {domains}. One network predicts both the",
         "variational grid and Winslow's grid. Errors are relative L2 distances from the solver's grid",
         f"on {counts} nodes, without solver iterations after the network. *initial* is the",
         "median error of the initial grid, which the network corrects; *valid* is the share of grids",
@@ -252,9 +253,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "The variational grid reduces the largest angles of cells, compared with Winslow's grid. The\n"
-        f"predicted grid reaches {100 * gain['mean_gain']:.0f} % of the reduction of their mean over the\n"
-        f"cells, and {100 * gain['max_gain']:.0f} % of the reduction of their maximum.",
+        "In the variational grid the largest angles of cells are smaller than in Winslow's grid. The\n"
+        f"predicted grid reaches {100 * gain['mean_gain']:.0f} % of this reduction for the mean over the\n"
+        f"cells, and {100 * gain['max_gain']:.0f} % for the maximum.",
     ]
     return lines
 

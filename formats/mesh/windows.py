@@ -17,9 +17,9 @@ _SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.ite
 
 
 class FaceWindow(NamedTuple):
-    """A range of a block's face, given by the indices, from 0, of the first and the last node in the file.
+    """A rectangle of nodes on a face of a block, as a file gives it: indices, from 0, of two opposite corners.
 
-    The last node may precede the first, as in descriptions of connected ranges.
+    An index may be smaller at the last corner than at the first: files describe connections in this way.
     """
 
     block: int

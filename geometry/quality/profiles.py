@@ -104,7 +104,7 @@ class ProfileReport:
         return replace(self, results=_once(result.under(gates) for result in self.results))
 
     def replaced(self) -> list[str]:
-        """Return each limit of a gate that replaces a limit of the profile: ``box_ratio > 4000``."""
+        """Return the limits that replace limits of the profile, as texts such as ``box_ratio > 4000``."""
         return [
             f"{result.check.figure} {limit.compare} {limit.value:g}"
             for result in self.results
