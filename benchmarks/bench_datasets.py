@@ -75,8 +75,8 @@ takes about ten milliseconds for a thousand parts and grows with their number. P
 to 1,000 grids or 256 MiB. A part holds 500 grids of 200 x 100 nodes, so a million such grids are 2,000 parts.
 
 Once the packages are imported, both formats take milliseconds. meshonet uses HDF5 for two reasons. The same
-ten lines of h5py, MATLAB or Julia read an index file, a single part, or a dataset without parts. And meshonet needs no
-further package.
+ten lines of h5py, MATLAB or Julia read an index file, a single part, or a dataset without parts. And
+meshonet needs no further package.
 """
 READER = """
 import json, sys, time, h5py

@@ -17,7 +17,7 @@ _SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.ite
 
 
 class FaceWindow(NamedTuple):
-    """A rectangle of nodes on a face of a block, as a file gives it: indices, from 0, of two opposite corners.
+    """A rectangle of nodes on a face of a block: indices, from 0, of two opposite corners.
 
     An index may be smaller at the last corner than at the first: files describe connections in this way.
     """

@@ -36,7 +36,7 @@ def straight_near(lines: Floats, away: Floats) -> Floats:
 
 
 def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
-    """Return s, theta `values` (k, m, 2) of nodes, moved along k columns to a first-cell height `first` in space.
+    """Return s, theta `values` (k, m, 2), moved along k columns to a first-cell height `first` in space.
 
     `space` (k, m, 3) are x, y, z of the nodes. The displacements fade to zero at the outer ends.
     """
