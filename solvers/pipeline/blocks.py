@@ -124,8 +124,13 @@ def _blade(shape: Shape, sampling: Sampling) -> DomainShape:
 
 def _check_single(request: GridRequest, asks: tuple[str, ...]) -> bool:
     """Return whether an option asks for a single block. Raises InputError if others `asks` for many."""
-    given = {"topology": request.sampling.topology != "auto", "corners": request.sampling.corners is not None}
-    single = [name for name, used in {"blocks": request.blocks == "single", **given}.items() if used]
+    sampling = request.sampling
+    uses = {
+        "blocks": request.blocks == "single",
+        "topology": sampling.topology != "auto",
+        "corners": sampling.corners is not None,
+    }
+    single = [name for name, used in uses.items() if used]
     if single and asks:
         problem = f"{{{asks[0]}}} asks for many blocks and {{{single[0]}}} for one"
         raise InputError(problem, "give one of them")

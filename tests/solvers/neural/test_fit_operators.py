@@ -42,8 +42,8 @@ def fit(output: Path, plan: Plan = SMALL, samples: Samples | None = None, **rest
     kind = str(rest.pop("kind", "meshonet"))
     own = settings_of(architecture(kind, samples.topology))
     sizes = SMALLER.get(kind) or {name: size for name, size in SIZES.items() if name in own}
-    given = {"recipe": {}, "report": reports.append, "settings": sizes, **rest}
-    train(kind, samples, output, plan, ALONE, **given)  # type: ignore[arg-type]
+    options = {"recipe": {}, "report": reports.append, "settings": sizes, **rest}
+    train(kind, samples, output, plan, ALONE, **options)  # type: ignore[arg-type]
     return reports
 
 
