@@ -10,7 +10,7 @@ Request = TypeVar("Request")
 
 
 def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) -> Request:
-    """Return a request of class `kind`; ``wall_spacing`` is ``first_cell``.
+    """Return a request of class `kind`; ``wall_spacing`` is another name of ``first_cell``.
 
     `what` is the kind of grid in messages, such as ``a row``.
 

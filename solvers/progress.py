@@ -94,7 +94,7 @@ class History:
         )
 
     def of(self, solution: Solution) -> tuple[HistoryRow, ...]:
-        """Return the rows of the method of `solution`; one, with its result, for a method without cycles."""
+        """Return the recorded rows of the solution's method; without cycles, one row with the result."""
         rows = tuple(row for row in self._rows if row.method == solution.method)
         if rows:
             return rows

@@ -75,7 +75,7 @@ class Solution:
 
 
 def timed(solve: Callable[P, Solution]) -> Callable[P, Solution]:
-    """Return `solve` with the seconds of each call in its solution, as the stage ``grid``."""
+    """Return `solve`, changed to add the seconds of each call to its solution as the stage ``grid``."""
 
     @wraps(solve)
     def run(*args: P.args, **kwargs: P.kwargs) -> Solution:

@@ -27,7 +27,7 @@ class SparsePattern:
 
     Attributes
     ----------
-    arrays : the pattern in the form of the kernels.
+    arrays : the pattern as arrays for compiled code.
     slot : (m,) index of the distinct entry to which each entry is added.
     entries : number of distinct entries.
 

@@ -26,7 +26,7 @@ class VolumeRequest(FirstCell):
 
     @classmethod
     def of(cls, **parameters: Any) -> Self:
-        """Return a request with the parameters as its fields; ``wall_spacing`` is ``first_cell``.
+        """Return a request with these fields; ``wall_spacing`` is another name of ``first_cell``.
 
         Raises InputError: a value out of its range; an unknown parameter.
         """

@@ -73,12 +73,12 @@ class BodyMap:
         return np.clip(_between(self._arcs, along, np.zeros_like(s))[:, 0], 0.0, self.body.length)
 
     def around(self, places: Floats) -> Floats:
-        """Return the length in space (...) of one radian of theta at s, theta, zeta (..., 3)."""
+        """Return the length in space (...) of one radian of theta at the `places` s, theta, zeta (..., 3)."""
         points = self.points(places)
         return np.hypot(points[..., 1] - self.body.y, points[..., 2])
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angle (...) in radians from the z axis to the cross-section at `places` (..., 3)."""
+        """Return the angle (...) in radians between the z axis and the cross-section at `places` (..., 3)."""
         return np.minimum(places[..., 1], np.pi - places[..., 1])
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:

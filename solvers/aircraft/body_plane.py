@@ -40,7 +40,7 @@ _POLE_CELL = 0.5  # ratio of the cells at nose and tail to the cells beside the 
 
 @dataclass(frozen=True, eq=False)
 class LevelPlan:
-    """Numbers of cells that are the same on all levels, and the ends of the body."""
+    """Numbers of cells, the same on all levels (surfaces around the body), and the ends of the body."""
 
     columns: tuple[ColumnPlan, ...]  # plans of the columns, from nose to tail
     between: tuple[int, ...]  # number of cells between each column and the next
@@ -58,7 +58,7 @@ class LevelPlan:
 
     @property
     def collar_patches(self) -> tuple[int, ...]:
-        """For each wing and fin, the index of the patch that is the collar."""
+        """For each wing and fin, the index of its collar, the patch of cells around its section."""
         out, begin = [], 0
         for column in self.columns:
             out += [begin, begin + column.patches - 1][: len(column.collars)]
@@ -75,7 +75,7 @@ def planned(
     ----------
     space : map around the body.
     holes : sections of wings, by column from nose to tail, by wing in the column, and by level; the first
-        level is the body.
+        level is the body. A column has one wing, or a wing and the fin above it.
     first, growth : height of first cells, and largest growth ratio.
     """
     plans, levels = zip(*(planned_column(each, first, growth) for each in holes), strict=True)
@@ -136,8 +136,8 @@ def _level_with_fin(columns: Sequence[ColumnPlan], plans: Sequence[ColumnPlan]) 
 def level_patches(space: BodyMap, plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floats]:
     """Return the patches (ni, nj, 3), in s, theta, zeta, of one level around the sections `holes`.
 
-    In order: patches of the columns from nose to tail; patches between columns; rows and core of the nose;
-    rows and core of the tail.
+    First come the patches around wings, from nose to tail, then those between wings, then two each at nose
+    and tail: rows of cells, and a core that covers the tip.
     """
     levels = _beside_fins([ColumnLevel.of(*each) for each in zip(plan.columns, holes, strict=True)])
     patches = [patch for level in levels for patch in level.patches()]
@@ -182,10 +182,10 @@ class BodyEnd:
 
     @classmethod
     def of(cls, points: Points, sides: Sequence[Side]) -> Self:
-        """Return the end beside the first or last column of wings.
+        """Return the end of the grid beside the first or last wing.
 
-        `sides` are the nodes on the side of the column, on some levels, the first on the body. s is measured
-        from the pole.
+        `sides` are the nodes on the nearer side of the wing's patches, for some levels; the first level is
+        the body. s is measured from the pole, the tip of nose or tail.
         """
         nodes, cells = sides[0]
         way, last = min((float(nodes[k, 0]), float(cells[k])) for k in (0, -1))
@@ -211,7 +211,7 @@ class BodyEnd:
         return begin, side, np.full(len(side), self.step), last
 
     def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
-        """Return two patches (., ., 3), rows and core, between the `side` (n, 3) of a column and the pole.
+        """Return two patches (., ., 3) up to the `side` (n, 3) of a column: rows, and a core at the pole.
 
         `last` (n,) are the lengths in s of the cells at the side. Nodes are s, theta, zeta, with s from the
         pole; `points` maps nodes to space.

@@ -64,11 +64,11 @@ def rectangle(section: Floats, within: Within, scale: Floats) -> Rectangle:
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
-    """Return after how many nodes of a `root` lines lead to the corners of the rectangle `box`.
+    """Return how many nodes are on the `root` section up to the lines to the corners of the rectangle `box`.
 
-    The first number is counted from the middle of the trailing edge, the second from the nose, both upwards
-    and downwards. Numbers are at least `fewest`. They are chosen so that cells beside a corner have similar
-    lengths, and normals of the root point most directly to the corners.
+    The first number counts from the middle of the trailing edge, the second from the nose, both on either
+    side. They are at least `fewest`, and such that cells beside a corner have similar lengths, and normals of
+    the root point most directly to the corners.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
@@ -147,7 +147,8 @@ def collar(
     Parameters
     ----------
     first, last : lengths of cells at the root, and (n,) at the outer loop.
-    straight : 0 for the lines of an elliptic grid, 1 for parabolas along the normals of the root, or between.
+    straight : shape of the lines: 0 as in an elliptic grid, 1 parabolas normal to the root, in between a
+        mean.
     """
     arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)
@@ -185,7 +186,7 @@ def _rows(arcs: Floats, rows: int, first: float, last: Floats) -> Floats:
 
 
 def lengths(root: Floats, outer: Floats) -> Floats:
-    """Return the lengths (n,) of the lines of a collar between two loops (n, 2)."""
+    """Return the lengths (n,) of the lines that join the loops `root` and `outer` (n, 2) in a collar."""
     return _lines(root, outer)[0][:, -1]
 
 

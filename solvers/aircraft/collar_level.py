@@ -57,7 +57,7 @@ class Hole:
 
     @property
     def bands(self) -> tuple[float, float]:
-        """Lengths in space from the rectangle down and up, to keel and crown or to the next wing."""
+        """Lengths in space below and above the rectangle, up to keel, crown or the next wing."""
         bottom, top = (theta * float(self.scale[1]) for theta in (self.below, self.within[1][1]))
         if self.fin:
             top = self.box.high + self.box.low - bottom
@@ -91,9 +91,9 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> tuple[CollarPlan, list[CollarLevel]]:
-    """Return the plan for the collars around `holes`, sections of a wing from the root on, and the collars.
+    """Return the plan for collars (cells around the sections `holes` of a wing, root first), and these.
 
-    The plan has the fewest cells above and below the collars.
+    Above and below the collars it has as few cells as the permitted growth allows.
     """
     edge, nose = corners
     plan = CollarPlan(edge, nose, 4, FEWEST, FEWEST, first)
@@ -118,7 +118,7 @@ def planned_collar(
 
 @dataclass(frozen=True, eq=False)
 class CollarLevel:
-    """The collar of a wing on one level, and the sizes of cells around it."""
+    """The collar (cells around a wing's section) on one level, and the lengths of cells next to it."""
 
     # plan, hole: numbers of cells, and the section
     plan: CollarPlan
@@ -223,7 +223,7 @@ class CollarLevel:
         return s[half + nose : 2 * half - edge + 1][::-1], s[edge : half - nose + 1]
 
     def collar(self) -> Floats:
-        """Return the nodes (n, rows + 1, 2) of the collar; of a fin, only from nose to trailing edge."""
+        """Return the nodes (n, rows + 1, 2) of the collar; for a fin, those from nose to trailing edge."""
         ring = self.ring / self.hole.scale
         if not self.hole.fin:
             return ring

@@ -91,7 +91,7 @@ class ColumnPlan:
 def planned_column(
     holes: Sequence[Sequence[Hole]], first: float, growth: float
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
-    """Return the plan for the column around `holes`, by wing and level, and the column on each level."""
+    """Return the plan for the column of cells around `holes` (by wing and level), and it on each level."""
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)
     plan = ColumnPlan(collars, holes[-1][0].fin)
@@ -126,12 +126,12 @@ class ColumnLevel:
         return replace(self, plan=plan, levels=tuple(levels))
 
     def beside_fin(self, fin: ColumnLevel) -> ColumnLevel:
-        """Return this column of a wing, with zeta at the crown halfway between zeta of wing and `fin`."""
+        """Return this column of a wing, with zeta at the crown halfway to that of a neighbouring `fin`."""
         zeta = self.zeta
         return replace(self, crown=zeta + 0.5 * (fin.levels[-1].hole.zeta - zeta))
 
     def beside_wing(self, wing: ColumnLevel, side: Side) -> ColumnLevel:
-        """Return this column of a fin; nodes below it get nearly the theta of nodes on a wing's `side`."""
+        """Return this column of a fin; theta below the fin becomes nearly that of a wing's `side`."""
         own, others = self.low, side[0][: len(self.low), 1]
         keel = self.zeta + _FOLLOWING * (wing.zeta - self.zeta)
         return replace(self, below=_followed(own, others), keel=keel)
@@ -147,7 +147,7 @@ class ColumnLevel:
         return self.levels[0].low_and_top[0] if self.below is None else self.below
 
     def above(self) -> tuple[float, tuple[float, float]]:
-        """Return the length in space between the collars of wing and fin, and of the end cells there."""
+        """Return the length in space between the collars of wing and fin, and lengths of its end cells."""
         wing, fin = self.levels
         low, high = self._gap
         rho = 0.5 * float(wing.hole.scale[1] + fin.hole.scale[1])

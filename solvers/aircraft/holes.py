@@ -25,10 +25,10 @@ _PART = 2.0 / 3.0  # a collar takes at most half of this fraction of the distanc
 def columns_of(
     space: BodyMap, wings: Sequence[WingLines], sections: Sequence[Floats]
 ) -> tuple[tuple[int, ...], ...]:
-    """Return the indices of the wings of each column, from nose to tail.
+    """Return the indices of wings, grouped in columns, from nose to tail.
 
-    A fin above a wing, or close to the wing along the body, is in the column of the wing. `sections` are the
-    sections (k, n, 3) of each wing on k key levels.
+    A fin above a wing, or close to it along the body, is in the wing's column. `sections` are the sections
+    (k, n, 3) of each wing on k key levels.
 
     Raises InputError: a fin above two wings.
     """
@@ -95,7 +95,7 @@ def _room(before: _Along, after: _Along, clear: float = _CLEAR) -> tuple[Floats,
 def holes_of(
     space: BodyMap, columns: Sequence[Sequence[WingLines]], sections: Sequence[Sequence[Floats]]
 ) -> tuple[tuple[tuple[Hole, ...], ...], ...]:
-    """Return the holes, which are sections of wings, by column from nose to tail, wing and key level.
+    """Return the sections of wings (holes), by column from nose to tail, by wing, and by key level.
 
     `sections` (k, n, 3) are the sections of each wing on these levels.
 

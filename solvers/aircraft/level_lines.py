@@ -22,8 +22,8 @@ def lines_between(
 ) -> Floats:
     """Return nodes (n, cells + 1, 3) of s, theta, zeta on lines from `begin` to `end` (n, 3).
 
-    `sizes` (n,) are the differences in s over the first and the last cell. Between them, lengths in x, y, z
-    change smoothly.
+    `sizes` (n,) are the differences in s over the first and the last cell. Between them, the lengths of cells
+    in space change smoothly.
     """
     lines, arcs, ends = _measured(points, begin, end, sizes)
     nodes = sampled(lines, arcs, smooth_arcs(arcs[:, -1], ends, cells))

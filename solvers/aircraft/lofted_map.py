@@ -74,11 +74,11 @@ class LoftedMap(BodyMap):
         return super().places(lowered)
 
     def around(self, places: Floats) -> Floats:
-        """Return the length in space (...) of one radian of theta at s, theta, zeta (..., 3)."""
+        """Return the length in space (...) of one radian of theta at the `places` s, theta, zeta (..., 3)."""
         return np.asarray(norms(self._around(places)))
 
     def steepness(self, places: Floats) -> Floats:
-        """Return the angle (...) in radians from the z axis to the cross-section at `places` (..., 3)."""
+        """Return the angle (...) in radians between the z axis and the cross-section at `places` (..., 3)."""
         around = np.abs(self._around(places))
         return np.asarray(arctan2(around[..., 1], around[..., 2]))
 

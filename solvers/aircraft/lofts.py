@@ -29,7 +29,7 @@ class Loft:
 
 
 def section_loft(stack: Stack, unit: Floats) -> Loft:
-    """Return the lines through nodes `unit` (sections, n, 2) around the sections of a wing."""
+    """Return lines along the span through nodes `unit` (sections, n, 2) around sections of unit chord."""
 
     def line(number: int, z: Floats) -> Floats:
         return stack.lofted(unit[:, number : number + 1], z)[:, 0]
@@ -41,7 +41,7 @@ def section_loft(stack: Stack, unit: Floats) -> Loft:
 def fin_loft(fin: Fin, unit: Floats) -> Loft:
     """Return the lines of the half z >= 0 of a fin, from nose to trailing edge; heights are along y.
 
-    `unit` (sections, n, 2) are nodes around its sections.
+    `unit` (sections, n, 2) are nodes around its sections at unit chord.
     """
     half = (unit.shape[1] - 1) // 2
     upper, lower = unit[:, half::-1], unit[:, half:]

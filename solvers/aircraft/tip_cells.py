@@ -38,10 +38,10 @@ def arcs_beyond(lengths: Floats, first: Floats, cells: int) -> Floats:
 
 
 def last_cells(points: Floats, section: Indices, even: Floats, first: float, growth: float) -> Floats:
-    """Return the heights (p,) of cells at the level of the tip, on lines through `points` (p, 3).
+    """Return the heights (p,) of cells at the level of the wing tip, on lines through `points` (p, 3).
 
-    Heights are `first` on the wing, which lines `section` reach. Far away heights are between `first` and
-    `even` (p,).
+    Heights are `first` on the lines `section`, which reach the wing. With the distance from the wing they
+    rise, to between `first` and `even` (p,).
     """
     wing = points[section]
     away = np.array([norms(wing - point).min() for point in points])

@@ -42,7 +42,7 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
 
 
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
-    """Return `points` (k, p, 3), moved so that the lines of a collar are normal to the span.
+    """Return `points` (k, p, 3), moved so that lines of cells around a wing are normal to the span.
 
     `ring` (n, m) are the indices of the lines of the collar; first cells are `first` high.
     """
@@ -73,8 +73,8 @@ def across_tip(
 ) -> tuple[Floats, Floats]:
     """Return the nodes `low` below and `high` beyond a tip, moved so that cells at the tip are less oblique.
 
-    In the collar `ring` (n, m) the level of the tip is turned towards a right angle to the lines through it.
-    Displacements fade to 0 at the ends of the lines. First cells stay `first` high.
+    In the collar `ring` (n, m), the cells around the wing, the level of the tip becomes more nearly normal to
+    the lines through it. Displacements fade to 0 at the ends of the lines. First cells stay `first` high.
     """
     level = high[0, ring]
     along, lines = wing.axis, low[-1, ring[:, 0]] - low[-2, ring[:, 0]]
@@ -111,8 +111,8 @@ def _chord(edge: Floats, wing: WingLines) -> float:
 def off_tip(points: Floats, cap: Indices, ring: Indices, wing: WingLines) -> Floats:
     """Return `points` (k, p, 3) of lines beyond a tip, moved so that lines leave the tip along normals.
 
-    The tip is at k = 0. `cap` (c,) are indices of lines on the tip. `ring` (n, m) are indices of lines in the
-    collar around the tip, which turn less.
+    The tip is at k = 0. `cap` (c,) are indices of lines on the tip, `ring` (n, m) of lines around the tip,
+    which turn less.
     """
     apart = arc_lengths(points[0, ring])
     fade = 1.0 - apart / apart[:, -1:]

@@ -15,7 +15,7 @@ STEEPEST = 8.0  # largest ratio of the largest to the smallest cell along an edg
 
 
 class WantedCounts:
-    """Target cell counts of chords (rows of blocks), for metrics that share points but differ in sizes."""
+    """Target cell counts of chords (rows of blocks), for target sizes that are given at the same points."""
 
     def __init__(self, chords: Chords, metric: SizeMetric) -> None:
         self.chords = chords

@@ -120,7 +120,7 @@ class Cascade:
 
     @property
     def kept(self) -> float:
-        """Largest thickness of layers over `thickness`; below 1 if layers were thinned to unfold cells."""
+        """Largest thickness of the layers, divided by `thickness`; below 1 if thicker layers had folded."""
         return min(float(self.ring.thickness.max()) / self.thickness, 1.0)
 
     @cached_property

@@ -106,7 +106,8 @@ def passage_optimum(
 ) -> Layout:
     """Return the layout of a passage with optimised nodes; `metric` has target cell sizes.
 
-    The two end nodes of the cut, and the nodes in the mask `held` (n,), do not move.
+    The cut is the grid line at which the passage repeats. Its two end nodes, and the nodes in the mask `held`
+    (n,), do not move.
     """
     mesh = layout.mesh
     ends = (mesh.places.loop >= 0) & mesh.tied

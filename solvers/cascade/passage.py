@@ -152,7 +152,7 @@ def _crossings(polygon: Floats, x: float) -> Floats:
 def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
     """Return the layout of the passage with `rows` attached; its domain has periodic sides and the `wall`.
 
-    `cut` (k,) are the nodes on the lower side of the cut, from inlet to outlet.
+    `cut` (k,) are the nodes on the lower side of the cut (where the passage repeats), from inlet to outlet.
     """
     mesh = layout.mesh
     count = len(mesh.nodes)

@@ -38,7 +38,7 @@ _FEET = 1e3  # positions in the plane G of the nodes on the blade, which have no
 
 
 def template(passage: Passage, *, at_corners: bool) -> Layout:
-    """Return a layout of a passage; if `at_corners`, nodes near the blade's corners are moved to them."""
+    """Return initial blocks of a passage; if `at_corners`, nodes near the blade's corners move there."""
     flow = PassageFlow.of(passage.zeta(passage.front.curve.points))
     pieces, angles = _pieces(flow, passage)
     potential, blocks = _joined_pieces(pieces)
@@ -160,5 +160,5 @@ def _blade_arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
 
 
 def cut_of(layout: Layout) -> Indices:
-    """Return the nodes (k,) on the lower side of the cut of a `template`, ordered from inlet to outlet."""
+    """Return the nodes (k,) on the lower periodic side (of the cut) of a `template`, from inlet to outlet."""
     return np.concatenate([layout.blocks[2][:, 0], layout.blocks[4][1:, 0], layout.blocks[7][1:, 0]])

@@ -16,10 +16,10 @@ SWEEPS = 3  # over the corners, which influence each other a little
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Return weights (n, corners) along the wall, and for each corner a shift of phi, to be weighted.
+    """Return weights (n, corners) at wall nodes, and a shift of phi for each corner; both are multiplied.
 
-    With these shifts the first grid line at each corner bisects the angle of the corner in the plane. `wall`
-    (n,) are nodes in the plane, counter-clockwise, and `corners` indices into it.
+    Shifted in the strip by these products, the first grid line at each corner bisects its angle in the plane.
+    `wall` (n,) are nodes in the plane, counter-clockwise, and `corners` indices into it.
     """
     n, step = len(wall), 2.0 * np.pi / len(wall)
     between = np.subtract.outer(corners, corners) % n

@@ -24,7 +24,7 @@ Shift: TypeAlias = tuple[Floats, Callable[[Floats], Floats]]
 
 
 class StripGrid:
-    """A strip solution sampled at the nodes of one grid.
+    """A solution in the strip, the conformal image of the domain, at the nodes of one grid.
 
     `c` (2 MODES + 1, LEVELS) are modes of F = w - i theta at the Chebyshev points, `wall` and `far` (n,) are
     F at the nodes of the two walls, and `eta` (nj,) ascends from 0 to 1.
@@ -52,7 +52,7 @@ class StripGrid:
         return np.asarray(F + 1j * theta)
 
     def fill(self, lift: Lift, out: Floats, axis: Axis | None = None, shift: Shift | None = None) -> bool:
-        """Write the grid, except for its walls, to planar `out` (n + 1, nj, 2); return whether it is finite.
+        """Map the grid by `lift`, without its walls, to planar `out` (n + 1, nj, 2); return if it is finite.
 
         The last row repeats the first bitwise. With an `axis`, rows i and n - i are mirror images. A `shift`
         is added to phi. The points of a row are ::

@@ -39,8 +39,8 @@ def solve_steger_sorenson(
 ) -> Solution:  # fmt: skip
     """Solve Winslow's equations with sources that control angle and first-cell height at edges.
 
-    Sources make first cells only somewhat thinner. Notes state the remaining error of the angles, and whether
-    sources were weakened because cells folded.
+    Sources can make first cells only somewhat thinner. Notes state the remaining error of the angles, and
+    whether sources were weakened because cells folded.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ class HexTables:
 def tables_of(
     mesh: HexMesh, moves: Bools, targets: Targets, lengths: Sequence[Floats], turned: bool = True
 ) -> HexTables:
-    """Return the tables of a mesh with free nodes `moves` (n,) and target `lengths` of cells.
+    """Return arrays for compiled code of a mesh with free nodes `moves` (n,) and target `lengths` of cells.
 
     If `turned`, blocks are stored with their longest direction last.
     """

@@ -88,7 +88,10 @@ class HexProblem:
         self.descent = descent_of(self.nodes, tables, 1.0 / sizes, mesh.cells, (unknowns, projections))
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
-        """Do at most `most` iterations; return the smallest Jacobian and the value of the functional."""
+        """Do at most `most` iterations; return the smallest Jacobian and the value of the functional.
+
+        In the functional, Jacobians are regularised by `epsilon`.
+        """
         size = SIZE if epsilon > 0.0 else 0.0
         self.descent.weigh(weights.shape, weights.smoothness, weights.power, epsilon, size)
         value, smallest, done = self.descent.run(weights.gain, most, RENEWED, STILL, REACH)

@@ -39,9 +39,10 @@ _FADE = 1.0  # widths of the base over which the correction of first cells off i
 def around_base(
     lines: BaseWake, *, first: float, growth: float | None, free_rows: bool, constant: int, multiple: int = 1
 ) -> Solution:
-    """Return the grid of two blocks around `lines`; `first` is the first-cell height in the same unit.
+    """Return the grid of two blocks around `lines`, a body with a blunt base and its wake.
 
-    The other parameters are those of `march.hyperbolic`.
+    `first` is the first-cell height in the unit of the lines; other parameters are those of
+    `march.hyperbolic`.
 
     Raises InputError: as `hyperbolic`. Raises SolverError: the march diverged.
     """

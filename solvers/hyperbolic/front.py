@@ -106,8 +106,8 @@ class Front:
 def opening(behind: Floats, higher: Floats) -> Floats:
     """Return the factors (n,) by which first cells along a wake are higher than at the wall.
 
-    `behind` (n,) are distances behind the trailing edge, in chords. `higher` (n,) is the `rise`, in
-    first-cell heights at the wall.
+    `behind` (n,) are distances behind the trailing edge, in chords. `higher` (n,) is a further increase
+    (`rise`), also relative to the height at the wall.
     """
     return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR) + higher)
 

@@ -32,9 +32,8 @@ def solve_coarse(
     """Solve by `solve` on at most n x n nodes; return the grid interpolated to the nodes of `boundary`.
 
     Residual and cycles are those of the coarse solution. With `smooth`, nodes near kinks of the boundary are
-    relaxed by Winslow's equations. The result is kept if the method is ``winslow``, if the interpolated grid
-    is folded, or if angles improve.
-    Raises InputError: `n` is below 9.
+    relaxed by Winslow's equations. The relaxed nodes are kept if the method is ``winslow``, if the
+    interpolated grid is folded, or if angles improve. Raises InputError: `n` is below 9.
     """
     check_coarse(n)
     counts = min(n, boundary.ni), min(n, boundary.nj)

@@ -34,9 +34,8 @@ def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, 
     """Return the volume from the first section of a blade, ``hub``, to the last, ``shroud``, and notes.
 
     Planar O grids around the sections are marched. Far from the blade they are equal, so that the far field
-    is a cylinder.
-    Raises InputError: node counts that are too small. Raises NoValidGridError: the grid of a section has
-    folded cells.
+    is a cylinder. Raises InputError: node counts that are too small. Raises NoValidGridError: the grid of a
+    section has folded cells.
     """
     plan = around(
         request.surface.around, gap=request.surface.base, edge=stack.te_spacing, nose=stack.le_spacing

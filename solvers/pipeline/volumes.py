@@ -26,8 +26,8 @@ class _VolumeMethod:
 def make_volume(shape: SpatialShape, request: Volume) -> Solution:
     """Return the volume grid that `request` makes of a shape: marched, inside six faces, or smoothed.
 
-    Raises InputError: method, parameters and shape do not suit each other, or the shape encloses no volume.
-    Raises NoValidGridError: the grid has folded cells.
+    Raises InputError: parameters and shape do not suit each other, or the shape encloses no volume. Raises
+    NoValidGridError: the grid has folded cells.
     """
     way = _way(shape, request)
     if request.method not in (*_OPEN, *way.methods):

@@ -27,7 +27,7 @@ class Near:
     square: Floats  # (p, m) squared cosine of the angle between the edge and the normal at this point
 
     def length(self, sizes: SizeMetric) -> Floats:
-        """Return the target lengths (m,) of the edges for `sizes`: the smallest over all parts."""
+        """Return the target lengths (m,) of the edges for `sizes`: the least that any part requires."""
         rise = sizes.grading * self.distance
         high = np.minimum(sizes.across[self.point] + rise, sizes.largest)
         wide = np.minimum(sizes.along[self.point] + rise, sizes.largest)
@@ -39,8 +39,8 @@ class Near:
 class SizeMetric:
     """Target lengths of edges by place and direction.
 
-    Lengths across and along a wall are half axes of an ellipse; in other directions, the length is its
-    radius.
+    The lengths across and along a wall are the half axes of an ellipse; in any direction, the target length
+    is the ellipse's radius.
     """
 
     points: Floats  # (n, 2) points on walls and fronts

@@ -37,7 +37,7 @@ class ChannelLines:
         return cls(upper, upper, squares)
 
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
-        """Return how much more lines lean with nodes at places `u` (k,) than with nodes at `start` (k,).
+        """Return how much more lines lean with nodes at `u` (k,), 0 to 1 around a blade, than at `start`.
 
         Lean is the tangent of a line's angle to the normal. The increase is linearised at `u` and multiplied
         by `weight`. Each line joins two nodes, with indices `pairs` (p, 2).
@@ -50,11 +50,11 @@ class ChannelLines:
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
-        """Return the mean square of the lean of lines between nodes `pairs` (p, 2) at places `u` (k,)."""
+        """Return the mean square of the lean of lines between nodes `pairs` (p, 2) at `u` (k,), 0 to 1."""
         return float((self.weights(u[pairs]) * self.aside(u[pairs]) ** 2).mean())
 
     def weights(self, pairs: Floats) -> Floats:
-        """Return the squares (p,) of `slant` for lines between pairs (p, 2) of places u."""
+        """Return the squares (p,) of `slant` for lines between pairs (p, 2) of places u around the blade."""
         return np.asarray(np.interp(wrapped(pairs[:, 0], _FROM), self.upper, self.slant) ** 2)
 
     def aside(self, pairs: Floats) -> Floats:

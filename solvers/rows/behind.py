@@ -27,9 +27,9 @@ _KEPT = 0.4  # smallest accepted ratio of a cell's smallest Jacobian after the m
 def even_behind(sections: Sequence[KeySection], columns: Indices) -> tuple[KeySection, ...]:
     """Return the sections, at `key_heights`, with nodes behind the blade on smooth lines along the span.
 
-    On these lines `SectionPlane.shares` and theta minus theta of the trailing edge are polynomials of the
-    height. The nodes `columns` (k, m) of layers stay, and nodes near them move by a fraction. All nodes move
-    less if cells would get too small.
+    On these lines, positions along the passage (`SectionPlane.shares`) and theta relative to the trailing
+    edge are polynomials of the height. The nodes `columns` (k, m) of layers stay, and nodes near them move by
+    a fraction. All nodes move less if cells would get too small.
     """
     mesh = sections[0].layout.mesh
     values = []

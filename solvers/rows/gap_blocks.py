@@ -22,7 +22,7 @@ _ROUNDS = 4
 
 @dataclass(frozen=True, eq=False)
 class GapEnds:
-    """Nodes inside the outline of the blade at both ends of a gap."""
+    """Nodes inside the outline of the blade at both ends of a gap (between blade and hub or casing)."""
 
     fill: GapFill  # numbering of the nodes; those of the outline come first
     # low, high: (n, 2) s and theta at the lower and at the upper end
@@ -42,7 +42,7 @@ class GapBlocks:
 def gap_ends(
     row: Row, beside: Callable[[float], Floats], lead: int, zone: Zone, first: float, growth: float
 ) -> GapEnds:
-    """Return the nodes inside the outline of the blade at both ends of a gap.
+    """Return the nodes inside the blade's outline at both ends of a gap (between blade and hub or casing).
 
     Parameters
     ----------

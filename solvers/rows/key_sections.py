@@ -70,7 +70,7 @@ class LayerColumns:
 
     @classmethod
     def of(cls, plane: SectionPlane, places: Floats) -> LayerColumns:
-        """Return the columns that begin at `places` u (k,) on the blade."""
+        """Return the columns of nodes that begin on the blade at `places` u (k,)."""
         front = plane.front_arcs(places)
         lines, walls = plane.cascade.ring.columns(front)
         lines = straight_near(lines, plane.from_corners(walls))

@@ -38,7 +38,7 @@ class NodeGroup:
         return self.around.coefficients.shape[1] if self.around else 0
 
     def arcs(self) -> list[LineArcs]:
-        """Return, for each zone, the arc lengths of the lines along the span."""
+        """Return, for each zone of the span (blade and gaps), the arc lengths of the lines along it."""
         out = []
         for zone in self.zones:
             at = zone.low + (zone.high - zone.low) * key_heights(_IN_GAP if zone.gap else SAMPLES)

@@ -11,7 +11,7 @@ from meshonet.solvers.rows.across import ChannelLines
 
 
 def opposite_places(places: Floats, pairs: Indices, lines: ChannelLines) -> Floats:
-    """Return places u (k,) of nodes clockwise around a blade; for each node at u there is one at 1 - u.
+    """Return coordinates u (k,) of nodes clockwise around a blade; for each node at u there is one at 1 - u.
 
     k is even, and both edges have a node, so that blocks in a gap are not skewed. Each line across the
     channel joins two nodes `pairs` (p, 2), of the upper and of the lower side, in order from the leading

@@ -42,7 +42,7 @@ class Rise:
         Parameters
         ----------
         row, blade : the row, and the zone of the blade.
-        around : places u of the k columns as functions of the height.
+        around : coordinate u around the blade of the k columns, as functions of the height.
         lines : s and theta of all k * (rows + 1) nodes of the columns as functions of the height.
         """
         end, up, width = (blade.high, 1.0, row.tip_gap)

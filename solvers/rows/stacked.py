@@ -39,7 +39,7 @@ class StackedRow:
     Parameters
     ----------
     row, keys : the row, and its key sections.
-    zones : zones of the span, from hub to casing.
+    zones : zones of the span (the blade, and gaps), from hub to casing.
     first, growth : first-cell height at the blade, and largest ratio of neighbouring cells.
 
     Attributes

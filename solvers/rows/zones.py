@@ -31,7 +31,7 @@ class Zone:
 
 
 def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
-    """Return the number of cells of a section for about `cells` in the row, or more for `growth`."""
+    """Return how many cells a section has for about `cells` in the row; more if `growth` requires that."""
     return max(_needed(growth), int(cells / _sections(zones)))
 
 

@@ -20,9 +20,9 @@ _SHARE = 0.17
 def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
     """Return target lengths (e,) of `mesh.edges`; neighbours differ by a factor of at most about `most`.
 
-    The logarithm of a ratio beyond `most` is diffused along and across grid lines. Edges across thin first
-    cells at the boundary, and edges along a boundary whose nodes do not `slide`, keep their lengths. Only
-    ratios of neighbouring lengths matter.
+    Where a ratio exceeds `most`, its logarithm is diffused along and across grid lines. Edges across thin
+    first cells at the boundary, and edges along a boundary whose nodes do not `slide`, keep their lengths.
+    Only ratios of neighbouring lengths matter.
     """
     own = log(mesh.edge_lengths)
     cap, stays = math.log(most), thin_heights(mesh)

@@ -55,7 +55,7 @@ class Around:
         """Return the lengths of the cells next to the base and at the nose, relative to the side's length.
 
         `height` of the base, `length` of the side and `nose` are in chords. `nose` is the length of nose
-        cells unless the field `nose` prescribes it; None: 0.35 mean cells.
+        cells if the field `nose` is None; if both are None, it is 0.35 mean cells.
         """
         edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
         first = edge if self.edge is None else self.edge / length
@@ -68,6 +68,8 @@ def around(
     edge: float | None = None, nose: float | None = None,
 ) -> Around:  # fmt: skip
     """Return the distribution of `nodes` nodes around sections, with the repeated first node.
+
+    Other parameters are the fields of `Around`.
 
     Raises InputError: too few nodes, or an even number.
     """

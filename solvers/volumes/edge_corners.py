@@ -98,7 +98,7 @@ def _index(faces: SixFaces, side: Side, second: Side, at: int) -> list[int]:
 def closed_place(faces: SixFaces) -> Place | None:
     """Return indices i, j, k of an inner node that has no valid position, or None.
 
-    A node next to faces has four half-spaces for each face, which must have a common point
+    Each face next to a node restricts it to four half-spaces. All of these must have a common point
     (kernels/volumes/near_faces.c).
     """
     for sides, ranges in next_to_faces(faces.counts):

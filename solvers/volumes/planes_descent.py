@@ -35,7 +35,7 @@ class PlanesDescent(HexProblem):
         self.descent = descent_of(self.nodes, tables, sizes, self.mesh.cells, slides, over)
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
-        """Do at most `most` iterations; return the smallest Jacobian and the functional."""
+        """Do at most `most` iterations; see `HexProblem.run`."""
         smallest_and_value = super().run(weights, most, epsilon)
         self.planes[...] = self.nodes.T.reshape(self.planes.shape)
         return smallest_and_value

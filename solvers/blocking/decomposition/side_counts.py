@@ -25,10 +25,7 @@ _NONE: Mapping[int, int] = MappingProxyType({})
 
 
 def sums_of(chords: Chords) -> Sums:
-    """Return, for each side with a given cell count, by name, the number of edges of each chord on this side.
-
-    Raises InputError: a side with a given count ends inside an edge of a block.
-    """
+    """Return, by name of each side with a given cell count, how many edges of each chord are on this side."""
     mesh = chords.layout.mesh
     given = mesh.domain.counts
     if not given:
@@ -68,9 +65,10 @@ def suited(
 ) -> Indices:  # fmt: skip
     """Return the admissible cell counts (chords,), at least `least`, that are nearest to `counts`.
 
-    Admissible counts are multiples of `multiple`, agree along the two sides of each periodic pair and, if
-    `named`, add up to `multiple` times the counts given for named sides. `fixed` prescribes the counts of
-    some chords. If each cell is divided into `finer` > 1 cells later, sums may differ by less than one.
+    Admissible counts are multiples of `multiple` and agree along the two sides of each periodic pair. If
+    `named`, they add up to the counts given for named sides, times `multiple`. `fixed` prescribes the counts
+    of some chords. If each cell is divided into `finer` cells later, these sums are divided by `finer` and
+    rounded up or down.
 
     Raises InputError: given counts that contradict each other, or that are too small; SolverError: no counts
     are equal along periodic sides.
@@ -169,7 +167,7 @@ def _alike(chords: Chords) -> list[Row]:
 
 
 def lacking_side(layout: Layout) -> Indices | None:
-    """Return nodes of a periodic side with fewer cells than its partner for all counts; None without one."""
+    """Return nodes of a periodic side that must have fewer cells than its partner; None if there is none."""
     if not layout.mesh.domain.periodic:
         return None
     for row, (_, first, second) in zip(_differences(Chords.of(layout)), sides_of(layout.mesh), strict=True):

@@ -50,8 +50,8 @@ class GrowthLines:
         """Return all pairs of a layout; `limit` holds along grid lines from `walls` and across block sides.
 
         `walls` (n,) is a mask of nodes. For other pairs, and at irregular vertices, the limit is `elsewhere`.
-        Pairs parallel to a wall, in blocks beside it, may have the ratio on this wall if it is larger and the
-        wall nodes are not `sliding` (n,).
+        In blocks beside a wall, pairs parallel to it may have the ratio of the edges on the wall if that is
+        larger, and the wall nodes are not `sliding` (n,).
         """
         mesh, pairs = layout.mesh, cls.of(layout.mesh, elsewhere)
         nodes = pairs.nodes
@@ -95,7 +95,7 @@ class GrowthLines:
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:
-        """Return the largest |growth| (n,) at each node; lines in `rows` get at least that of their start."""
+        """Return the largest |growth| (n,) at each node; on lines in `rows`, at least that of the start."""
         growth = np.zeros(len(mesh.nodes))
         np.maximum.at(growth, self.nodes[:, 1], np.abs(self.growth(complex_of(mesh.nodes))))
         for table in rows:

@@ -72,7 +72,7 @@ def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings, sheets: 
     """Return a mask (n,) of nodes of rows that are fixed, and pairs (k, 2) of nodes that move together.
 
     Each pair is a node on a wall and a node of the first cells above it. At corners, and in the first
-    `sheets` rows, both nodes are fixed instead.
+    `sheets` rows (those around sharp edges), both nodes are fixed instead.
     """
     mesh, cells = layout.mesh, settings.constant + 1
     held, pairs = np.zeros(len(mesh.nodes), dtype=bool), []

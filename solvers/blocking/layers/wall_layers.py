@@ -67,9 +67,10 @@ class WallLayers:
         cls, domain: Domain, loops: Sequence[int], settings: LayerSettings,
         stretches: Sequence[Stretch] = (), sheets: Sequence[int] = (),
     ) -> WallLayers:  # fmt: skip
-        """Return the layers of a domain: rings around `loops`, rows along `stretches` and around `sheets`.
+        """Return the layers of a domain: rings around `loops`, rows along `stretches`, rows around `sheets`.
 
-        Raises InputError: too little room for layers; a wall at which layers fold.
+        `sheets` are loops with one sharp edge, whose layers continue along the wake. Raises InputError: too
+        little room for layers; a wall at which layers fold.
         """
         rings = rings_around(domain, loops, settings)
         numbers = sorted({*sheets, *(stretch.loop for stretch in stretches)})

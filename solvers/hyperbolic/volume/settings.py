@@ -73,10 +73,10 @@ class VolumeMarch:
 
 
 class Smoothing(NamedTuple):
-    """The parameters of ``kernels/surfaces/march.h`` except `size`, and two of the graph.
+    """The parameters of ``kernels/surfaces/march.h`` except `size`, and two of `march_graph`.
 
-    `outer` is the ratio of explicit smoothing far away to that near the wall: up to 6 levels around a sphere
-    stay spheres, 16 makes better cells behind swept wings.
+    `outer` is the ratio of explicit smoothing far away to that near the wall. With ratios up to 6, levels
+    around a sphere stay spheres; 16 makes better cells behind swept wings.
     """
 
     explicit: float = 0.3

@@ -62,9 +62,8 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
     """The quad network, from features of a grid to displacements of its nodes.
 
     `widths`: number of sets of eight channels on each level, the finest first; each level has half as many
-    nodes per direction as the level before; `blocks`: residual blocks on each level, on the way down
-    and again on the way back; `around`: whether grids are O grids, periodic along xi and not padded with
-    zeros.
+    nodes per direction as the level before; `blocks`: residual blocks on each level, on the way down and
+    again on the way back; `around`: whether grids are O grids, periodic along xi and not padded with zeros.
     """
 
     def __init__(self, widths: Sequence[int], blocks: Sequence[int], around: bool = False) -> None:

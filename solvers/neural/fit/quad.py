@@ -49,7 +49,7 @@ class QuadUNetSizes:
 
 
 class QuadTask(Task):
-    """Training of the quad network on the edges (node to node) of both target grids, later also on angles.
+    """Training of the quad network on the edges of Winslow's and of variational grids, later also on angles.
 
     `training`, `held_out`: domains; `sizes`: of the network; `steps`: number of training steps in the whole
     run; `weights`: of the parts of the loss, by name; `initial`: initial weights of the network, by name.
@@ -110,7 +110,7 @@ class QuadTask(Task):
                 mean.lerp_(own, 1.0 - keep)
 
     def validate(self) -> dict[str, float]:
-        """Return medians of the relative distance to both targets over the held-out domains."""
+        """Return medians, over held-out domains, of relative distances to Winslow's and variational grids."""
         answers, loss = self.answers(), {}
         for k, name in enumerate(HEADS):
             goal = self.held_out.grids()[2 + k]

@@ -65,6 +65,7 @@ class Architecture:
         """Return the coordinates (batch, p, 2) minus the base at p points.
 
         `xp`: numpy or torch; `w`: trained and fixed arrays by name; `inputs`: from `encode`; `places`: from
-        `seen`; `index`: (p,) indices of the points among the nodes of the training grids, for native models.
+        `seen`; `index`: (p,) indices of the points among the nodes of the training grids, for models defined
+        only there.
         """
         raise NotImplementedError

@@ -18,7 +18,7 @@ SAME = 1e-4  # largest distance of a sensor, over the geometry's size, at which 
 
 @dataclass(frozen=True)
 class MGNet(Architecture):
-    """Networks that are trained together on Winslow's equations and the boundary, with weights stacked.
+    """Networks N_g, one for each geometry, that are trained together on Winslow's equations and the boundary.
 
     ::
 

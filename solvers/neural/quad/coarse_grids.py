@@ -56,8 +56,9 @@ def transfinite(sides: Sides) -> Floats:
 def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
     """Return the nodes (batch, 2, m, n) of the network's grids inside `sides`.
 
-    `head` is an index into `encoding.HEADS`. Grids have 33 x 33 nodes. Grids of Winslow's head have as many
-    nodes as the sides, but at least 33 and at most 65 per direction.
+    `head` selects an output of the network, by its index in `encoding.HEADS`. Grids of the variational head
+    have 33 x 33 nodes; those of Winslow's head as many as the sides, at least 33 and at most 65 per
+    direction.
     """
     base = transfinite(thinned(sides, LATENT, LATENT))
     shares = None if head == WINSLOW else _shares

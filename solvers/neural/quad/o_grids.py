@@ -25,8 +25,9 @@ COMPACT = 0.15  # least over largest distance of the wall from the middle, of bo
 def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) -> Floats:
     """Return the nodes (batch, 2, 65, 33) of the network's grids of O `boundaries` with equal node counts.
 
-    `head` is an index into `encoding.HEADS`. Raises InputError: a wall, reduced to 65 nodes, winds once
-    neither around the centroid of the body nor around the point of `inside_point.inside`.
+    `head` selects an output of the network, by its index in `encoding.HEADS`. Raises InputError: a wall,
+    reduced to 65 nodes, winds once neither around the centroid of the body nor around the point of
+    `inside_point.inside`.
     """
     walls, strips, centres, once = _strips(boundaries)
     if not once.all():
@@ -42,7 +43,7 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
 
 
 def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
-    """Return the strips `base` (batch, m + 1, n) of equal steps, moved by the network.
+    """Return unrolled O grids `base` (batch, m + 1, n) of equal steps, moved by the network.
 
     The last row of a result repeats the first row, without the period.
 

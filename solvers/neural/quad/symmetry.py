@@ -71,7 +71,7 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 def table(size: int) -> Integers:
     """Return the indices (8, 8, size²) of the weights w (8 size²) that form the kernels K[h, g].
 
-    A layer's channels come in sets of eight, one for each element h of the group, the element fastest::
+    A layer's channels come in sets of eight, one for each symmetry h of the square, which varies fastest::
 
         K[h, g](p) = w[h^-1 g](h^-1 p)
     """
@@ -95,6 +95,6 @@ def lift(weight: Any, seen: Any) -> Any:
 
 
 def projection(weight: Any, elements: Any, xp: Any) -> Any:
-    """Return the last layer's matrix (2 heads, 8 in), a mean over the group, from `weight` (heads, 2, in)."""
+    """Return the last layer's matrix (2 heads, 8 in), symmetrised, from `weight` (heads, 2, in)."""
     back = weight[:, None, :, :, None] * xp.moveaxis(elements, 0, -1)[:, :, None]
     return back.sum(2).reshape(2 * len(weight), -1) / ORDER

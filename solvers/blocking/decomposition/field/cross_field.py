@@ -27,7 +27,7 @@ _DIFFUSION = 0.003
 
 @dataclass(frozen=True, eq=False)
 class CrossField:
-    """A cross field on a surface: four directions at right angles, and the cells that meet at each vertex."""
+    """A cross field on a surface: four directions at right angles, and the number of cells at each vertex."""
 
     surface: Triangulation
     walls: WallDirections

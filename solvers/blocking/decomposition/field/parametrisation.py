@@ -25,7 +25,8 @@ class Parametrisation:
 
     u or v is constant along each wall and is one unknown there. Along an edge of the cut, the change of w on
     one side is that on the opposite side rotated by a multiple of 90 degrees (Lagrange multipliers). This is
-    the map of Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009) 77) with real translations.
+    the map of Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009) 77) without rounding translations to
+    integers.
 
     Parameters
     ----------

@@ -29,11 +29,7 @@ Station = tuple[float, int, int, int]
 
 @dataclass(frozen=True, eq=False)
 class MotorcycleGraph:
-    """The nodes of a motorcycle graph, and the trails between them, which become grid lines.
-
-    Directions at a node are numbered counter-clockwise, one per right angle of the map. At a wall node, 0 is
-    forwards along the wall and `quarters` is backwards; at an interior node, numbers are modulo `quarters`.
-    """
+    """Lines from singular points of a map, up to other lines that they meet; they become grid lines."""
 
     map: SeamlessMap
     vertex: Indices  # (n,) vertex of the triangulation at each node, -1 if a ray ended elsewhere
@@ -54,7 +50,7 @@ class _Traced:
 
 
 def motorcycle_graph(seamless: SeamlessMap) -> MotorcycleGraph:
-    """Return the motorcycle graph, in which all walls are connected.
+    """Return the motorcycle graph of a map, with additional lines that connect all walls.
 
     Raises SolverError: a ray that does not end; a wall that cannot be connected to the others.
     """

@@ -22,7 +22,7 @@ Span = tuple[int, float, float]
 
 
 def wrong_count(mesh: QuadMesh) -> Bools:
-    """Return a mask (n,) of boundary nodes with a wrong number of quads: not 2, or not that of a corner."""
+    """Return a mask (n,) of boundary nodes with a wrong number of quads: not 2, or not the corner's own."""
     cells = mesh.places.cells
     return np.asarray(mesh.wall_nodes & (mesh.valence != np.where(cells > 0, cells, 2)))
 

@@ -25,8 +25,7 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None 
 
     If `sizes` (target edge lengths) are given, `cells` is ignored. Cells may be folded.
 
-    Raises SolverError: the lines of the map form no T-mesh of rectangles, or `cells` are too few for a
-    conforming mesh.
+    Raises SolverError: the lines of the map do not bound rectangles, or `cells` are too few.
     """
     mesh = t_mesh(motorcycle_graph(seamless))
     wanted = _plane_lengths(mesh, sizes)

@@ -36,7 +36,7 @@ def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list
 
 
 def agree(images: Images) -> bool:
-    """Return whether two reflections of nodes by `images` give the rotation that their mirrors give."""
+    """Return whether reflections of the nodes, one after another, give the rotations that mirrors give."""
     if len(images) < 2:
         return True
     (_, one), (_, other) = images[:2]

@@ -28,7 +28,7 @@ Ray = tuple[Mirror, Floats]  # a mirror, and the direction (2,) of the ray on it
 
 @dataclass(frozen=True, eq=False)
 class LoopPart:
-    """Part of a loop of the whole domain between two rays (halves of mirror lines), or the centre."""
+    """A part of a loop of the whole domain, between two rays (halves of mirror lines); or the centre."""
 
     loop: int  # index of the loop; -1 for the centre
     arcs: Floats  # (n,) ascending arc lengths
