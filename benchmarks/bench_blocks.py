@@ -203,7 +203,8 @@ def claims(rows: dict[Path, Row], ours: dict[Path, Row]) -> list[str]:
         f"- Irregular vertices in total: meshonet {irregular[0]}, Gmsh {irregular[1]}, a ratio of "
         f"{irregular[0] / max(irregular[1], 1):.2f}. In {100 * each:.0f} % of the domains the grid of\n"
         "  meshonet has at most a third as many irregular vertices as the mesh of Gmsh.",
-        f"- The 99th percentile of the deviation is below Gmsh's in {100 * angles:.0f} % of the domains.",
+        f"- In {100 * angles:.0f} % of the domains, the 99th percentile of the deviation is smaller for "
+        "meshonet than for Gmsh.",
         f"- Gmsh takes {np.median(factors):.1f} times the CPU time of meshonet in the median, "
         f"and at least {factors.min():.1f} times in every domain.",
     ]
@@ -218,16 +219,16 @@ are, and how long it takes.
 
 - *files*: domains from other sources. *gallery*: the thirty domains of the [gallery](../gallery/domains.md).
   *random*: random domains.
-- Each domain is a GeoJSON file. A process of its own makes each grid: `solve-pde FILE --cells 2500
-  -o F.vtm`, with one thread, while other programs used the machine. Times are those of the whole process.
+- Each domain is a GeoJSON file. A separate process makes each grid: `solve-pde FILE --cells 2500 -o F.vtm`,
+  with one thread, while other programs used the machine. Times are those of the whole process.
 - *valid*: all corner Jacobians are positive, the nodes of adjacent blocks match, wall nodes lie on the
   outline within 1e-8 of the domain size, and the relative error of the area is at most 1e-3. The benchmark
   tests this independently of meshonet.
 - *refused*: exit code 2 or 3 with a message. *silent*: exit code 0, but the grid is not valid.
 - *blocks*, *irregular*: number of blocks, and of interior vertices at which more or fewer than four cells
-  meet. *mean*: mean deviation of cell corner angles from 90 degrees. *99 %*: 99th percentile of the largest
-  deviation in each cell. These four columns are medians over the valid grids. *90 %* in the columns of times:
-  90th percentile.
+  meet. *mean*: mean deviation of cell corner angles from 90 degrees. *99 %*: for each cell the largest
+  deviation of its corners, and of these values the 99th percentile. These four columns are medians over the
+  valid grids. *90 %* in the columns of times: 90th percentile over the domains.
 """
 VALID = """
 | domains | number | valid | refused | silent | CPU s: median / 90 % / max | elapsed s: median / 90 % \
@@ -240,9 +241,9 @@ Gmsh meshes a sample of these domains; the column *domains* gives their number. 
 neighbouring corners is one spline. Gmsh uses one thread and the options for quadrilaterals only. Its time is
 the time of `generate(2)`; the time of meshonet is the time of the whole process.
 
-*algorithm*: Gmsh's number; 11 makes quasi-structured quadrilaterals. *meshed*: number of domains that Gmsh
-meshes; *with triangles*: number of these meshes that contain triangles. The other columns give medians over
-these domains, meshonet / Gmsh.
+*algorithm*: number of Gmsh's algorithm; 11 makes quasi-structured quadrilaterals. *meshed*: number of domains
+that Gmsh meshes; *with triangles*: number of these meshes that contain triangles. The other columns give
+medians over these domains, meshonet / Gmsh.
 
 | algorithm | domains | meshed | with triangles | irregular | mean | 99 % | CPU time, s | cells |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""

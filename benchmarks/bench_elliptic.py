@@ -56,12 +56,13 @@ OTHERS = """
 ## Compared with other programs
 
 The table gives times in seconds for an elliptic grid, or for the most similar grid that the program makes.
-The times of the paper (arXiv 2501.11937, table of mesh refinement; its network ran on an RTX 4090) and of
-Construct2D (user time) were measured on other machines.
+*The paper* is the MeshONet paper (arXiv 2501.11937, table of mesh refinement; its network ran on an RTX
+4090). Its times, and those of Construct2D (user time), were measured on other machines. An empty cell means
+that no time is known.
 
 | program | 100x100 | 200x200 | 250x100 | 400x400 | 800x800 | 1600x1600 | 3200x3200 |
 | --- | --- | --- | --- | --- | --- | --- | --- |
-| the paper's PDE solver | 140.3 | 586.2 | | 2360.7 | 9795.9 | - | - |
+| the paper's PDE solver | 140.3 | 586.2 | | 2360.7 | 9795.9 | | |
 | the paper's TFI | 0.087 | 0.218 | | 0.928 | 3.8 | 15.2 | 72.1 |
 | the paper's network, on a GPU | 0.001 | 0.002 | | 0.002 | 0.006 | 0.026 | 0.278 |
 | Construct2D, elliptic O grid, not converged | | | 10 to 17 | | | | |
@@ -106,7 +107,7 @@ def row(name: str, edges: Boundary) -> str:
 def speed(sizes: list[int], largest: int) -> Iterator[str]:
     """Yield the table of shapes; of the largest size some only."""
     yield "\n## Winslow's equations\n"
-    heads = ("shape", "nodes a side", "default, s", "cycles", "to 1e-8, s", "cycles", "rate")
+    heads = ("shape", "nodes per side", "default, s", "cycles", "to 1e-8, s", "cycles", "rate")
     yield "| " + " | ".join((*heads, "doubles per node", "folded", "repair")) + " |"
     yield "| --- |" + " --- |" * 9
     for n in sizes:
@@ -194,7 +195,7 @@ def leans(nodes: Floats, edges: Boundary) -> float:
 
 def walls(ni: int, nj: int) -> Iterator[str]:
     """Yield the table of channels with first cells of 1e-5 at both walls."""
-    yield f"\n## Channels, first cells of 1e-5 at both walls, {ni} x {nj}\n"
+    yield f"\n## Channels with first cells of 1e-5 at both walls, {ni} x {nj} nodes\n"
     yield (
         "*first cell error*: largest relative error of the first-cell height at both walls. *angle to\n"
         "normal*: largest angle between the wall normal and the grid lines of the first cells, in degrees.\n"
@@ -247,8 +248,8 @@ def controls(sizes: list[int]) -> Iterator[str]:
     """Yield the table of Thomas and Middlecoff's control functions."""
     yield "\n## Control functions of Thomas and Middlecoff\n"
     yield (
-        "*H*: prescribed first-cell height at the south side, which the given nodes of the sides west and "
-        "east have. *median\nfirst cell*: median height of the cells at the south side.\n"
+        "*H*: first-cell height at the south side, prescribed by the given nodes on the west and east sides. "
+        "*median first\ncell*: median height of the cells at the south side.\n"
     )
     yield "| shape | nodes per side | H | to 1e-8, s | cycles | rate | folded | median first cell |"
     yield "| --- |" + " --- |" * 7

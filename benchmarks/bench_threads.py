@@ -56,9 +56,9 @@ several runs, and the speed-up is the ratio of the minima. CPU times (one thread
 over all threads; they include the time in which a thread waits for another one. The last column says
 whether the two results are bitwise identical.
 
-On a machine that runs other programs, the speed-up says little. Compare the CPU times instead: if they do
-not rise with the number of threads, no time is lost to synchronisation, and n idle cores would give a
-speed-up of about n.
+On a machine that runs other programs, the speed-up says little. Compare the CPU times instead: if they do not
+rise with the number of threads, no time is lost while threads wait for each other. On idle cores, only parts
+that one thread executes alone, and the memory bandwidth, then limit the speed-up.
 """
 
 WHY = """

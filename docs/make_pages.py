@@ -60,10 +60,11 @@ of `quad-general`.
 C_GRIDS = """## C grids: no model
 
 meshonet has no model for C grids, because marching gives better C grids than every network that was tested.
-The C grids that `quad-general` predicts are worse than those of transfinite interpolation. Five iterations of
-the variational method improve the predicted grids, but their mean angle is still farther from 90 degrees than
-that of the variational grid ([measurements](../benchmarks/body-operator.md#c-grids-no-model)). `airfoil-o`
-assumes that the grid is periodic in ξ, which a C grid is not.
+The C grids that `quad-general` predicts are worse than those of transfinite interpolation. After five
+iterations of the variational method, the mean angle of the predicted grids is still farther from 90 degrees
+than the mean angle of the variational grids
+([measurements](../benchmarks/body-operator.md#c-grids-no-model)). `airfoil-o` assumes that the grid is
+periodic in ξ, which a C grid is not.
 
 `infer` generates C grids by [marching](../theory/marching.md) from the wall and the wake, or by the
 variational method if marching fails. The report names the method. For C grids the options `--model`,
@@ -113,7 +114,7 @@ BLOCKING_HEAD = """# Files of blocking
 
 Look here to find a file in `solvers/blocking` or `solvers/cascade`. Each row is the first paragraph of the
 file's docstring. [Theory](../theory/blocks.md) explains the terms, and [stages](stages.md) the order in which
-the functions are called.
+the functions are called. A *loop* is a closed boundary curve; a *front* is the outer edge of layers.
 """
 
 FAMILIES_HEAD = """# The six test families

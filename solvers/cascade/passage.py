@@ -1,4 +1,4 @@
-"""The passage of a cascade beyond the layers of its blade, and its blocks with layers and rows to its ends.
+"""The passage of a cascade outside the blade's layers; its blocks, with layers and rows to both ends.
 
 ::
 

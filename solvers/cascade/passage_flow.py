@@ -1,6 +1,4 @@
-r"""Flow through a cascade without circulation.
-
-Its potential is a conformal map to flat plates without stagger.
+r"""Flow through a cascade without circulation: its potential maps the blades to plates without stagger.
 
 With ζ = π z / (p n), where n is the axial direction and p the pitch, the complex potential is
 

@@ -1,4 +1,4 @@
-"""Cell sizes that the front of a ring of layers requires, and the rows of layers below its nodes."""
+"""Layers of a ring between its wall and its front (outer edge), and cell sizes beyond the front."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""Layers in the rows of a layout: their number, and their nodes along the lines from walls."""
+"""Layers in rows of a layout at walls: the number of layers, and their nodes along lines from walls."""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Cell lengths along walls whose layers are rows of a layout, and the thickness of these layers."""
+"""Cell lengths along walls, and thickness of the layers there, for layers in rows of a layout."""
 
 from __future__ import annotations
 

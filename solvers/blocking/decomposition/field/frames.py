@@ -1,4 +1,4 @@
-"""One frame (two directions) of each cross, continuous except across a cut; the cut; the frames' sizes."""
+"""Two directions (a frame) of each cross, continuous except across a cut; the cut; sizes of frames."""
 
 from dataclasses import dataclass
 

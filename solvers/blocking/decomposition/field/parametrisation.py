@@ -1,4 +1,4 @@
-"""Coordinates whose gradients are closest to the frames, constant along walls and matched across the cut."""
+"""Coordinates whose gradients fit the frames; along walls one is constant; at the cut they match."""
 
 import numpy as np
 

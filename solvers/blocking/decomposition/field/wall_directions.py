@@ -1,4 +1,4 @@
-"""Directions of the cross field along walls, rotated near corners for an integer number of cells there."""
+"""Directions of the cross field along walls, rotated near corners so that a whole number of cells fits."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Quad meshes that are symmetric about mirrors: mirror images of nodes, and nodes made symmetric exactly."""
+"""Mirror images of the nodes of a symmetric quad mesh; averages that make the nodes exactly symmetric."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""One part of a symmetric domain, between rays on its mirrors, and the mesh of the part and its images.
+"""One part of a symmetric domain, between mirror lines; the mesh of this part and of its images.
 
 It is the half on the left of a mirror, a quarter between two mirrors at right angles, or a sector from a
 mirror to the next but one, whose rotated copies fit together. Rays become grid lines of the mesh.

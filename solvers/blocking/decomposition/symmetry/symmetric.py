@@ -1,4 +1,4 @@
-"""Symmetric blocks of symmetric domains, if they are about as good as those of the decomposition.
+"""Symmetric blocks of symmetric domains, used if they are about as good as asymmetric blocks.
 
 If the quads are symmetric, each node moves to the mean of itself and its images. If only the blocks are
 symmetric, the counts of cells are made equal first. Otherwise the blocks of a part are mirrored or rotated.
