@@ -91,8 +91,7 @@ def along(row: Table, direct: str, angle: str, z: float, before: list[Section]) 
 
     The key `direct` (``x`` or ``y``) gives the value, by default that of the previous section. Or the key
     `angle` (``sweep`` or ``dihedral``) gives the angle, in degrees, between the z axis and the line from the
-    previous section. Raises InputError: both
-    keys; an angle of the first section, or above 85 degrees.
+    previous section. Raises InputError: both keys; an angle of the first section, or above 85 degrees.
     """
     if angle not in row.data:
         return row.number(direct, getattr(before[-1], direct) if before else 0.0)

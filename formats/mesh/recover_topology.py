@@ -38,10 +38,9 @@ def boundary_of(grid: Grid) -> Shape:
 def recovered(nodes: Floats, name: str = "") -> Grid:
     """Return the grid of usable `nodes` (ni, nj, 2), with its topology found by position.
 
-    Left-handed nodes are reversed along i. In an O grid the first and the last
-    column are equal, or the first and the last row; then i and j are exchanged. The smaller closed side
-    becomes south. In a C grid the last nodes of a side are its first nodes in reverse; this side becomes
-    south.
+    Left-handed nodes are reversed along i. In an O grid the first and the last column are equal, or the first
+    and the last row; then i and j are exchanged. The smaller closed side becomes south. In a C grid the last
+    nodes of a side are its first nodes in reverse; this side becomes south.
     """
     nodes = right_handed(usable(nodes))
     if not _closed(nodes) and _closed(_quarter_turn(nodes)):

@@ -31,10 +31,7 @@ EngineName = Literal["processes", "dask", "mpi"]
 
 @dataclass(frozen=True)
 class Engine:
-    """Engine that works on the members of a batch.
-
-    Raises InputError: settings that exclude each other.
-    """
+    """Engine that works on the members of a batch. Raises InputError: settings that exclude each other."""
 
     name: EngineName = "processes"  # processes of this machine, a Dask cluster, or the ranks of MPI
     jobs: int = 1  # number of processes, or of workers of a local Dask cluster
