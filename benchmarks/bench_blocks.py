@@ -235,11 +235,11 @@ VALID = """
 | blocks | irregular | mean | 99 % |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
 BESIDE = """
-## Gmsh at equal cell count
+## Gmsh at about equal numbers of cells
 
-Gmsh meshes a sample of these domains; the column *domains* gives their number. The outline between two
-neighbouring corners is one spline. Gmsh uses one thread and the options for quadrilaterals only. Its time is
-the time of `generate(2)`; the time of meshonet is the time of the whole process.
+Gmsh meshes a sample of these domains; the column *domains* gives their number. In Gmsh, the outline between
+two neighbouring corners is one spline. Gmsh uses one thread and the options for quadrilaterals only. Its time
+is the time of `generate(2)`; the time of meshonet is the time of the whole process.
 
 *algorithm*: number of Gmsh's algorithm; 11 makes quasi-structured quadrilaterals. *meshed*: number of domains
 that Gmsh meshes; *with triangles*: number of these meshes that contain triangles. The other columns give

@@ -199,7 +199,8 @@ def walls(ni: int, nj: int) -> Iterator[str]:
     yield (
         "*first cell error*: largest relative error of the first-cell height at both walls. *angle to\n"
         "normal*: largest angle between the wall normal and the grid lines of the first cells, in degrees.\n"
-        "*ms*: CPU time to generate the grid.\n"
+        "*ms*: CPU time to generate the grid. Methods in bold make grid lines normal to the walls:\n"
+        "`steger-sorenson` by control functions, `--slide` by moving wall nodes along the walls.\n"
     )
     yield "| channel | method | folded | first cell error | angle to normal | ms |"
     yield "| --- " * 6 + "|"

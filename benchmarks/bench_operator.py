@@ -154,7 +154,9 @@ def folds(kept: Kept, count: int) -> str:
 
     for spacing in ("conformal", "cosine", "curvature", None):
         shapes = random_airfoils(count, 200, spacing)  # type: ignore[arg-type]
-        label = "every law, random cell lengths at both edges" if spacing is None else str(spacing)
+        label = (
+            "every law, random cell lengths at leading and trailing edge" if spacing is None else str(spacing)
+        )
         folds = [kept.row(("folds", label, one.name), partial(folded, one)) for one in shapes]
         share = 100.0 * (1.0 - np.array(folds).mean(axis=0))
         lines.append(f"| {label} | {share[0]:.1f} % | {share[1]:.1f} % | {share[2]:.1f} % |")
@@ -265,10 +267,10 @@ are not significant. Bold rows are the networks and the default of `infer`.
 | MeshONet | the network of the paper; its boundary nodes approximate the given nodes |
 | MeshONet-hard | a similar network, whose boundary nodes are exactly the given nodes |
 
-**Distance** is a relative L2 norm: the root mean square distance of the nodes to the reference nodes, divided
-by the root mean square distance of the reference nodes to the centre of the shape. In the column *near the
-wall*, only the nodes within 1.5 chords of the centre of an airfoil are compared, or those in the 10 % of the
-rows nearest to each side of a four-sided domain.
+**Distance** (columns *near the wall* and *all nodes*) is a relative L2 norm: the root mean square distance of
+the nodes to the reference nodes, divided by the root mean square distance of the reference nodes to the
+centre of the shape. *Near the wall*, it is taken over the nodes within 1.5 chords of the centre of an
+airfoil, or over the 10 % of the rows nearest to each side of a four-sided domain.
 
 **Reference.** Winslow's equations are solved to a residual of 1e-8 on two finer grids, with twice and with
 four times as many cells in each direction as the grids of the table. (For 800x800 nodes: with as many and
@@ -314,7 +316,8 @@ TIMES_HEAD = """
 ## CPU time to generate the grid in milliseconds, float64, best of 3
 
 *sharp edge*, *blunt edge*: NACA 2412 with a closed and with a blunt trailing edge. *arch*: a four-sided
-domain.
+domain. With more than 513 nodes per side, the 5 steps of `quad-general` run on 257 nodes per side. Empty
+cells were not measured.
 """
 WHICH = """
 ## Consequences for the defaults of `infer`
@@ -322,13 +325,14 @@ WHICH = """
 - **O grids around airfoils**: the default is the conformal map with Picard iteration, without the network.
   With the network a grid takes more time; its distance to the solution and its angles are about the same.
   `--model airfoil-o` or `--polish off` selects the network.
-- **Four-sided domains**: the default is the variational method, on fewer nodes with interpolation if these
-  resolve all sides. For a single grid this method is better than any network. For batches, `--model
-  quad-general` is many times faster ([measurements](quad-operator.md)).
+- **Four-sided domains**: the default is the variational method; if fewer nodes resolve all sides, it runs on
+  these and the grid is interpolated. For a single grid this method is better than any network. For batches,
+  `--model quad-general` is many times faster ([measurements](quad-operator.md)).
 - **C grids**: the default is hyperbolic marching from the wall and the wake, or the variational method if
   marching fails. The network for four-sided domains generates worse C grids than TFI
   ([measurements](body-operator.md#c-grids-no-model)).
-- **Batches of airfoils** gain little: only the network is evaluated for many airfoils at once.
+- **Batches of airfoils** take hardly less time per airfoil than single airfoils: only the network is
+  evaluated for many airfoils at once.
 """
 
 if __name__ == "__main__":
