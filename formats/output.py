@@ -5,7 +5,6 @@ import errno
 import functools
 import os
 import re
-import stat
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -45,7 +44,8 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
     """
     name = printable(destination)
     with _naming(name):
-        stream = destination == "-" or _is_stream(Path(destination))
+        place = Path(destination)
+        stream = destination == "-" or (place.exists() and not place.is_file() and not place.is_dir())
         if stream and beside:
             raise InputError("is a stream, and a folder is to be written", "name a file", source=name)
         if stream:
@@ -56,7 +56,7 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
             target = Path(os.path.realpath(destination))
             if make_folder and not target.is_dir():
                 target.parent.mkdir(parents=True, exist_ok=True)
-            check_place(Path(destination), name)
+            check_place(place, name)
             _sweep(target.parent)
             part = _part_name(target)
     try:
@@ -184,14 +184,6 @@ def _alive(process: int) -> bool:
     except (PermissionError, OverflowError):
         pass
     return True
-
-
-def _is_stream(path: Path) -> bool:
-    try:
-        mode = path.stat().st_mode
-    except OSError:
-        return False
-    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
 
 
 def _copy_out(part: Path, destination: str) -> None:

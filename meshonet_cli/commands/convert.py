@@ -28,11 +28,7 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 class ConvertedFiles(o.FileOptions):
     """Files of other formats."""
 
-    output: Annotated[str, _output(
-        "-o", "--output", metavar="OUT",
-        help="File to write, or - for standard output. For several inputs: one .h5 file, or a pattern such "
-        "as 'dir/{stem}.vts', with {stem} (of the input file), {name} (of the shape) or {index} (from 0).",
-    )] = ""
+    output: o.Output = ""
 
 
 def convert(
@@ -42,53 +38,47 @@ def convert(
         metavar="IN... [OUT]", show_default=False,
         help="Files to read, or - for standard input. Without -o the last argument is the file to write.",
     )] = None,
-    extrude: Annotated[float | None, _option(
-        "--extrude", metavar="H",
-        help="Extrude the planar grid by H along z, for planar flow in solvers that require "
+    extrude: float | None = _option(
+        metavar="H", help="Extrude the planar grid by H along z, for planar flow in solvers that require "
         "three-dimensional grids. The result has one layer of cells, or more with --planes.",
-    )] = None,
-    planes: Annotated[int | None, _option(
-        "--planes", metavar="K", min=2, max=10_000,
-        help="Number of planes of nodes for --extrude or --revolve, one more than the layers of cells. "
-        "[default: 2; for sectors and full rings, cells of at most 4 degrees]",
-    )] = None,
-    plot3d: Annotated[str | None, _output(
-        "--plot3d", metavar="WORDS",
-        help="Variant of the Plot3D file to write, or to read if the output has another format. WORDS are "
-        "separated by commas: ascii/binary/fortran (fortran: binary with record marks), multi/single, 2d/3d, "
-        "no-iblank/iblank, little/big, float64/float32, whole/planes (reading only: coordinates by block or "
-        "by plane), span-k/span-i/span-j (writing only: file index of the third direction of volumes). For "
-        "reading, give only what the program does not recognise. In other commands use --from plot3d:WORDS.",
-    )] = None,
-    swap: Annotated[bool, _option(
-        "--swap", help="Exchange xi and eta of a four-sided grid. The result is still right-handed.",
-    )] = False,
-    normalise: Annotated[bool, _option(
-        "--normalise",
-        help="Scale and move the grid so that the leading edge is at (0, 0) and the trailing edge at (1, 0). "
-        "A four-sided grid is scaled to length 1.",
-    )] = False,
-    coarsen: Annotated[int | None, _option(
-        "--coarsen", metavar="K", min=2, max=10_000,
-        help="Keep every K-th node along each direction. K must divide the numbers of cells and the node "
-        "indices of wall corners. [default: 1]",
-    )] = None,
-    scale: Annotated[float | None, _option(
-        "--scale", metavar="S",
-        help="Multiply all lengths by S; 0.001 converts millimetres to metres. --extrude and --axis are in "
-        "the new unit. [default: 1]",
-    )] = None,
-    copies: Annotated[str | None, _option(
-        "--copies", metavar="K[xL]",
-        help="Join K copies of a periodic grid, e.g. passages of a blade row up to the whole annulus. If the "
-        "grid has two periods, KxL joins K copies along the first and L along the second, in the order of "
-        "the quality report. [default: 1]",
-    )] = None,
+    ),
+    planes: int | None = _option(
+        metavar="K", min=2, max=10_000, help="Number of planes of nodes for --extrude or --revolve, one "
+        "more than the layers of cells. [default: 2; for sectors and full rings, cells of at most 4 degrees]",
+    ),
+    plot3d: str | None = _output(
+        metavar="WORDS", help="Variant of the Plot3D file to write, or to read if the output has another "
+        "format. WORDS are separated by commas: ascii/binary/fortran (fortran: binary with record marks), "
+        "multi/single, 2d/3d, no-iblank/iblank, little/big, float64/float32, whole/planes (reading only: "
+        "coordinates by block or by plane), span-k/span-i/span-j (writing only: file index of the third "
+        "direction of volumes). For reading, give only what the program does not recognise. In other "
+        "commands use --from plot3d:WORDS.",
+    ),
+    swap: bool = _option(
+        default=False, help="Exchange xi and eta of a four-sided grid. The result is still right-handed.",
+    ),
+    normalise: bool = _option(
+        default=False, help="Scale and move the grid so that the leading edge is at (0, 0) and the trailing "
+        "edge at (1, 0). A four-sided grid is scaled to length 1.",
+    ),
+    coarsen: int | None = _option(
+        metavar="K", min=2, max=10_000, help="Keep every K-th node along each direction. K must divide the "
+        "numbers of cells and the node indices of wall corners. [default: 1]",
+    ),
+    scale: float | None = _option(
+        metavar="S", help="Multiply all lengths by S; 0.001 converts millimetres to metres. --extrude and "
+        "--axis are in the new unit. [default: 1]",
+    ),
+    copies: str | None = _option(
+        metavar="K[xL]", help="Join K copies of a periodic grid, e.g. passages of a blade row up to the "
+        "whole annulus. If the grid has two periods, KxL joins K copies along the first and L along the "
+        "second, in the order of the quality report. [default: 1]",
+    ),
     revolve: o.Revolve = None,
     axis: o.Axis = None,
-    list_formats: Annotated[bool, _output(
-        "--list-formats", help="Print the formats that can be read and written, and exit.",
-    )] = False,
+    list_formats: bool = _output(
+        default=False, help="Print the formats that can be read and written, and exit.",
+    ),
 ) -> int:
     """Convert files from one format to another."""
     from meshonet.formats.convert import Conversion

@@ -1,7 +1,5 @@
 """``meshonet deform``."""
 
-from typing import Annotated
-
 from meshonet_cli import options as o
 
 EXAMPLES = (
@@ -20,21 +18,19 @@ def deform(
     files: o.FileOptions,
     run: o.RunOptions,
     gates: o.GateOptions,
-    wall: Annotated[list[str] | None, _option(
-        "--wall", metavar="[NAME=]FILE",
-        help="New shape of a wall: a file with an outline, a designation such as naca:2412, or a grid whose "
-        "wall has as many nodes. NAME is a wall or another named part of the boundary; it may be omitted if "
-        "the grid has one wall. Repeatable.",
-    )] = None,
-    rotate: Annotated[list[str] | None, _option(
-        "--rotate", metavar="NAME=DEGREES@X,Y",
-        help="Rotate the wall NAME in the plane, by DEGREES counter-clockwise about the point (X, Y). "
-        "Repeatable.",
-    )] = None,
-    shift: Annotated[list[str] | None, _option(
-        "--shift", metavar="NAME=DX,DY[,DZ]",
-        help="Translate the wall NAME by (DX, DY, DZ), after its rotation if there is one. Repeatable.",
-    )] = None,
+    wall: list[str] | None = _option(
+        metavar="[NAME=]FILE", help="New shape of a wall: a file with an outline, a designation such as "
+        "naca:2412, or a grid whose wall has as many nodes. NAME is a wall or another named part of the "
+        "boundary; it may be omitted if the grid has one wall. Repeatable.",
+    ),
+    rotate: list[str] | None = _option(
+        metavar="NAME=DEGREES@X,Y", help="Rotate the wall NAME in the plane, by DEGREES counter-clockwise "
+        "about the point (X, Y). Repeatable.",
+    ),
+    shift: list[str] | None = _option(
+        metavar="NAME=DX,DY[,DZ]", help="Translate the wall NAME by (DX, DY, DZ), after its rotation if "
+        "there is one. Repeatable.",
+    ),
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
     leave_out_failed: o.LeaveOutFailed = False,

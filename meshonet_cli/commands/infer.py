@@ -1,6 +1,6 @@
 """``meshonet infer``."""
 
-from typing import Annotated, Literal
+from typing import Literal
 
 from meshonet_cli import options as o
 
@@ -26,33 +26,29 @@ def infer(
     domain: o.DomainOptions,
     volume: o.VolumeOptions,
     blocks: o.BlocksName = "auto",
-    model: Annotated[str | None, _option(
-        "--model", metavar="NAME|PATH",
-        help="Neural operator that makes the grid: the name of a shipped model (see meshonet models), a "
-        ".safetensors file, or base for the conformal solver without a network. C grids are always marched, "
-        "without an operator. [default: no operator; the method described above]",
-    )] = None,
-    polish: Annotated[str, _option(
-        "--polish", metavar="auto|off|N", show_default=True,
-        help="Number of solver iterations after the neural operator: elliptic around bodies, variational in "
-        "four-sided domains. off: none. auto: as many as suit the model. off or N without --model selects "
-        "the default model for the topology.",
-    )] = "auto",
-    answer: Annotated[Literal["valid", "pasted", "raw"], _option(
-        "--answer", metavar="valid|pasted|raw", show_default=True,
-        help="Treatment of the grid that a network predicts. raw: unchanged; its boundary nodes can differ "
-        "from the given ones. pasted: with the given boundary nodes. valid: also with folded cells repaired.",
-    )] = "valid",
-    device: Annotated[Literal["cpu", "cuda"] | None, _option(
-        "--device", metavar="cpu|cuda",
-        help="Evaluate networks with torch on this device, all grids of a batch together. --polish auto then "
-        "means 3 for airfoil-o and off for other models. [default: NumPy, without torch]",
-    )] = None,
-    fallback: Annotated[bool, _option(
-        "--fallback",
-        help="Use the solver that the network imitates if the expected error of the network is above 0.03 or "
-        "its grid has folded cells.",
-    )] = False,
+    model: str | None = _option(
+        metavar="NAME|PATH", help="Neural operator that makes the grid: the name of a shipped model (see "
+        "meshonet models), a .safetensors file, or base for the conformal solver without a network. C grids "
+        "are always marched, without an operator. [default: no operator; the method described above]",
+    ),
+    polish: str = _option(
+        default="auto", metavar="auto|off|N", help="Number of solver iterations after the neural operator: "
+        "elliptic around bodies, variational in four-sided domains. off: none. auto: as many as suit the "
+        "model. off or N without --model selects the default model for the topology.",
+    ),
+    answer: Literal["valid", "pasted", "raw"] = _option(
+        default="valid", help="Treatment of the grid that a network predicts. raw: unchanged; its boundary "
+        "nodes can differ from the given ones. pasted: with the given boundary nodes. valid: also with "
+        "folded cells repaired.",
+    ),
+    device: Literal["cpu", "cuda"] | None = _option(
+        help="Evaluate networks with torch on this device, all grids of a batch together. --polish auto "
+        "then means 3 for airfoil-o and off for other models. [default: NumPy, without torch]",
+    ),
+    fallback: bool = _option(
+        default=False, help="Use the solver that the network imitates if the expected error of the network "
+        "is above 0.03 or its grid has folded cells.",
+    ),
     refine: o.Refine = 0,
 ) -> int:
     """Make grids by the method that suits the kind of shape.

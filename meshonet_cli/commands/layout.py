@@ -24,9 +24,9 @@ class LayoutFiles(Files):
     """Files of layouts."""
 
     output: Annotated[str, o.option_of(o.IO)(
-        "-o", "--output", metavar="LAYOUT.json",
-        help="File to write, or - for standard output. For several inputs: a pattern such as "
-        "'dir/{stem}.json', with {stem} (of the input file), {name} (of the shape) or {index} (from 0).",
+        "-o", "--output", metavar="LAYOUT.json", help="File to write, or - for standard output. For several "
+        "inputs: a pattern such as 'dir/{stem}.json', with {stem} (of the input file), {name} (of the "
+        "shape) or {index} (from 0).",
     )]
     from_format: o.From = None
     skip_existing: o.SkipExisting = False
@@ -41,11 +41,10 @@ def layout(
     files: LayoutFiles,
     blocks: o.BlockOptions,
     run: o.RunOptions,
-    far_field: Annotated[float | None, _sampling(
-        "--far-field", metavar="R",
-        help="Distance of the far field from the middle of all bodies, in lengths of their common bounding "
-        "box. [default: 15]",
-    )] = None,
+    far_field: float | None = _sampling(
+        metavar="R", help="Distance of the far field from the middle of all bodies, in lengths of their "
+        "common bounding box. [default: 15]",
+    ),
     first_cell: o.FirstCell = None, y_plus: o.YPlusAtWalls = None, reynolds: o.Reynolds = None,
     length: o.Length = None,
 ) -> int:

@@ -26,16 +26,14 @@ class PictureFiles(Files):
     """Files of pictures."""
 
     output: Annotated[str, _output(
-        "-o", "--output", metavar="PICTURE",
-        help="Picture (.png, .svg or .pdf) or interactive page (.html) to write, or - for standard output. "
-        "For several inputs: a pattern such as 'dir/{stem}.png', with {stem} (of the input file), {name} (of "
-        "the shape) or {index} (from 0).",
+        "-o", "--output", metavar="PICTURE", help="Picture (.png, .svg or .pdf) or interactive page (.html) "
+        "to write, or - for standard output. For several inputs: a pattern such as 'dir/{stem}.png', with "
+        "{stem} (of the input file), {name} (of the shape) or {index} (from 0).",
     )]
-    to_format: Annotated[str | None, _output(
-        "--to", metavar="FORMAT",
-        help="Format of the picture: png, svg, pdf or html. [default: from the extension; png on standard "
-        "output]",
-    )] = None
+    to_format: str | None = _output(
+        metavar="FORMAT", help="Format of the picture: png, svg, pdf or html. [default: from the extension; "
+        "png on standard output]",
+    )
     from_format: o.From = None
     skip_existing: o.SkipExisting = False
 
@@ -44,47 +42,40 @@ def plot(
     grid: o.Grids,
     files: PictureFiles,
     run: o.InputOptions,
-    metric: Annotated[str, _option(
-        "--metric", metavar="METRIC", show_default=True,
-        help="Metric that colours the cells: one of the report of meshonet quality, growth (along grid "
-        "lines), or checkMesh's non_orthogonality, face_skewness or box_ratio. none: grid lines only.",
-    )] = "max_angle",
-    zoom: Annotated[str | None, _option(
-        "--zoom", metavar="x0,x1,y0,y1",
-        help="Show only this region: x0,x1,y0,y1 of a planar grid, x0,x1,y0,y1,z0,z1 in space. With --slice "
-        "give either six numbers, or four for the two axes of the slice: in the plane x=2.9, y0,y1,z0,z1, "
-        "with y to the right. [default: the whole grid]",
-    )] = None,
-    slice_: Annotated[str | None, _option(
-        "--slice", metavar="SLICE",
-        help="Draw this slice of a volume: a grid surface of constant index, such as i=10 or k=-1 (the "
-        "last), or a plane such as x=.5. [default: no slice; the walls, or the whole boundary of a volume "
-        "without walls]",
-    )] = None,
-    span: Annotated[str | None, _option(
-        "--span", metavar="S,...",
-        help="Draw sections of a blade row, side by side, at these fractions of the span, between 0 (hub) "
-        "and 1 (shroud).",
-    )] = None,
-    meridional: Annotated[bool, _option(
-        "--meridional",
-        help="Draw the meridional section of a blade row, in the coordinates x and r: the cells cut by a "
-        "half-plane through the axis and the blade.",
-    )] = False,
-    seen_from: Annotated[str | None, _option(
-        "--seen-from", metavar="AZIMUTH,ELEVATION",
-        help="Direction from which volumes and surfaces are seen: azimuth and elevation in degrees. "
-        "[default: -125,25]",
-    )] = None,
-    up: Annotated[str | None, _option(
-        "--up", metavar="AXIS",
-        help="Axis that points upwards in pictures of volumes and surfaces: x, y or z. Azimuths count from y "
-        "if x is up, from z if y is up, and from x if z is up. [default: z]",
-    )] = None,
-    every: Annotated[int | None, _option(
-        "--every", metavar="K",
-        help="Draw every K-th grid line. [default: as many lines as can be distinguished]",
-    )] = None,
+    metric: str = _option(
+        default="max_angle", metavar="METRIC", help="Metric that colours the cells: one of the report of "
+        "meshonet quality, growth (along grid lines), or checkMesh's non_orthogonality, face_skewness or "
+        "box_ratio. none: grid lines only.",
+    ),
+    zoom: str | None = _option(
+        metavar="x0,x1,y0,y1", help="Show only this region: x0,x1,y0,y1 of a planar grid, x0,x1,y0,y1,z0,z1 "
+        "in space. With --slice give either six numbers, or four for the two axes of the slice: in the "
+        "plane x=2.9, y0,y1,z0,z1, with y to the right. [default: the whole grid]",
+    ),
+    slice_: str | None = _option(
+        "--slice", metavar="SLICE", help="Draw this slice of a volume: a grid surface of constant index, "
+        "such as i=10 or k=-1 (the last), or a plane such as x=.5. [default: no slice; the walls, or the "
+        "whole boundary of a volume without walls]",
+    ),
+    span: str | None = _option(
+        metavar="S,...", help="Draw sections of a blade row, side by side, at these fractions of the span, "
+        "between 0 (hub) and 1 (shroud).",
+    ),
+    meridional: bool = _option(
+        default=False, help="Draw the meridional section of a blade row, in the coordinates x and r: the "
+        "cells cut by a half-plane through the axis and the blade.",
+    ),
+    seen_from: str | None = _option(
+        metavar="AZIMUTH,ELEVATION", help="Direction from which volumes and surfaces are seen: azimuth and "
+        "elevation in degrees. [default: -125,25]",
+    ),
+    up: str | None = _option(
+        metavar="AXIS", help="Axis that points upwards in pictures of volumes and surfaces: x, y or z. "
+        "Azimuths count from y if x is up, from z if y is up, and from x if z is up. [default: z]",
+    ),
+    every: int | None = _option(
+        metavar="K", help="Draw every K-th grid line. [default: as many lines as can be distinguished]",
+    ),
 ) -> int:
     """Draw grids, coloured by a quality metric."""
     from meshonet.formats.figure.picture import Picture

@@ -1,6 +1,6 @@
 """``meshonet quality``."""
 
-from typing import Annotated, Literal
+from typing import Literal
 
 from meshonet_cli import options as o
 
@@ -22,43 +22,40 @@ def quality(
     grid: o.Grids,
     run: o.InputOptions,
     gates: o.GateOptions,
-    plot: Annotated[str | None, _output(
-        "--plot", metavar="F.png",
-        help="Draw the grid, coloured by max_angle, into this picture, or several into '{stem}.png'.",
-    )] = None,
-    html: Annotated[str | None, _output(
-        "--html", metavar="F.html",
-        help="Write a report page with pictures, histograms, the worst cells, and the results of --fail-on "
-        "and --profile; of more than 20 grids, for the 20 worst.",
-    )] = None,
-    per_cell: Annotated[str | None, _output(
-        "--per-cell", metavar="F.vts",
-        help="Write all metrics of every cell into this file: .vts, or .vtm for a multi-block grid.",
-    )] = None,
-    compare: Annotated[str | None, _check(
-        "--compare", metavar="OTHER",
-        help="File with reference grids of the same size. The report then has the relative L2 distance from "
-        "the reference over all nodes and near walls; the largest distance of all nodes and of boundary "
-        "nodes; the folded cells of the reference; and the largest and the mean angle, divided by those of "
-        "the reference.",
-    )] = None,
-    pair: Annotated[Literal["auto", "name", "order"] | None, _check(
-        "--pair", metavar="auto|name|order",
+    plot: str | None = _output(
+        metavar="F.png", help="Draw the grid, coloured by max_angle, into this picture, or several into "
+        "'{stem}.png'.",
+    ),
+    html: str | None = _output(
+        metavar="F.html", help="Write a report page with pictures, histograms, the worst cells, and the "
+        "results of --fail-on and --profile; of more than 20 grids, for the 20 worst.",
+    ),
+    per_cell: str | None = _output(
+        metavar="F.vts", help="Write all metrics of every cell into this file: .vts, or .vtm for a "
+        "multi-block grid.",
+    ),
+    compare: str | None = _check(
+        metavar="OTHER", help="File with reference grids of the same size. The report then has the relative "
+        "L2 distance from the reference over all nodes and near walls; the largest distance of all nodes "
+        "and of boundary nodes; the folded cells of the reference; and the largest and the mean angle, "
+        "divided by those of the reference.",
+    ),
+    pair: Literal["auto", "name", "order"] | None = _check(
         help="Rule that assigns grids to the references of --compare. name: by name. order: by order. auto: "
         "all grids to a single reference; of several references, by name if the names agree, else by order. "
         "[default: auto]",
-    )] = None,
-    reynolds: Annotated[float | None, _check(
-        "--reynolds", metavar="RE",
-        help="Reynolds number, based on --length, for which the report gives y+ of the first cells at each "
-        "wall on a turbulent flat plate. --fail-on 'y_plus>2' then refers to the largest y+ of all walls.",
-    )] = None,
-    length: Annotated[float | None, _check(
-        "--length", metavar="L", help="Reference length of --reynolds, in the unit of the grid. [default: 1]",
-    )] = None,
-    summary: Annotated[bool, _output(
-        "--summary", help="Print one table with a row for each grid; with --json one object.",
-    )] = False,
+    ),
+    reynolds: float | None = _check(
+        metavar="RE", help="Reynolds number, based on --length, for which the report gives y+ of the first "
+        "cells at each wall on a turbulent flat plate. --fail-on 'y_plus>2' then refers to the largest y+ "
+        "of all walls.",
+    ),
+    length: float | None = _check(
+        metavar="L", help="Reference length of --reynolds, in the unit of the grid. [default: 1]",
+    ),
+    summary: bool = _output(
+        default=False, help="Print one table with a row for each grid; with --json one object.",
+    ),
     from_format: o.From = None,
     threads: o.Threads = None,
 ) -> int:

@@ -1,10 +1,9 @@
 """``meshonet solve-pde``."""
 
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from meshonet.solvers.pipeline.methods import METHODS
 from meshonet_cli import options as o
-from meshonet_cli.options.sides import SideOptions
 from meshonet_cli.terminal.errors import with_options
 
 EXAMPLES = (
@@ -40,47 +39,45 @@ def solve_pde(
     sampling: o.SamplingOptions,
     boundary_layer: o.LayerOptions,
     checks: o.CheckOptions,
-    sides: SideOptions,
+    sides: o.SideOptions,
     domain: o.DomainOptions,
     volume: o.VolumeOptions,
     blocks: o.BlocksName = "auto",
-    method: Annotated[MethodName, _option(
-        "--method", metavar="|".join(SOLVERS), show_default=True,
-        help=with_options(" ".join(f"{name}: {text}." for name, text in SOLVERS.items())),
-    )] = "auto",
-    tol: Annotated[float | None, _option(
-        "--tol", metavar="T",
-        help="Stop when the residual is below T times the residual of transfinite interpolation; for the "
-        "variational method, when no node moves by more than about T times the square root of the area of "
-        "the domain. [default: stop when the iteration error is below the discretisation error]",
-    )] = None,
-    max_cycles: Annotated[int | None, _option(
-        "--max-cycles", metavar="N", min=1,
-        help="Largest number of multigrid cycles; for the variational method, of iterations on all nodes. "
-        "[default: 30; variational 200]",
-    )] = None,
-    coarse: Annotated[str, _option(
-        "--coarse", metavar="auto|off|N", show_default=True,
-        help="Solve on at most N x N nodes and interpolate to --res by splines. off: solve on all nodes. "
-        "auto: N = 257 for winslow with more than 512 nodes along a side, N = 129 for variational with more "
-        "than 257, at the same quality; all nodes for O grids and with --tol, --max-cycles or --initial.",
-    )] = "auto",
+    method: MethodName = _option(
+        default="auto", help=with_options(" ".join(map("{}: {}.".format, SOLVERS, SOLVERS.values()))),
+    ),
+    tol: float | None = _option(
+        metavar="T", help="Stop when the residual is below T times the residual of transfinite "
+        "interpolation; for the variational method, when no node moves by more than about T times the "
+        "square root of the area of the domain. [default: stop when the iteration error is below the "
+        "discretisation error]",
+    ),
+    max_cycles: int | None = _option(
+        metavar="N", min=1, help="Largest number of multigrid cycles; for the variational method, of "
+        "iterations on all nodes. [default: 30; variational 200]",
+    ),
+    coarse: str = _option(
+        default="auto", metavar="auto|off|N", help="Solve on at most N x N nodes and interpolate to --res "
+        "by splines. off: solve on all nodes. auto: N = 257 for winslow with more than 512 nodes along a "
+        "side, N = 129 for variational with more than 257, at the same quality; all nodes for O grids and "
+        "with --tol, --max-cycles or --initial.",
+    ),
     refine: o.Refine = 0,
-    initial: Annotated[str | None, _option("--initial", metavar="GRID",
-        help="File with the grid from which the iteration starts. [default: transfinite interpolation]",
-    )] = None,
-    history: Annotated[str | None, o.option_of(o.IO)(
-        "--history", metavar="F.csv",
-        help="Write a CSV file with a row for each cycle: residual, displacement of nodes, seconds, folded "
-        "cells and functional.",
-    )] = None,
+    initial: str | None = _option(
+        metavar="GRID", help="File with the grid from which the iteration starts. [default: transfinite "
+        "interpolation]",
+    ),
+    history: str | None = o.option_of(o.IO)(
+        metavar="F.csv", help="Write a CSV file with a row for each cycle: residual, displacement of nodes, "
+        "seconds, folded cells and functional.",
+    ),
     slide: o.Slide = None,
     wall_angle: o.WallAngle = None,
-    repair_margin: Annotated[int | None, o.option_of(o.CHECKS)(
-        "--repair-margin", metavar="CELLS", min=2, max=24,
-        help="Width, in cells, of the region around folded cells in which the repair moves nodes. Larger "
-        "values take more time and give smoother grids. [default: 6, and more if cells stay folded]",
-    )] = None,
+    repair_margin: int | None = o.option_of(o.CHECKS)(
+        metavar="CELLS", min=2, max=24, help="Width, in cells, of the region around folded cells in which "
+        "the repair moves nodes. Larger values take more time and give smoother grids. [default: 6, and "
+        "more if cells stay folded]",
+    ),
 ) -> int:
     """Make elliptic, variational or marched grids.
 

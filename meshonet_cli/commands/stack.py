@@ -41,66 +41,60 @@ def stack(
     files: VolumeFiles,
     run: o.RunOptions,
     gates: o.GateOptions,
-    around: Annotated[int | None, _sampling(
-        "--around", metavar="N",
-        help="Number of nodes around each section, odd, with the repeated first node. [default: 129]",
-    )] = None,
-    span: Annotated[int | None, _sampling(
-        "--span", metavar="N",
-        help="Number of nodes along z, from the first to the last section. [default: 49; more in ducts and "
-        "blades with unevenly spaced sections]",
-    )] = None,
-    base: Annotated[float | None, _sampling(
-        "--base", metavar="H",
-        help="Smallest height of trailing edges of wings and blades, in chords of each section. Thinner "
-        "trailing edges are opened to this height. [default: 0.005; 0.001 for wings from surface files]",
-    )] = None,
-    cells: Annotated[int | None, _sampling(
-        "--cells", metavar="N",
-        help="Approximate number of cells around a wing or blade (instead of --around, --span or both), "
-        "around an aircraft (instead of --around), or in each passage of a blade row. [default: 500000 in a "
-        "blade row; else set by --around and --span]",
-    )] = None,
-    copies: Annotated[int | None, _sampling(
-        "--copies", metavar="K", min=1,
-        help="Number of adjacent passages of a blade row, up to the number of blades. [default: 1]",
-    )] = None,
-    far_field: Annotated[float | None, _sampling(
-        "--far-field", metavar="R",
-        help="Distance of the far field from a wing, blade or aircraft, in longest chords. [default: 15]",
-    )] = None,
-    tip: Annotated[Literal["round", "flat", "open"] | None, _volume(
-        "--tip", metavar="round|flat|open",
+    around: int | None = _sampling(
+        metavar="N", help="Number of nodes around each section, odd, with the repeated first node. "
+        "[default: 129]",
+    ),
+    span: int | None = _sampling(
+        metavar="N", help="Number of nodes along z, from the first to the last section. [default: 49; more "
+        "in ducts and blades with unevenly spaced sections]",
+    ),
+    base: float | None = _sampling(
+        metavar="H", help="Smallest height of trailing edges of wings and blades, in chords of each "
+        "section. Thinner trailing edges are opened to this height. [default: 0.005; 0.001 for wings from "
+        "surface files]",
+    ),
+    cells: int | None = _sampling(
+        metavar="N", help="Approximate number of cells around a wing or blade (instead of --around, --span "
+        "or both), around an aircraft (instead of --around), or in each passage of a blade row. [default: "
+        "500000 in a blade row; else set by --around and --span]",
+    ),
+    copies: int | None = _sampling(
+        metavar="K", min=1, help="Number of adjacent passages of a blade row, up to the number of blades. "
+        "[default: 1]",
+    ),
+    far_field: float | None = _sampling(
+        metavar="R", help="Distance of the far field from a wing, blade or aircraft, in longest chords. "
+        "[default: 15]",
+    ),
+    tip: Literal["round", "flat", "open"] | None = _volume(
         help="Tip of a wing. round: closed by a cap of half the local thickness. flat: closed by a plane. "
         "open: not closed, in a plane of symmetry. [default: as given in the file, else round]",
-    )] = None,
-    revolve: Annotated[float | None, _volume(
-        "--revolve", metavar="DEGREES",
-        help="Bend the z axis of a blade or duct around --axis, by this angle in degrees from the first to "
-        "the last section. [default: straight]",
-    )] = None,
+    ),
+    revolve: float | None = _volume(
+        metavar="DEGREES", help="Bend the z axis of a blade or duct around --axis, by this angle in degrees "
+        "from the first to the last section. [default: straight]",
+    ),
     axis: o.Axis = None,
-    surface: Annotated[bool, _volume(
-        "--surface", help="Write only the patches of the surface, for other programs or for solve-pde.",
-    )] = False,
+    surface: bool = _volume(
+        default=False, help="Write only the patches of the surface, for other programs or for solve-pde.",
+    ),
     layers: o.Layers = None,
-    first_cell: Annotated[float | None, _layer(
-        "--first-cell", "--wall-spacing", metavar="H",
-        help="Height of the first cell at every wall, in longest chords; in ducts in the unit of the file. "
-        "[default: 0.001; in ducts about the height of the cells in the middle]",
-    )] = None,
+    first_cell: float | None = _layer(
+        "--first-cell", "--wall-spacing", metavar="H", help="Height of the first cell at every wall, in "
+        "longest chords; in ducts in the unit of the file. [default: 0.001; in ducts about the height of "
+        "the cells in the middle]",
+    ),
     y_plus: o.YPlus = None,
     reynolds: o.Reynolds = None,
-    length: Annotated[float | None, _layer(
-        "--length", metavar="L",
-        help="Reference length of --reynolds, in the unit of --first-cell. [default: the longest chord; in "
-        "ducts the extent of the widest section]",
-    )] = None,
-    growth: Annotated[float | None, _layer(
-        "--growth", metavar="G",
-        help="Largest ratio of the heights of neighbouring cells along a grid line away from the wall. The "
-        "number of rows follows from it. Not with --layers. [default: 1.2]",
-    )] = None,
+    length: float | None = _layer(
+        metavar="L", help="Reference length of --reynolds, in the unit of --first-cell. [default: the "
+        "longest chord; in ducts the extent of the widest section]",
+    ),
+    growth: float | None = _layer(
+        metavar="G", help="Largest ratio of the heights of neighbouring cells along a grid line away from "
+        "the wall. The number of rows follows from it. Not with --layers. [default: 1.2]",
+    ),
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
     leave_out_failed: o.LeaveOutFailed = False,

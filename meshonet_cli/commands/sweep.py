@@ -38,71 +38,63 @@ def sweep(
     run: o.RunOptions,
     gates: o.GateOptions,
     files: SectionFiles,
-    res: Annotated[str | None, _sampling(
-        "--res", metavar="N|NIxNJ",
-        help="Number of nodes along the sides of a four-sided section. [default: 65x33; with a first cell, "
-        "as many as --growth needs]",
-    )] = None,
-    around: Annotated[int | None, _sampling(
-        "--around", metavar="N",
-        help="Number of cells around a circle, a multiple of four. [default: 88; with --cells, derived from "
-        "it and at least 84, so that the area is accurate to 0.1 %]",
-    )] = None,
-    planes: Annotated[int | None, _volume(
-        "--planes", metavar="K",
-        help="Number of planes of nodes along the path or around the axis. [default: as many as needed for "
-        "cells that turn by at most 4 degrees and, along a path, are at most three times as long as wide; 2 "
-        "in a wedge]",
-    )] = None,
-    up: Annotated[str | None, _volume(
-        "--up", metavar="X,Y,Z",
-        help="Direction of the y axis of the section at the start of the path. [default: 0,0,1, or 0,1,0 for "
-        "a path that starts along z]",
-    )] = None,
-    twist: Annotated[float, _volume(
-        "--twist", metavar="DEGREES", show_default=True,
-        help="Angle in degrees by which the section rotates about the path from start to end.",
-    )] = 0.0,
-    scale: Annotated[float, _volume(
-        "--scale", metavar="F", show_default=True,
-        help="Size of the section at the end of the path, divided by its size at the start. To change the "
-        "unit use convert --scale.",
-    )] = 1.0,
+    res: str | None = _sampling(
+        metavar="N|NIxNJ", help="Number of nodes along the sides of a four-sided section. [default: 65x33; "
+        "with a first cell, as many as --growth needs]",
+    ),
+    around: int | None = _sampling(
+        metavar="N", help="Number of cells around a circle, a multiple of four. [default: 88; with --cells, "
+        "derived from it and at least 84, so that the area is accurate to 0.1 %]",
+    ),
+    planes: int | None = _volume(
+        metavar="K", help="Number of planes of nodes along the path or around the axis. [default: as many "
+        "as needed for cells that turn by at most 4 degrees and, along a path, are at most three times as "
+        "long as wide; 2 in a wedge]",
+    ),
+    up: str | None = _volume(
+        metavar="X,Y,Z", help="Direction of the y axis of the section at the start of the path. [default: "
+        "0,0,1, or 0,1,0 for a path that starts along z]",
+    ),
+    twist: float = _volume(
+        default=0.0, metavar="DEGREES", help="Angle in degrees by which the section rotates about the path "
+        "from start to end.",
+    ),
+    scale: float = _volume(
+        default=1.0, metavar="F", help="Size of the section at the end of the path, divided by its size at "
+        "the start. To change the unit use convert --scale.",
+    ),
     revolve: o.Revolve = None,
     axis: o.Axis = None,
-    cells: Annotated[int | None, o.option_of(o.DOMAIN)(
-        "--cells", metavar="N",
-        help="Approximate number of cells in the section. A circle has more if its area needs them to be "
-        "accurate to 0.1 %. [default: derived from --around for a circle, else 2500]",
-    )] = None,
-    cell_size: Annotated[float | None, o.option_of(o.DOMAIN)(
-        "--cell-size", metavar="H",
-        help="Edge length of cells away from walls, in the unit of the section, instead of --cells.",
-    )] = None,
-    layout: Annotated[str | None, o.option_of(o.DOMAIN)(
-        "--layout", metavar="LAYOUT.json",
-        help="Use the blocks in this file for the section. meshonet layout writes it.",
-    )] = None,
+    cells: int | None = o.option_of(o.DOMAIN)(
+        metavar="N", help="Approximate number of cells in the section. A circle has more if its area needs "
+        "them to be accurate to 0.1 %. [default: derived from --around for a circle, else 2500]",
+    ),
+    cell_size: float | None = o.option_of(o.DOMAIN)(
+        metavar="H", help="Edge length of cells away from walls, in the unit of the section, instead of "
+        "--cells.",
+    ),
+    layout: str | None = o.option_of(o.DOMAIN)(
+        metavar="LAYOUT.json", help="Use the blocks in this file for the section. meshonet layout writes it.",
+    ),
     walls: o.Walls = None,
-    first_cell: Annotated[str | None, o.option_of(o.BOUNDARY_LAYER)(
-        "--first-cell", "--wall-spacing", metavar="H|WALL=H,...",
-        help="Height of the first cell at walls, in the unit of the section. WALL=H,WALL=H gives named walls "
-        "of a multi-block section a height each, and other walls no layers. Walls are all sides of a "
-        "four-sided section, outer curves without corners, and holes, but not sides named inlet, outlet, "
-        "axis or symmetry. Other sections need --walls. [default: no layers]",
-    )] = None,
+    first_cell: str | None = o.option_of(o.BOUNDARY_LAYER)(
+        "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, "
+        "in the unit of the section. WALL=H,WALL=H gives named walls of a multi-block section a height "
+        "each, and other walls no layers. Walls are all sides of a four-sided section, outer curves without "
+        "corners, and holes, but not sides named inlet, outlet, axis or symmetry. Other sections need "
+        "--walls. [default: no layers]",
+    ),
     y_plus: o.YPlusAtWalls = None,
     reynolds: o.Reynolds = None,
-    length: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
-        "--length", metavar="L",
-        help="Reference length of --reynolds, in the unit of the section. [default: the bounding-box length "
-        "of the section; the diameter of a pipe]",
-    )] = None,
-    growth: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
-        "--growth", metavar="G",
-        help="Largest ratio of the heights of neighbouring cells along a grid line away from the wall. The "
-        "number of rows of a four-sided section follows from it, unless --res gives NJ. [default: 1.2]",
-    )] = None,
+    length: float | None = o.option_of(o.BOUNDARY_LAYER)(
+        metavar="L", help="Reference length of --reynolds, in the unit of the section. [default: the "
+        "bounding-box length of the section; the diameter of a pipe]",
+    ),
+    growth: float | None = o.option_of(o.BOUNDARY_LAYER)(
+        metavar="G", help="Largest ratio of the heights of neighbouring cells along a grid line away from "
+        "the wall. The number of rows of a four-sided section follows from it, unless --res gives NJ. "
+        "[default: 1.2]",
+    ),
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
     leave_out_failed: o.LeaveOutFailed = False,

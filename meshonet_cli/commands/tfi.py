@@ -1,10 +1,9 @@
 """``meshonet tfi``."""
 
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from meshonet.solvers.pipeline.methods import METHODS
 from meshonet_cli import options as o
-from meshonet_cli.options.sides import SideOptions
 
 EXAMPLES = (
     "meshonet tfi duct.csv --res 80x40 -o duct.vts",
@@ -27,16 +26,14 @@ def tfi(
     sampling: o.SamplingOptions,
     boundary_layer: o.LayerOptions,
     checks: o.CheckOptions,
-    sides: SideOptions,
-    method: Annotated[MethodName, _option(
-        "--method", metavar="|".join(ALGEBRAIC), show_default=True,
-        help=" ".join(f"{name}: {text}." for name, text in ALGEBRAIC.items()),
-    )] = "tfi",
-    blending: Annotated[BlendingName | None, _option(
-        "--blending", metavar="arclength|linear",
-        help="Blending functions of the interpolation. arclength: of the relative arc length along the "
-        "edges. linear: of the node index. [default: arclength]",
-    )] = None,
+    sides: o.SideOptions,
+    method: MethodName = _option(
+        default="tfi", help=" ".join(map("{}: {}.".format, ALGEBRAIC, ALGEBRAIC.values())),
+    ),
+    blending: BlendingName | None = _option(
+        metavar="arclength|linear", help="Blending functions of the interpolation. arclength: of the "
+        "relative arc length along the edges. linear: of the node index. [default: arclength]",
+    ),
 ) -> int:
     """Make grids by transfinite interpolation."""
     from meshonet_cli.tasks.grids import write_grids

@@ -23,85 +23,73 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 class TrainOptions:
     """Parameters of `meshonet.train`."""
 
-    model: Annotated[str | None, _option(
-        "--model", metavar="NAME",
-        help="Architecture. strip: operator for airfoils. quad: operator for four-sided domains. meshonet: "
-        "network of the MeshONet paper. meshonet-hard: similar, with an exact boundary. Baselines: deeponet, "
-        "pod-deeponet, fno1d, fno2d, wno, kno, lno, mionet. Physics-informed: mgnet, meshnet. [default: "
-        "strip for datasets of boundaries, else meshonet]",
-    )] = None
-    split: Annotated[str | None, _option(
-        "--split", metavar="HOW|FILE",
-        help="Rule that reserves shapes for tests: interpolation (from the middle of the parameter range), "
-        "extrapolation (from one end) or random; or a file with the word train or test for each shape. "
-        "[default: the split stored in the dataset]",
-    )] = None
-    epochs: Annotated[int | None, _option(
-        "--epochs", metavar="N", min=1,
-        help="Number of passes over the shapes. [default: strip 24, quad 64, others 15000]",
-    )] = None
-    batch: Annotated[int | None, _option(
-        "--batch", metavar="N", min=1,
-        help="Number of shapes per optimiser step. [default: strip 32, quad 64, others 30]",
-    )] = None
-    rate: Annotated[float | None, _option(
-        "--rate", "--lr", metavar="R",
-        help="Largest learning rate. [default: strip 0.002, quad 0.003, others 0.001]",
-    )] = None
-    schedule: Annotated[Literal["cosine", "step"] | None, _option(
-        "--schedule", metavar="cosine|step",
+    model: str | None = _option(
+        metavar="NAME", help="Architecture. strip: operator for airfoils. quad: operator for four-sided "
+        "domains. meshonet: network of the MeshONet paper. meshonet-hard: similar, with an exact boundary. "
+        "Baselines: deeponet, pod-deeponet, fno1d, fno2d, wno, kno, lno, mionet. Physics-informed: mgnet, "
+        "meshnet. [default: strip for datasets of boundaries, else meshonet]",
+    )
+    split: str | None = _option(
+        metavar="HOW|FILE", help="Rule that reserves shapes for tests: interpolation (from the middle of "
+        "the parameter range), extrapolation (from one end) or random; or a file with the word train or "
+        "test for each shape. [default: the split stored in the dataset]",
+    )
+    epochs: int | None = _option(
+        metavar="N", min=1, help="Number of passes over the shapes. [default: strip 24, quad 64, others "
+        "15000]",
+    )
+    batch: int | None = _option(
+        metavar="N", min=1, help="Number of shapes per optimiser step. [default: strip 32, quad 64, others "
+        "30]",
+    )
+    rate: float | None = _option(
+        "--rate", "--lr", metavar="R", help="Largest learning rate. [default: strip 0.002, quad 0.003, "
+        "others 0.001]",
+    )
+    schedule: Literal["cosine", "step"] | None = _option(
         help="Decrease of the learning rate. cosine: to zero. step: by the factor 0.9 after each fifteenth "
         "of the training. [default: cosine for strip and quad, step for others]",
-    )] = None
-    points: Annotated[str | None, _option(
-        "--points", metavar="N|all",
-        help="Number of random grid points for each step, a sixth of them on the boundary. all: all points. "
-        "[default: 1200]",
-    )] = None
-    held_out: Annotated[int | None, _option(
-        "--held-out", metavar="N", min=0,
-        help="Number of shapes that are used only to monitor the loss, not for training. [default: strip the "
-        "last 300, quad 600, others 0]",
-    )] = None
-    initial: Annotated[str | None, _option(
-        "--initial", metavar="NAME|PATH",
-        help="Model whose weights the training of a quad operator starts from. [default: random weights]",
-    )] = None
-    patience: Annotated[int | None, _option(
-        "--patience", metavar="EPOCHS", min=1,
-        help="Stop when the loss on the held-out shapes has not decreased for this many epochs, and keep the "
-        "best weights. [default: never]",
-    )] = None
-    seed: Annotated[int, _option(
-        "--seed", metavar="S", min=0, show_default=True,
-        help="Seed of the initial weights, the order of the shapes and the random points.",
-    )] = 0
-    threads: Annotated[int, _option(
-        "--threads", metavar="N", min=1, show_default=True, help="Number of threads of torch.",
-    )] = 1
-    device: Annotated[Literal["auto", "cpu", "cuda"] | None, _option(
-        "--device", metavar="auto|cpu|cuda",
+    )
+    points: str | None = _option(
+        metavar="N|all", help="Number of random grid points for each step, a sixth of them on the boundary. "
+        "all: all points. [default: 1200]",
+    )
+    held_out: int | None = _option(
+        metavar="N", min=0, help="Number of shapes that are used only to monitor the loss, not for "
+        "training. [default: strip the last 300, quad 600, others 0]",
+    )
+    initial: str | None = _option(
+        metavar="NAME|PATH", help="Model whose weights the training of a quad operator starts from. "
+        "[default: random weights]",
+    )
+    patience: int | None = _option(
+        metavar="EPOCHS", min=1, help="Stop when the loss on the held-out shapes has not decreased for this "
+        "many epochs, and keep the best weights. [default: never]",
+    )
+    seed: int = _option(
+        default=0, metavar="S", min=0, help="Seed of the initial weights, the order of the shapes and the "
+        "random points.",
+    )
+    threads: int = _option(default=1, metavar="N", min=1, help="Number of threads of torch.")
+    device: Literal["auto", "cpu", "cuda"] | None = _option(
         help="Device for the training. auto: cuda if torch finds it, else cpu. [default: cpu for strip and "
         "quad, auto for others]",
-    )] = None
-    amp: Annotated[bool, _option(
-        "--amp",
-        help="Multiply matrices in bfloat16 where the accuracy permits it. On a CPU without bfloat16 units "
-        "this takes twice as long.",
-    )] = False
-    compiled: Annotated[bool, _option(
-        "--compile",
-        help="Compile the training step with torch.compile, which needs a C++ compiler. Small models on a "
-        "CPU do not become faster.",
-    )] = False
-    resume: Annotated[bool, _option(
-        "--resume", help="Continue from the checkpoint next to the output, if it exists.",
-    )] = False
-    checkpoint_every: Annotated[int | None, _option(
-        "--checkpoint-every", metavar="EPOCHS", min=1,
-        help="Number of epochs between checkpoints. [default: 1 for strip and quad, a two-hundredth of all "
-        "epochs for others]",
-    )] = None
+    )
+    amp: bool = _option(
+        default=False, help="Multiply matrices in bfloat16 where the accuracy permits it. On a CPU without "
+        "bfloat16 units this takes twice as long.",
+    )
+    compiled: bool = _option(
+        "--compile", default=False, help="Compile the training step with torch.compile, which needs a C++ "
+        "compiler. Small models on a CPU do not become faster.",
+    )
+    resume: bool = _option(
+        default=False, help="Continue from the checkpoint next to the output, if it exists.",
+    )
+    checkpoint_every: int | None = _option(
+        metavar="EPOCHS", min=1, help="Number of epochs between checkpoints. [default: 1 for strip and "
+        "quad, a two-hundredth of all epochs for others]",
+    )
     from_format: o.From = None
 
 
@@ -113,21 +101,20 @@ def train(
         "the same domains, one with Winslow's and one with variational grids, with 33x33 nodes (65x33 around "
         "bodies). meshnet also accepts volumes.",
     )],
-    output: Annotated[str, _output("-o", "--output", metavar="FILE",
-        help="Model file to write, .safetensors.",
+    output: Annotated[str, _output(
+        "-o", "--output", metavar="FILE", help="Model file to write, .safetensors.",
     )],
     printing: o.PrintOptions,
     options: TrainOptions,
-    settings: Annotated[list[str] | None, _option(
-        "--set", metavar="NAME=VALUE",
-        help="Set a parameter of the model, e.g. sensors=80, or a weight in the loss of the quad operator, "
-        "e.g. folds=3. The documentation lists all on the page on operators of the MeshONet paper. "
-        "Repeatable.",
-    )] = None,
-    log_csv: Annotated[str | None, _output(
-        "--log-csv", metavar="FILE",
-        help="Write the loss, its terms, the learning rate and the time of each epoch to a CSV file.",
-    )] = None,
+    settings: list[str] | None = _option(
+        metavar="NAME=VALUE", help="Set a parameter of the model, e.g. sensors=80, or a weight in the loss "
+        "of the quad operator, e.g. folds=3. The documentation lists all on the page on operators of the "
+        "MeshONet paper. Repeatable.",
+    ),
+    log_csv: str | None = _output(
+        metavar="FILE", help="Write the loss, its terms, the learning rate and the time of each epoch to a "
+        "CSV file.",
+    ),
 ) -> int:
     """Train a neural operator on datasets.
 

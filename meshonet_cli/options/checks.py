@@ -17,13 +17,10 @@ Profile = StrEnum("Profile", "openfoam pointwise verdict viscous")
 """Profiles of `meshonet.geometry.quality.profiles`; typer allows repeated options only for enumerations."""
 
 # fmt: off
-AllowInvalid = Annotated[bool, _option(
-    "--allow-invalid", help="Write the grid even if it has folded cells.",
-)]
+AllowInvalid = Annotated[bool, _option(help="Write the grid even if it has folded cells.")]
 
 
 LeaveOutFailed = Annotated[bool, _option(
-    "--leave-out-failed",
     help="Do not write grids that fail a --fail-on or --profile; print a line for each. The exit code stays "
     "1.",
 )]
@@ -33,11 +30,10 @@ LeaveOutFailed = Annotated[bool, _option(
 class CheckOptions:
     """Validity of a grid."""
 
-    repair: Annotated[bool | None, _option(
-        "--repair/--no-repair",
-        help="Repair folded cells. With --no-repair a grid with folded cells is an error. [default: "
-        "--no-repair for tfi, else --repair]",
-    )] = None
+    repair: bool | None = _option(
+        "--repair/--no-repair", help="Repair folded cells. With --no-repair a grid with folded cells is an "
+        "error. [default: --no-repair for tfi, else --repair]",
+    )
     allow_invalid: AllowInvalid = False
 
 
@@ -45,20 +41,19 @@ class CheckOptions:
 class GateOptions:
     """Quality limits of a grid."""
 
-    fail_on: Annotated[list[str] | None, _option(
-        "--fail-on", metavar="GATE",
-        help="Exit with code 1 if this condition holds, e.g. 'max_angle>170', 'skewness.p99>0.8' (99th "
-        "percentile) or 'folded>0'. Metrics include folded, max_angle, skewness, growth, wall_growth, "
-        "equal_wall_cells, far_field, non_orthogonality, face_skewness, box_ratio and, for multi-block "
-        "grids, irregular; the documentation lists all on the page on quality. The condition replaces the "
-        "--profile limit of the same metric. For several grids a table shows which of them pass. Repeatable.",
-    )] = None
-    profile: Annotated[list[Profile] | None, _option(
-        "--profile", metavar="openfoam|pointwise|verdict|viscous",
-        help="Check the grid against the thresholds of another program or guideline: each gives pass, warn "
-        "or FAIL, and a FAIL exits with code 1. The documentation lists the thresholds on the page on "
-        "quality. Repeatable.",
-    )] = None
+    fail_on: list[str] | None = _option(
+        metavar="GATE", help="Exit with code 1 if this condition holds, e.g. 'max_angle>170', "
+        "'skewness.p99>0.8' (99th percentile) or 'folded>0'. Metrics include folded, max_angle, skewness, "
+        "growth, wall_growth, equal_wall_cells, far_field, non_orthogonality, face_skewness, box_ratio and, "
+        "for multi-block grids, irregular; the documentation lists all on the page on quality. The "
+        "condition replaces the --profile limit of the same metric. For several grids a table shows which "
+        "of them pass. Repeatable.",
+    )
+    profile: list[Profile] | None = _option(
+        metavar="openfoam|pointwise|verdict|viscous", help="Check the grid against the thresholds of "
+        "another program or guideline: each gives pass, warn or FAIL, and a FAIL exits with code 1. The "
+        "documentation lists the thresholds on the page on quality. Repeatable.",
+    )
 
     def criteria(self, leave_out: bool = False, *, more: Sequence[str] = ()) -> "Criteria | None":
         """Return gates and profiles, None if there are none; gates may also use the names in `more`.

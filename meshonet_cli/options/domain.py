@@ -11,15 +11,13 @@ _COUNTS = "use SIDE=N, e.g. inlet=40,floor=120"
 
 # fmt: off
 BlocksName = Annotated[Literal["auto", "single"], _option(
-    "--blocks", metavar="auto|single", show_default=True,
-    help="Number of blocks. auto: one for a four-sided domain or a body in a far field, several for all "
-    "other domains. single: one.",
+    "--blocks", help="Number of blocks. auto: one for a four-sided domain or a body in a far field, several "
+    "for all other domains. single: one.",
 )]
 Walls = Annotated[str | None, _option(
-    "--walls", metavar="NAME,NAME",
-    help="Names of the walls with layers: holes, or named parts of a boundary curve. Needs --first-cell or "
-    "--y-plus. Layers end only at corners of about 90 degrees; if both sides of such a corner are walls, "
-    "their layers meet. [default: the walls described at --first-cell]",
+    metavar="NAME,NAME", help="Names of the walls with layers: holes, or named parts of a boundary curve. "
+    "Needs --first-cell or --y-plus. Layers end only at corners of about 90 degrees; if both sides of such "
+    "a corner are walls, their layers meet. [default: the walls described at --first-cell]",
 )]
 
 
@@ -27,39 +25,34 @@ Walls = Annotated[str | None, _option(
 class BlockOptions:
     """Division of a domain into blocks. Each of these options except --assemble makes a multi-block grid."""
 
-    assemble: Annotated[bool, _option(
-        "--assemble",
-        help="Combine all inputs into one domain: bodies in a common far field or, if one input encloses the "
-        "others, inside this input. Each wall is named after its file.",
-    )] = False
-    cells: Annotated[int | None, _option(
-        "--cells", metavar="N",
-        help="Approximate number of cells in all blocks together. [default: 2500; 20000 with layers]",
-    )] = None
-    cell_size: Annotated[float | None, _option(
-        "--cell-size", metavar="H",
-        help="Edge length of cells away from walls, in the unit of the input, instead of --cells. Edges are "
-        "shorter at layers and longer towards a distant far field.",
-    )] = None
-    layout: Annotated[str | None, _option(
-        "--layout", metavar="LAYOUT.json",
-        help="Use the blocks in this file, which meshonet layout wrote for the same or a similar domain. For "
-        "a grid with layers, make the layout with a first cell. The command layout itself fits the blocks to "
-        "its domain and writes them with about --cells cells.",
-    )] = None
-    periodic: Annotated[list[str] | None, _option(
-        "--periodic", metavar="SIDE,SIDE",
-        help="Names of two sides of the outer boundary, one a translation of the other, whose nodes must "
-        "match. Formats that know periodic sides mark them. Repeat the option for a second pair. A GeoJSON "
-        "file may have the property periodic instead.",
-    )] = None
+    assemble: bool = _option(
+        default=False, help="Combine all inputs into one domain: bodies in a common far field or, if one "
+        "input encloses the others, inside this input. Each wall is named after its file.",
+    )
+    cells: int | None = _option(
+        metavar="N", help="Approximate number of cells in all blocks together. [default: 2500; 20000 with "
+        "layers]",
+    )
+    cell_size: float | None = _option(
+        metavar="H", help="Edge length of cells away from walls, in the unit of the input, instead of "
+        "--cells. Edges are shorter at layers and longer towards a distant far field.",
+    )
+    layout: str | None = _option(
+        metavar="LAYOUT.json", help="Use the blocks in this file, which meshonet layout wrote for the same "
+        "or a similar domain. For a grid with layers, make the layout with a first cell. The command layout "
+        "itself fits the blocks to its domain and writes them with about --cells cells.",
+    )
+    periodic: list[str] | None = _option(
+        metavar="SIDE,SIDE", help="Names of two sides of the outer boundary, one a translation of the "
+        "other, whose nodes must match. Formats that know periodic sides mark them. Repeat the option for a "
+        "second pair. A GeoJSON file may have the property periodic instead.",
+    )
 
     walls: Walls = None
-    count: Annotated[str | None, _option(
-        "--count", metavar="SIDE=N,...",
-        help="Number of cells along each named side of the domain, e.g. inlet=40. Opposite sides of a block "
-        "have equal numbers of cells, so some combinations are impossible.",
-    )] = None
+    count: str | None = _option(
+        metavar="SIDE=N,...", help="Number of cells along each named side of the domain, e.g. inlet=40. "
+        "Opposite sides of a block have equal numbers of cells, so some combinations are impossible.",
+    )
 
     def parameters(self) -> dict[str, Any]:
         """Return the options as parameters of the library. Raises InputError: unreadable text."""
@@ -79,20 +72,19 @@ class BlockOptions:
 class DomainOptions(BlockOptions):
     """Options of grids of domains: division into blocks, passage of a cascade."""
 
-    pitch: Annotated[str | None, _option(
-        "--pitch", metavar="DX,DY",
-        help="Displacement from one blade of a cascade to the next, in the unit of the input, which is one "
-        "blade. The grid fills the passage around this blade; the nodes of its two periodic sides match. Not "
-        "with --layout: a passage always has the same blocks.",
-    )] = None
-    inlet: Annotated[float | None, _option(
-        "--inlet", metavar="L",
-        help="Length of the passage upstream of the blade, in axial chords. Needs --pitch. [default: 1]",
-    )] = None
-    outlet: Annotated[float | None, _option(
-        "--outlet", metavar="L",
-        help="Length of the passage downstream of the blade, in axial chords. Needs --pitch. [default: 1]",
-    )] = None
+    pitch: str | None = _option(
+        metavar="DX,DY", help="Displacement from one blade of a cascade to the next, in the unit of the "
+        "input, which is one blade. The grid fills the passage around this blade; the nodes of its two "
+        "periodic sides match. Not with --layout: a passage always has the same blocks.",
+    )
+    inlet: float | None = _option(
+        metavar="L", help="Length of the passage upstream of the blade, in axial chords. Needs --pitch. "
+        "[default: 1]",
+    )
+    outlet: float | None = _option(
+        metavar="L", help="Length of the passage downstream of the blade, in axial chords. Needs --pitch. "
+        "[default: 1]",
+    )
 
     def parameters(self) -> dict[str, Any]:
         """Return the options as parameters of the library. Raises InputError: unreadable text."""

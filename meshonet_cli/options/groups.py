@@ -4,9 +4,11 @@ import dataclasses
 import functools
 import inspect
 from collections.abc import Callable
-from typing import Annotated, Any, get_origin
+from typing import Annotated, Any, Literal, get_args, get_origin
 
 import typer
+
+from meshonet_cli.terminal.errors import option
 
 IO, SAMPLING, BOUNDARY_LAYER = "Input and output", "Sampling", "Boundary layer"
 DOMAIN, VOLUME = "Multi-block grids", "Volumes"
@@ -16,8 +18,19 @@ GROUPS = (IO, SAMPLING, BOUNDARY_LAYER, DOMAIN, VOLUME, METHOD, CHECKS)  # in th
 
 
 def option_of(group: str) -> Callable[..., Any]:
-    """Return `typer.Option` for an option of `group`; defaults are shown only in help texts."""
-    return functools.partial(typer.Option, rich_help_panel=group, show_default=False)
+    """Return the function that declares an option of `group`, as a default or in `Annotated`.
+
+    It takes the names of the option (by default `meshonet_cli.terminal.errors.option` of the parameter),
+    its ``default``, and the arguments ``metavar`` (by default the choices), ``help``, ``min`` and ``max`` of
+    `typer.Option`. Help texts show defaults that are numbers or words.
+    """
+
+    def declared(*names: str, default: Any = None, **settings: Any) -> Any:
+        return dataclasses.field(
+            default=default, metadata={"names": names, "rich_help_panel": group, **settings}
+        )
+
+    return declared
 
 
 def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -32,13 +45,13 @@ def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
     for parameter in inspect.signature(function).parameters.values():
         block = parameter.annotation
         if not (isinstance(block, type) and dataclasses.is_dataclass(block)):
-            options.append(parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY))
+            options += _taken_by_typer(parameter.name, block, parameter.default)
             continue
         blocks.append((parameter.name, block, []))
-        for each in inspect.signature(block).parameters.values():
-            if get_origin(each.annotation) is Annotated:
+        for field in dataclasses.fields(block):
+            for each in _taken_by_typer(field.name, field.type, field):
                 blocks[-1][2].append(each.name)
-                options.append(each.replace(kind=inspect.Parameter.KEYWORD_ONLY))
+                options.append(each)
 
     @functools.wraps(function)
     def call(**values: Any) -> Any:
@@ -49,6 +62,27 @@ def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
     call.__signature__ = inspect.Signature(options)  # type: ignore[attr-defined]
     call.__annotations__ = {}
     return call
+
+
+def _taken_by_typer(name: str, kind: Any, default: Any) -> list[inspect.Parameter]:
+    """Return an option or argument in the form that typer takes; nothing for a field that is neither."""
+    declared = default
+    if get_origin(kind) is Annotated:
+        kind, declared = get_args(kind)
+    if isinstance(default, dataclasses.Field):
+        default = inspect.Parameter.empty if default.default is dataclasses.MISSING else default.default
+    if isinstance(declared, dataclasses.Field):
+        if not declared.metadata:
+            return []
+        settings = dict(declared.metadata)
+        names = settings.pop("names") or [option(name)]
+        for each in (kind, *get_args(kind)):
+            if get_origin(each) is Literal:
+                settings.setdefault("metavar", "|".join(get_args(each)))
+        shown = isinstance(default, int | float | str) and not isinstance(default, bool) and default != ""
+        declared = typer.Option(*names, show_default=shown, **settings)
+    kind = Annotated[kind, declared]
+    return [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)]
 
 
 def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:

@@ -29,36 +29,33 @@ Grids = Annotated[list[str], typer.Argument(
     "listed in FILE.",
 )]
 Output = Annotated[str, _option(
-    "-o", "--output", metavar="FILE",
-    help="File to write, or - for standard output. For several inputs: one .h5 file, or a pattern such as "
-    "'dir/{stem}.vts', with {stem} (of the input file), {name} (of the shape) or {index} (from 0).",
+    "-o", "--output", metavar="FILE", help="File to write, or - for standard output. For several inputs: "
+    "one .h5 file, or a pattern such as 'dir/{stem}.vts', with {stem} (of the input file), {name} (of the "
+    "shape) or {index} (from 0).",
 )]
 From = Annotated[str | None, _option(
-    "--from", metavar="FORMAT",
-    help="Format of the input, as in meshonet convert --list-formats. [default: from the extension or the "
-    "content]",
+    metavar="FORMAT", help="Format of the input, as in meshonet convert --list-formats. [default: from the "
+    "extension or the content]",
 )]
 To = Annotated[str | None, _option(
-    "--to", metavar="FORMAT",
-    help="Format of the output, as in meshonet convert --list-formats. [default: from the extension; hdf5 on "
-    "standard output]",
+    metavar="FORMAT", help="Format of the output, as in meshonet convert --list-formats. [default: from the "
+    "extension; hdf5 on standard output]",
 )]
 SkipExisting = Annotated[bool, _option(
-    "--skip-existing", help="Skip an input if its output file, or its part of a dataset, already exists.",
+    help="Skip an input if its output file, or its part of a dataset, already exists.",
 )]
 Threads = Annotated[int | None, _option(
-    "--threads", metavar="N", min=1, max=64,
-    help="Number of threads for each grid; the result does not depend on it. [default: cores divided by "
-    "processes]",
+    metavar="N", min=1, max=64, help="Number of threads for each grid; the result does not depend on it. "
+    "[default: cores divided by processes]",
 )]
 AsJson = Annotated[bool, _option("--json", help="Print one JSON object per result on standard output.")]
 PartSize = Annotated[int | None, _option(
-    "--part-size", metavar="N", min=1, max=1_000_000,
-    help="Write an .h5 dataset in parts of N inputs each: out/part-00000.h5, out/part-00001.h5 and so on, "
-    "which out.h5 presents as one dataset. --skip-existing continues an unfinished dataset. [default: parts "
-    "of up to 256 MiB with --shard or more than 10,000 inputs, else no parts]",
+    metavar="N", min=1, max=1_000_000, help="Write an .h5 dataset in parts of N inputs each: "
+    "out/part-00000.h5, out/part-00001.h5 and so on, which out.h5 presents as one dataset. --skip-existing "
+    "continues an unfinished dataset. [default: parts of up to 256 MiB with --shard or more than 10,000 "
+    "inputs, else no parts]",
 )]
-Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")]
+Debug = Annotated[bool, _option(help="Show the traceback of errors.")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +74,7 @@ class PrintOptions:
     """Messages of a command."""
 
     as_json: AsJson = False
-    quiet: Annotated[bool, _option("-q", "--quiet", help="Print only warnings and errors.")] = False
+    quiet: bool = _option("-q", "--quiet", default=False, help="Print only warnings and errors.")
     debug: Debug = False
 
     def session(self) -> "Session":
@@ -91,16 +88,14 @@ class PrintOptions:
 class InputOptions(PrintOptions):
     """Selection of inputs from folders, zip archives and lists; shards; messages."""
 
-    pick: Annotated[list[str] | None, _option(
-        "--pick", metavar="PATTERN",
-        help="Use only files whose name matches PATTERN, e.g. 'naca*', from folders, .zip files and lists. "
-        "Case does not matter. Repeatable.",
-    )] = None
-    shard: Annotated[str | None, _option(
-        "--shard", metavar="K/N",
-        help="Process only inputs K, K+N, K+2N and so on (parts, if the output is a dataset in parts), so "
-        "that N jobs share the work. K is 1 to N.",
-    )] = None
+    pick: list[str] | None = _option(
+        metavar="PATTERN", help="Use only files whose name matches PATTERN, e.g. 'naca*', from folders, "
+        ".zip files and lists. Case does not matter. Repeatable.",
+    )
+    shard: str | None = _option(
+        metavar="K/N", help="Process only inputs K, K+N, K+2N and so on (parts, if the output is a dataset "
+        "in parts), so that N jobs share the work. K is 1 to N.",
+    )
 
     def inputs(
         self, words: Sequence[str], *, grids: bool = False, suffixes: Sequence[str] = ()
@@ -132,20 +127,17 @@ class InputOptions(PrintOptions):
 class RunOptions(InputOptions):
     """Selection of inputs, messages, and the engine of a batch."""
 
-    jobs: Annotated[int, _option(
-        "--jobs", metavar="N", min=1, max=1024, show_default=True,
-        help="Number of processes that share the inputs.",
-    )] = 1
-    engine: Annotated[EngineName, _option(
-        "--engine", metavar="processes|dask|mpi", show_default=True,
-        help="Engine that starts the processes: processes uses --jobs on this machine, dask a Dask cluster, "
-        "mpi the ranks of mpiexec -n N meshonet ...",
-    )] = "processes"
-    scheduler: Annotated[str | None, _option(
-        "--scheduler", metavar="ADDRESS",
-        help="Address of the scheduler for --engine dask, e.g. tcp://head:8786. [default: a cluster of "
-        "--jobs processes on this machine]",
-    )] = None
+    jobs: int = _option(
+        default=1, metavar="N", min=1, max=1024, help="Number of processes that share the inputs.",
+    )
+    engine: EngineName = _option(
+        default="processes", help="Engine that starts the processes: processes uses --jobs on this machine, "
+        "dask a Dask cluster, mpi the ranks of mpiexec -n N meshonet ...",
+    )
+    scheduler: str | None = _option(
+        metavar="ADDRESS", help="Address of the scheduler for --engine dask, e.g. tcp://head:8786. "
+        "[default: a cluster of --jobs processes on this machine]",
+    )
 
     def batch(self, inputs: Any, files: Files) -> "Batch":
         """Return the batch over `inputs`. Raises InputError: options that exclude each other."""

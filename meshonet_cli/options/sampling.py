@@ -23,11 +23,10 @@ _option = option_of(SAMPLING)
 
 # fmt: off
 Resolution = Annotated[str | None, _option(
-    "--res", metavar="N|NIxNJ[xNK]",
-    help="Number of nodes: N along every direction, or NI along xi (around a body), NJ along eta (away from "
-    "it) and NK along zeta (volumes). If --growth determines the number of rows, N is NI. For a multi-block "
-    "grid, number of cells along its longer extent. [default: the nodes of the input; 200x100 for airfoils "
-    "and outlines]",
+    "--res", metavar="N|NIxNJ[xNK]", help="Number of nodes: N along every direction, or NI along xi (around "
+    "a body), NJ along eta (away from it) and NK along zeta (volumes). If --growth determines the number of "
+    "rows, N is NI. For a multi-block grid, number of cells along its longer extent. [default: the nodes of "
+    "the input; 200x100 for airfoils and outlines]",
 )]
 
 
@@ -36,78 +35,72 @@ class SamplingOptions:
     """Distribution of the boundary nodes."""
 
     res: Resolution = None
-    topology: Annotated[TopologyName, _option(
-        "--topology", metavar="auto|quad|o|c", show_default=True,
-        help="Topology of the grid. quad: four-sided. o: around a body. c: around an airfoil and its wake; "
-        "NI includes both sides of the wake. auto: c for an airfoil with a sharp trailing edge and a first "
-        "cell, o for other bodies and outlines with fewer than four corners, else quad.",
-    )] = "auto"
-    spacing: Annotated[SpacingName, _option(
-        "--spacing", metavar="|".join(LAWS), show_default=True,
-        help="Distribution of the nodes along walls. uniform: equal cells. cosine: smaller cells at both "
-        "ends. tanh: smaller cells at both ends, whose length --le-spacing and --te-spacing set for "
-        "airfoils. curvature: smaller cells at both ends and at bends. conformal: equal steps on the circle "
-        "to which a conformal map takes the body. auto: curvature with a first cell; otherwise conformal "
-        "around airfoils (tanh with --le-spacing or --te-spacing) and smooth bodies, else uniform.",
-    )] = "auto"
-    le_spacing: Annotated[float | None, _option(
-        "--le-spacing", metavar="H",
-        help="Length of the wall cells at the leading edge, in chords. [default: from --spacing]",
-    )] = None
-    te_spacing: Annotated[float | None, _option(
-        "--te-spacing", metavar="H",
-        help="Length of the wall cells at the trailing edge, in chords. [default: from --spacing]",
-    )] = None
-    te: Annotated[Literal["auto", "exact", "round", "wedge"], _option(
-        "--te", metavar="auto|exact|round|wedge", show_default=True,
-        help="Shape of a blunt trailing edge. exact: unchanged; grid angles at its two corners deviate from "
-        "90 degrees by about 45. round: rounded corners; angles deviate by at most 10. wedge: closed by a "
-        "wedge of up to four base heights. auto: wedge for a C grid that is not marched, or that has no "
-        "first cell and a base of at most 0.005 chords; else exact.",
-    )] = "auto"
-    far_field: Annotated[float | None, _option(
-        "--far-field", metavar="R",
-        help="Smallest distance of the far field from the middle of the body, in chords of an airfoil or "
-        "largest extents of other bodies. For lift and drag use 100 or more. For a volume marched from "
-        "a surface, the marching distance in the unit of the surface. [default: 15; from a surface 15 "
-        "bounding-box lengths]",
-    )] = None
-    wake: Annotated[float | None, _option(
-        "--wake", metavar="L",
-        help="Length of the wake of a C grid, from the trailing edge, in chords. [default: --far-field]",
-    )] = None
-    wake_nodes: Annotated[int | None, _option(
-        "--wake-nodes", metavar="N",
-        help="Number of nodes along the wake of a C grid, including the trailing edge. Cell lengths grow by "
-        "a constant ratio. [default: about a fifth of NI]",
-    )] = None
-    base: Annotated[float | None, _option(
-        "--base", metavar="T",
-        help="Open a trailing edge thinner than T chords to this thickness. Both sides move apart in "
-        "proportion to the distance from the leading edge. --te then applies to this base.",
-    )] = None
-    base_nodes: Annotated[int | None, _option(
-        "--base-nodes", metavar="N",
-        help="Number of nodes on the base of a blunt trailing edge, including its two corners; odd for an O "
-        "grid, whose seam is in the middle of the base. [default: derived from the base height and the cells "
-        "next to it]",
-    )] = None
-    smooth: Annotated[float | None, _option(
-        "--smooth", metavar="TOL",
-        help="Smooth noisy or rounded coordinates of an airfoil by splines that stay within TOL chords of "
-        "the points. Choose 3 times the standard deviation of the noise, or one unit of the last digit: 1e-4 "
-        "for four decimals. A corner more than 2 TOL from the line between the third points before and after "
-        "it stays. A base lower than TOL is closed. The report lists the changes. Needs SciPy.",
-    )] = None
-    corners: Annotated[str, _option(
-        "--corners", metavar="auto|I,J,K,L", show_default=True,
-        help="Indices, from 0, of four points of an outline, in order from the south-west, that become the "
-        "corners of a four-sided grid. auto: the four sharpest corners.",
-    )] = "auto"
-    normalise: Annotated[bool, _option(
-        "--normalise",
-        help="Scale, turn and move the airfoil: leading edge to (0, 0), trailing edge to (1, 0).",
-    )] = False
+    topology: TopologyName = _option(
+        default="auto", help="Topology of the grid. quad: four-sided. o: around a body. c: around an "
+        "airfoil and its wake; NI includes both sides of the wake. auto: c for an airfoil with a sharp "
+        "trailing edge and a first cell, o for other bodies and outlines with fewer than four corners, else "
+        "quad.",
+    )
+    spacing: SpacingName = _option(
+        default="auto", help="Distribution of the nodes along walls. uniform: equal cells. cosine: smaller "
+        "cells at both ends. tanh: smaller cells at both ends, whose length --le-spacing and --te-spacing "
+        "set for airfoils. curvature: smaller cells at both ends and at bends. conformal: equal steps on "
+        "the circle to which a conformal map takes the body. auto: curvature with a first cell; otherwise "
+        "conformal around airfoils (tanh with --le-spacing or --te-spacing) and smooth bodies, else uniform.",
+    )
+    le_spacing: float | None = _option(
+        metavar="H", help="Length of the wall cells at the leading edge, in chords. [default: from "
+        "--spacing]",
+    )
+    te_spacing: float | None = _option(
+        metavar="H", help="Length of the wall cells at the trailing edge, in chords. [default: from "
+        "--spacing]",
+    )
+    te: Literal["auto", "exact", "round", "wedge"] = _option(
+        default="auto", help="Shape of a blunt trailing edge. exact: unchanged; grid angles at its two "
+        "corners deviate from 90 degrees by about 45. round: rounded corners; angles deviate by at most 10. "
+        "wedge: closed by a wedge of up to four base heights. auto: wedge for a C grid that is not marched, "
+        "or that has no first cell and a base of at most 0.005 chords; else exact.",
+    )
+    far_field: float | None = _option(
+        metavar="R", help="Smallest distance of the far field from the middle of the body, in chords of an "
+        "airfoil or largest extents of other bodies. For lift and drag use 100 or more. For a volume "
+        "marched from a surface, the marching distance in the unit of the surface. [default: 15; from a "
+        "surface 15 bounding-box lengths]",
+    )
+    wake: float | None = _option(
+        metavar="L", help="Length of the wake of a C grid, from the trailing edge, in chords. [default: "
+        "--far-field]",
+    )
+    wake_nodes: int | None = _option(
+        metavar="N", help="Number of nodes along the wake of a C grid, including the trailing edge. Cell "
+        "lengths grow by a constant ratio. [default: about a fifth of NI]",
+    )
+    base: float | None = _option(
+        metavar="T", help="Open a trailing edge thinner than T chords to this thickness. Both sides move "
+        "apart in proportion to the distance from the leading edge. --te then applies to this base.",
+    )
+    base_nodes: int | None = _option(
+        metavar="N", help="Number of nodes on the base of a blunt trailing edge, including its two corners; "
+        "odd for an O grid, whose seam is in the middle of the base. [default: derived from the base height "
+        "and the cells next to it]",
+    )
+    smooth: float | None = _option(
+        metavar="TOL", help="Smooth noisy or rounded coordinates of an airfoil by splines that stay within "
+        "TOL chords of the points. Choose 3 times the standard deviation of the noise, or one unit of the "
+        "last digit: 1e-4 for four decimals. A corner more than 2 TOL from the line between the third "
+        "points before and after it stays. A base lower than TOL is closed. The report lists the changes. "
+        "Needs SciPy.",
+    )
+    corners: str = _option(
+        default="auto", metavar="auto|I,J,K,L", help="Indices, from 0, of four points of an outline, in "
+        "order from the south-west, that become the corners of a four-sided grid. auto: the four sharpest "
+        "corners.",
+    )
+    normalise: bool = _option(
+        default=False, help="Scale, turn and move the airfoil: leading edge to (0, 0), trailing edge to (1, "
+        "0).",
+    )
 
     def placed(self, layers: "Mapping[str, Any] | None" = None) -> "Sampling":
         """Return the options, with those of `layers`, as `Sampling`. Raises InputError: an invalid value."""

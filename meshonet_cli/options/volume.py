@@ -12,19 +12,17 @@ _option = option_of(VOLUME)
 
 # fmt: off
 Layers = Annotated[int | None, _option(
-    "--layers", metavar="N", min=3,
-    help="Number of nodes along each grid line of a marched volume from the surface to the far field, "
-    "including both ends. [default: as many as --growth needs, or a growth ratio of 1.2]",
+    metavar="N", min=3, help="Number of nodes along each grid line of a marched volume from the surface to "
+    "the far field, including both ends. [default: as many as --growth needs, or a growth ratio of 1.2]",
 )]
 
 Revolve = Annotated[float | None, _option(
-    "--revolve", metavar="DEGREES",
-    help="Turn the planar grid about --axis by this angle in degrees: up to 10 into a wedge of one cell, "
-    "below 360 into a sector, 360 into a full ring.",
+    metavar="DEGREES", help="Turn the planar grid about --axis by this angle in degrees: up to 10 into a "
+    "wedge of one cell, below 360 into a sector, 360 into a full ring.",
 )]
 Axis = Annotated[str | None, _option(
-    "--axis", metavar="x|y|X,Y,DX,DY",
-    help="Axis of --revolve: x, y, or the line through (X, Y) in the direction (DX, DY). [default: x]",
+    metavar="x|y|X,Y,DX,DY", help="Axis of --revolve: x, y, or the line through (X, Y) in the direction "
+    "(DX, DY). [default: x]",
 )]
 
 
@@ -57,22 +55,19 @@ class VolumeOptions:
     """Settings for volumes that are marched from a surface or made inside six faces."""
 
     layers: Layers = None
-    symmetry: Annotated[Literal["x", "y", "z", "none"] | None, _option(
-        "--symmetry", metavar="x|y|z|none",
+    symmetry: Literal["x", "y", "z", "none"] | None = _option(
         help="Axis normal to the plane of symmetry that contains open edges of the surface. none: all open "
-        "edges are free, and grid lines leave them along the surface normal. [default: open edges in a plane "
-        "normal to an axis are in a plane of symmetry, others are free]",
-    )] = None
-    poles: Annotated[Literal["replace", "refuse"], _option(
-        "--poles", metavar="replace|refuse",
-        help="Treatment of poles: sides of surface patches that are a single point, as at the nose of a "
-        "fuselage. replace: a four-sided core patch and a few rows around it. refuse: an error. [default: "
-        "replace]",
-    )] = "replace"
-    energy: Annotated[Literal["angles", "shape"] | None, _option(
-        "--energy", metavar="angles|shape",
+        "edges are free, and grid lines leave them along the surface normal. [default: open edges in a "
+        "plane normal to an axis are in a plane of symmetry, others are free]",
+    )
+    poles: Literal["replace", "refuse"] = _option(
+        default="replace", help="Treatment of poles: sides of surface patches that are a single point, as "
+        "at the nose of a fuselage. replace: a four-sided core patch and a few rows around it. refuse: an "
+        "error.",
+    )
+    energy: Literal["angles", "shape"] | None = _option(
         help="Functional that is minimised inside six faces. angles: favours right angles and gradual "
         "changes of length, also for long and thin cells. shape: favours cells like cubes, by the inverse "
         "mean ratio |T|²/(3 det(T)^⅔) of the Jacobian matrices T (metric 303 of TMOP). [default: angles]",
-    )] = None
+    )
 # fmt: on
