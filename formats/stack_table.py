@@ -17,7 +17,7 @@ _STEEPEST = 85.0  # largest sweep and dihedral in degrees; at 90 the next sectio
 
 
 def stack_table(data: Table, folder: Path, name: str, more: tuple[str, ...] = ()) -> Stack:
-    """Return the stack of a table with perhaps the keys `more`; paths are relative to `folder`.
+    """Return the stack that a table describes; paths are relative to `folder`, keys `more` also allowed.
 
     Raises InputError: see `meshonet.formats.stack.stack_of`.
     """

@@ -40,7 +40,7 @@ class Table:
 
     @contextmanager
     def in_file_of(self, key: str) -> Iterator[None]:
-        """Within the ``with`` block, add `key` to errors; its value is the file that is read."""
+        """Within the ``with`` block, add to errors the `key` whose value is the file that is read."""
         try:
             yield
         except InputError as error:

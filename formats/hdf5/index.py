@@ -33,7 +33,7 @@ class Failed(NamedTuple):
 
 @dataclass
 class PartFacts:
-    """Description of a part, read from its file.
+    """Description of a part of a dataset, read from the part's file.
 
     `size` is the same in all parts. `columns` has length, row shape and type of each dataset. `common` has
     digests of the facts that all grids of the part share.

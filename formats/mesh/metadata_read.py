@@ -70,7 +70,7 @@ def _grid(blocks: Sequence[tuple[Floats, Facts]], name: str) -> Grid:
 
 
 def grid_with(nodes: Floats, facts: Facts, name: str = "") -> Grid:
-    """Return the grid of `nodes` with the facts of its file, or else this `name`.
+    """Return the grid of `nodes` with the `facts` of its file; `name` is its name if the facts have none.
 
     A missing planar topology is recovered. A block of a multi-block grid becomes a grid without connections.
     """

@@ -32,7 +32,7 @@ def read_shapes(source: Source) -> Iterator[Airfoil]:
 
 
 def parse(text: str, source: str) -> Airfoil:
-    r"""Return the airfoil in the text of the file `source`, after which it is named by default.
+    r"""Return the airfoil in a text; `source` is the file, whose name is the airfoil's default name.
 
     >>> parse("Plate\n1 0\n.5 .05\n0 0\n.5 -.05\n1 0\n", "plate.dat").name
     'Plate'

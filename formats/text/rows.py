@@ -114,8 +114,9 @@ def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
 def table(lines: list[Line]) -> list[list[Line]]:
     """Return the rows of a text in blocks, which blank lines and prose separate.
 
-    Two numbers with words are a row beside another row. `left_out` reports ignored lines beside rows. Raises
-    InputError: a damaged line before or after a row, without prose between; a broken line between rows.
+    A line of two numbers and words counts as a row if it is next to another row. `left_out` reports ignored
+    lines beside rows. Raises InputError: a damaged line before or after a row, without prose between; a
+    broken line between rows.
     """
     kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
     blocks: list[list[Line]] = [[]]

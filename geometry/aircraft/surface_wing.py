@@ -25,8 +25,9 @@ _LEVELS = 33  # number of heights between root and tip at which chords are measu
 class SurfaceWing:
     """A wing given by strips of nodes from root to tip, with straight lines along the span.
 
-    Strips follow each other from the trailing edge over the upper side to the nose and back. Rows of a strip
-    are cubic splines, with rising z along lines. The wing ends in a plane of constant z (`ending`).
+    Strips follow each other from the trailing edge over the upper side to the nose and back. The nodes of a
+    strip at a station are on a cubic spline; z rises from station to station. The wing ends in a plane of
+    constant z (`ending`).
 
     Raises
     ------
@@ -55,7 +56,7 @@ class SurfaceWing:
 
     @classmethod
     def ending(cls, strips: tuple[Floats, ...], name: str = "wing") -> SurfaceWing:
-        """Return the wing of `strips` up to the last station, or up to a tip that closes, with a note."""
+        """Return the wing of `strips` up to the last station, or to where a closing tip begins to be thin."""
         strips = tuple(map(_rising, strips))
         end = min(float(strip[-1, :, 2].min()) for strip in strips)
         wing = cls(strips, end, name)
@@ -119,7 +120,7 @@ class SurfaceWing:
         return number + float(way[int(apart[number].argmax())] / way[-1])
 
     def line(self, place: float) -> Floats:
-        """Return the line (stations, 3) along the span at a `place` around the section.
+        """Return the line (stations, 3) along the span that begins at a `place` around the section.
 
         The integer part of `place` is the index of a strip, the fraction is the position across the strip.
         """

@@ -17,7 +17,7 @@ from meshonet.geometry.errors import InputError
 
 
 def across(grid: Grid, connection: Connection, depth: int) -> tuple[Floats, Floats]:
-    """Return the rows of nodes next to a connection: those in the block of the side, those in the donor.
+    """Return the rows of nodes on both sides of a connection: in its own block, and in the donor block.
 
     Both arrays are (depth, n, d), in volumes (depth, n, m, 3), with fewer rows if the block has fewer. The
     row on the connection comes first. Nodes in both arrays are in the order of the side. Rows of the side are

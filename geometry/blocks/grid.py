@@ -190,18 +190,12 @@ class Grid(Connected):
 
     @property
     def x(self) -> Floats:
-        """The x coordinates of the nodes of the only block: (ni, nj), in a volume (ni, nj, nk).
-
-        A C-contiguous view. Raises InputError: a grid of several blocks.
-        """
+        """The x coordinates (ni, nj[, nk]) of the only block. Raises InputError: several blocks."""
         return self.nodes[..., 0]
 
     @property
     def y(self) -> Floats:
-        """The y coordinates of the nodes of the only block: (ni, nj), in a volume (ni, nj, nk).
-
-        A C-contiguous view. Raises InputError: a grid of several blocks.
-        """
+        """The y coordinates (ni, nj[, nk]) of the only block. Raises InputError: several blocks."""
         return self.nodes[..., 1]
 
     def __repr__(self) -> str:

@@ -61,9 +61,9 @@ def outer_patches(
 
 
 def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
-    """Yield owner and node range of rectangles; together, they cover the cells that are not `JOINED`.
+    """Yield rectangles of cells that have one owner (patch), as owner and node range.
 
-    `owners` (n,) or (n, m) are those of the cells, from `owners_of`.
+    They cover all cells that are not `JOINED`. `owners` (n,) or (n, m) is the result of `owners_of`.
     """
     cells = owners.reshape(len(owners), -1)
     left = cells != JOINED

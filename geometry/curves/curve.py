@@ -26,9 +26,9 @@ class Curve:
 
     `points` (n, 2) are at least 2, of a closed curve 3, in any unit; a closed curve may repeat its first. The
     tangent may jump at `corners`, indices of points; None: they are detected (`geometry.polygon.corners`).
-    Intervals in the mask `straight` (intervals,) are straight; long ones between rounded corners are tangent
-    to these (`geometry.polygon.straights`). Raises InputError: too few points; a point not finite or equal to
-    its neighbour; a corner out of range.
+    Intervals in the mask `straight` (intervals,) are straight lines. So are long ones between rounded
+    corners, whose curves are tangent to them (`geometry.polygon.straights`). Raises InputError: too few
+    points; a point not finite or equal to its neighbour; a corner out of range.
 
     >>> square = Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), closed=True)
     >>> square.length, square.corners.tolist()
@@ -107,7 +107,7 @@ class Curve:
 
     @property
     def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:
-        """Cubics (4, n, 2), arc lengths, slopes of the inverse, parts of an interval (``curve.h``)."""
+        """Tables for compiled code: cubics (4, n, 2), arc lengths, slopes of the inverse, parts of cubics."""
         return self._cubic, self._table, self._rate_start, self._rate_stop, _STEPS
 
     def _locate(self, s: Floats) -> tuple[Indices, Floats]:

@@ -33,9 +33,9 @@ def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = Fals
 
 
 def piece_at(x: Floats, at: Floats, dimension: int) -> tuple[Indices, Floats, Floats]:
-    """Return the piece between `x` (n,) at each place (m,), the fraction of it, and its length.
+    """Return, for each of `at` (m,), its interval of `x` (n,), the fraction of the interval, and its length.
 
-    The last two have the shape (m, 1, ...), for tables of so many dimensions.
+    The last two have the shape (m, 1, ...), with as many axes as `dimension` says.
     """
     i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
     h, shape = x[i + 1] - x[i], (*at.shape, *(1,) * (dimension - 1))

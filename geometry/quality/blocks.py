@@ -64,8 +64,8 @@ LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")  # fiel
 def block_figures(grid: Grid, quality: Quality | None = None, run: Lines | None = None) -> BlockFigures:
     """Return the figures of a multi-block grid.
 
-    `quality`, of volumes only, is measured if None. Percentiles of a volume are computed unless `quality` is
-    given without them. `run` holds growth and bend, if they are known already.
+    `quality` is used for volumes only; None: it is measured. Percentiles of a volume are computed unless
+    `quality` is given without them. `run` holds growth and bend, if they are known already.
     """
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes

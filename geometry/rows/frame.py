@@ -15,7 +15,7 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 
 
 def axis_along(direction: Sequence[float]) -> Motion:
-    """Return a rotation that takes `direction` (3,) to the x axis; it maps a coordinate axis to another."""
+    """Return a rotation that takes `direction` (3,) to x; if that is an axis, all axes go to axes."""
     way = np.array(direction)
     way = way / np.abs(way).max()
     way = way / norms(way)
@@ -28,6 +28,6 @@ def axis_along(direction: Sequence[float]) -> Motion:
 
 
 def axis_name(frame: Motion | None) -> str:
-    """Return the name of the axis that a rotation takes to x, such as ``-z``, else ``axis``."""
+    """Return the name of the axis that a rotation takes to x, such as ``-z``; ``axis`` if it is oblique."""
     direction = AXES["x"] if frame is None else frame.turn[0]
     return next((name for name, each in AXES.items() if each == direction), "axis")

@@ -90,7 +90,7 @@ class BladeProfile:
         return made
 
     def aligned(self, places: Floats) -> Self:
-        """Return the profile with places u counted anew, so that the corners are at `places` (c,)."""
+        """Return the profile with the coordinate u redefined so that the corners are at `places` (c,)."""
         made, own = copy(self), self.corner_places()
         u = np.concatenate([_ENDS, places])
         way = np.concatenate([self._stops[1], np.interp(own, *self._stops)])

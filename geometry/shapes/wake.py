@@ -110,7 +110,7 @@ def growing(first: float, length: float, cells: int) -> Floats:
 
 
 def rise(behind: Floats, begin: float = _FROM) -> Floats:
-    """Return by what (n,) first-cell heights rise at distances `behind` (n,) a trailing edge, in chords.
+    """Return by how many chords (n,) first-cell heights rise at distances `behind` (n,) an edge, in chords.
 
     The rise begins at about the distance `begin` (`BEHIND_BASE` for a base).
     """

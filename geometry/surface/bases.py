@@ -55,7 +55,7 @@ class _Edge(NamedTuple):
 
 
 def with_bases(patches: Sequence[Floats]) -> tuple[list[Floats], list[int], tuple[str, ...]]:
-    """Return the patches, then a base for each open trailing edge; the patch index above each; and notes.
+    """Return the patches and then a base for each open trailing edge; the patch above each base; notes.
 
     `patches` are (ni, nj, 3). Raises InputError: the ends of a trailing edge have different numbers of cells.
     """

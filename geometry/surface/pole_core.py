@@ -26,11 +26,11 @@ _FEWEST = 3  # fewest rows between a core and the column `at`, and fewest column
 
 @dataclass(frozen=True)
 class PoleCore:
-    """A core and rows of cells that replace the cells around a pole, the first columns of a fan.
+    """A core and rows of cells that replace the cells around a pole, a side of a patch that is a point.
 
     Parameters
     ----------
-    nodes : (b + 1, a + 1, 3) nodes of the core, with the orientation of the fan.
+    nodes : (b + 1, a + 1, 3) nodes of the core, with the orientation of the fan, the patch at the pole.
     rows : (r, m + 1, 3) rows from the edge of the core to the column `at`.
     at : index of the first column of the fan (m + 1, n, 3) that is kept.
     """

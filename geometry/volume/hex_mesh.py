@@ -64,7 +64,7 @@ class HexMesh:
 
     @cached_property
     def beyond(self) -> tuple[Indices, ...]:
-        """Blocks (ni+2, nj+2, nk+2) with the nodes one step across connected sides around them, else -1."""
+        """Node numbers (ni+2, nj+2, nk+2) of blocks and the layer around: nodes across connections, or -1."""
         wider = tuple(np.pad(block, 1, constant_values=-1) for block in self.blocks)
 
         def outside(number: int, side: Side) -> Indices:
@@ -118,10 +118,7 @@ def exchange(
 
 
 def hex_mesh_of(grid: Grid) -> HexMesh:
-    """Return the mesh of the volume blocks of a grid.
-
-    Raises InputError: a block that is no volume, or left-handed.
-    """
+    """Return the mesh of a grid of volumes. Raises InputError: a block that is no volume, or left-handed."""
     for number, block in enumerate(grid.blocks):
         if len(block.counts) != 3:
             sizes = " x ".join(map(str, block.counts))
@@ -172,5 +169,5 @@ def _poles(face: Indices, nodes: Floats, near: float) -> list[tuple[Indices, Ind
 
 
 def with_nodes(grid: Grid, mesh: HexMesh) -> Grid:
-    """Return `grid` with the nodes of `mesh`, made from it; connected sides are equal."""
+    """Return `grid` with the nodes of `mesh`, made from this grid; nodes of connected sides are equal."""
     return replace(grid, blocks=tuple(Block(mesh.nodes[block]) for block in mesh.blocks))

@@ -37,8 +37,8 @@ def deform(
         New shape of the wall; for several walls, a dict from names to shapes. If the shape is an outline,
         each wall node moves to the same fraction of the arc length between corners. If it is a grid, a
         boundary or an array of nodes (n, d), each wall node moves to the node of the same index. A
-        `meshonet.Motion` moves the wall as a rigid body. A grid outside a dict has the new shapes of all
-        parts of the boundary whose names occur in both grids.
+        `meshonet.Motion` moves the wall as a rigid body. A single grid, not in a dict, gives new shapes to
+        all parts of the boundary whose names occur in both grids.
     allow_invalid : bool, optional
         Return the grid even if cells are folded.
     threads : int, optional

@@ -114,10 +114,7 @@ def quality_page(
 
 
 def single_grid(grid: Grid | str | Path) -> Grid:
-    """Return the grid, or the only grid of a file.
-
-    Raises InputError: a file that cannot be read, or has no grid or several.
-    """
+    """Return the grid, or the only grid of a file. Raises InputError: unreadable; not exactly one grid."""
     if isinstance(grid, Grid):
         return grid
     return only(read_grids(str(grid)), grid, "a grid", "read them one by one")

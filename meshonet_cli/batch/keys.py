@@ -13,7 +13,7 @@ from meshonet_cli.batch.item import Item
 
 
 class Keys:
-    """Keys that samples of a dataset, or of a part, have been given so far."""
+    """Keys (names that differ from each other) that samples of a dataset, or of a part, have been given."""
 
     def __init__(self) -> None:
         self._names = UniqueNames()

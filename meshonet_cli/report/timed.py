@@ -17,10 +17,7 @@ STAGES = ("read", "boundary", "load", "layout", "grid", "guard", "quality", "com
 
 @dataclass
 class Timed:
-    """Report of a member of a batch: the member, its output file, and seconds by stage.
-
-    `left_out`: the result is not written.
-    """
+    """Report of a member of a batch: the member, its output file (or `left_out`), and seconds by stage."""
 
     item: Item[Any]
     notes: tuple[str, ...] = field(default=(), kw_only=True)

@@ -14,10 +14,7 @@ from meshonet_cli.report.delivered import Delivered, delivered
 
 
 def plot_grids(batch: Batch, picture: Picture) -> int:
-    """Draw every grid and return the exit code.
-
-    Raises InputError: an output that is not a picture; one picture for several grids.
-    """
+    """Draw every grid, return the exit code. Raises InputError: not a picture; one picture for many grids."""
     kind = picture_format(batch.files.output, batch.files.to_format).name
     leave_out_docstrings()
     read = partial(read_grids, fmt=batch.files.from_format)

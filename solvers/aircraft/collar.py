@@ -89,10 +89,7 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
 
 
 def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
-    """Return the cell lengths on the rear and on the front side of a rectangle.
-
-    `corners` is the result of `corner_nodes`.
-    """
+    """Return the cell lengths on the rear and on the front side of a rectangle, from `corner_nodes`."""
     edge, nose = corners
     return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
 

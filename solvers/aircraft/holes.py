@@ -134,10 +134,7 @@ def holes_of(
 
 
 def _bounds(wings: Sequence[WingLines], sections: Sequence[Floats]) -> list[tuple[Floats, Floats]]:
-    """Return limits of theta (k,) for the collars of a column's wings.
-
-    Raises InputError: a wing that meets the fin above it.
-    """
+    """Return limits of theta (k,) of a column's collars. Raises InputError: a wing meets the fin above."""
     keel, crown = np.zeros(SAMPLES), np.full(SAMPLES, np.pi)
     if len(wings) == 1:
         return [(0.5 * crown, 1.5 * crown) if wings[0].fin else (keel, crown)]

@@ -59,10 +59,7 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
 def grid_of(
     shape: DomainShape, request: BlockRequest, fine_of: Callable[[Domain, Timings], Layout]
 ) -> Solution:
-    """Return the grid of the fine layout that `fine_of` makes; first the domain is checked.
-
-    Raises InputError: see `make_blocks`.
-    """
+    """Return the grid of the layout by `fine_of`, after a check. Raises InputError: see `make_blocks`."""
     begun = perf_counter()
     timings: Timings = {}
     domain, height = _checked(shape.domain, request), request.heights(shape.unit)

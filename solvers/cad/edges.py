@@ -34,7 +34,7 @@ class EdgeNodes:
 
 @dataclass(frozen=True, eq=False)
 class EdgeLaw:
-    """Node distribution of an edge: number of cells, not whole, from its start to each of s parameters."""
+    """Node distribution of an edge: the fractional number of cells from its start to each of s parameters."""
 
     parts: Floats
     cells: Floats
@@ -130,7 +130,7 @@ def _by_turning(points: Floats, arcs: Floats) -> Floats:
 
 
 def corner_turns(model: CadModel, uses: tuple[EdgeUse, ...]) -> Floats:
-    """Return the turns (k,) in degrees of a loop at the start of each of its edges; 180 beside a point."""
+    """Return the turns (k,) in degrees of a loop where edges begin; 180 beside an edge that is a point."""
     ends = np.array([0.0, 1e-4, 1.0 - 1e-4, 1.0])
     starts, stops, poles = [], [], []
     for use in uses:

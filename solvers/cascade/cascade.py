@@ -138,7 +138,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Functions whose steps should grow slowly along the front, by loop; empty without a growth limit."""
+        """Functions whose steps between nodes should grow slowly on the front, by loop; {} without limit."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:

@@ -16,7 +16,7 @@ SWEEPS = 3  # over the corners, which influence each other a little
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Return weights (n, corners) at wall nodes, and a shift of phi for each corner; both are multiplied.
+    """Return weights (n, corners) along the wall and, for each corner, a shift of phi, which they multiply.
 
     Shifted in the strip by these products, the first grid line at each corner bisects its angle in the plane.
     `wall` (n,) are nodes in the plane, counter-clockwise, and `corners` indices into it.
@@ -42,6 +42,6 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
 
 
 def fading(eta: Floats, first: float) -> Floats:
-    """Return the fraction of a shift that applies at `eta`: 1 where eta is `first`, 0 at both walls."""
+    """Return the fraction of a shift of phi that applies at `eta`: 1 where eta is `first`, 0 at walls."""
     cells = eta / first
     return np.asarray(cells * exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - first))

@@ -52,7 +52,7 @@ class StripGrid:
         return np.asarray(F + 1j * theta)
 
     def fill(self, lift: Lift, out: Floats, axis: Axis | None = None, shift: Shift | None = None) -> bool:
-        """Map the grid by `lift`, without its walls, to planar `out` (n + 1, nj, 2); return if it is finite.
+        """Map the grid by `lift`, except walls, to planar `out` (n + 1, nj, 2); return whether it is finite.
 
         The last row repeats the first bitwise. With an `axis`, rows i and n - i are mirror images. A `shift`
         is added to phi. The points of a row are ::

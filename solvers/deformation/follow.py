@@ -48,7 +48,7 @@ class Field:
         return cls(sources, places, np.ascontiguousarray(areas[sources]), near, where)
 
     def blended(self, motions: Floats) -> Floats:
-        """Return the displacements (m, d) of the points, for `motions` (d + d², k) of sources by `affine`."""
+        """Return the displacements (m, d) of the points for `motions` (d + d², k), the result of `affine`."""
         moved = np.empty_like(self.points)
         blend_motions(self.places, self.areas, motions, self.near, self.points, thread_count(), moved)
         return moved.T

@@ -31,7 +31,7 @@ class OptimumDerivative:
     Parameters
     ----------
     grid : a grid near the solution for its own boundary nodes, so that Newton's method converges.
-    method : ``variational`` (F is the gradient of the functional) or ``winslow``.
+    method : ``variational`` or ``winslow``, the equations that inner nodes satisfy.
     weights : weights of the functional. None: those in the provenance of `grid`, or the defaults of
         `solve_pde`.
 

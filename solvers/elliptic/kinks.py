@@ -24,8 +24,8 @@ def sweep_kinks(
 ) -> bool:
     """Relax planar `nodes` in place around the kinks of the boundary; return whether there are kinks.
 
-    `nodes` come from splines through a coarse grid of `counts` nodes, which are too smooth at kinks. With
-    `only_better`, the nodes around a kink are moved only if the largest angle becomes smaller.
+    `nodes` come from splines through a coarse grid of `counts` nodes; these splines are too smooth at kinks.
+    With `only_better`, the nodes around a kink are moved only if the largest angle becomes smaller.
     """
     any_kinks = False
     steps = [(n - 1) / (m - 1) for n, m in zip(nodes.shape[:2], counts, strict=True)]

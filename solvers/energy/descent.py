@@ -110,7 +110,8 @@ def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:
 def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floats) -> None:
     """Repair and minimise planar `nodes` (ni, nj, 2) of an O grid in windows around skewed cells, in place.
 
-    `nodes` come from splines, which smooth grid lines that leave corners of the wall.
+    `nodes` come from splines, which smooth grid lines that leave corners of the wall. `relief` is the result
+    of `relief_of`.
     """
     skewed = corner_distortion(nodes)
     poor = np.argwhere(skewed > SKEWED)

@@ -46,8 +46,8 @@ LONG = 300  # iterations with each of them
 def widen(nodes: Floats, weights: Weights) -> None:
     """Lower the functional of valid planar `nodes` (ni, nj, 2) with nearly folded cells, in place.
 
-    Regularised Jacobians, where the barrier is less steep, come first. If cells are folded at the end, or the
-    functional is not lower than before, the nodes are not changed.
+    First, Jacobians are regularised, which makes the barrier less steep. If cells are folded at the end, or
+    the functional is not lower than before, the nodes are not changed.
     """
     trial = nodes.copy(order="K")
     descent, before = Descent(trial, weights), value(nodes, weights)

@@ -230,10 +230,7 @@ class _Line:
         return bool((np.abs(self._growth(places)) > self._limits(limit)[:, None]).any())
 
     def evened(self, places: Floats, limit: float) -> Floats:
-        """Return the positions after some Gauss-Newton iterations.
-
-        Raises SolverError: the equations are singular.
-        """
+        """Return positions after some Gauss-Newton iterations. Raises SolverError: singular equations."""
         places, limits, links = places.copy(), self._limits(limit), self.links
         measures = self.measures.arcs, self.measures.values, self.measures.slopes
         terms = links.pairs, links.factors, links.rest, self.change, LINEAR, NEARLY

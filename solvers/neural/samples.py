@@ -65,10 +65,7 @@ def edges(nodes: Floats, topology: Topology, name: str = "") -> Boundary:
 
 
 def gathered(grids: Iterable[Grid]) -> Samples:
-    """Return `grids` as samples.
-
-    Raises InputError: no grid; a grid whose size or topology differs from the first; a C grid.
-    """
+    """Return `grids` as samples. Raises InputError: no grid, or other sizes or topologies; C grids."""
     rows: list[Floats] = []
     facts: list[tuple[str, str, float]] = []
     first: Grid | None = None

@@ -25,10 +25,7 @@ def solved(method: Method, boundary: Boundary, start: Grid | None) -> Solution:
 
 @dataclass(frozen=True)
 class Each(OneByOne):
-    """A method that is a function of one boundary.
-
-    Raises InputError: a setting that the function does not have.
-    """
+    """A method that is a function of one boundary. Raises InputError: a setting that it does not have."""
 
     name: str  # in `METHODS`
     # a function of a boundary, its settings and perhaps ``initial``, a grid to start from; or ``module:name``

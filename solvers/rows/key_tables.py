@@ -43,7 +43,7 @@ class KeyTables:
 
 
 def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
-    """Return the key sections of a row, with about `cells` cells each.
+    """Return the key sections of a row, between which nodes are interpolated, with about `cells` cells each.
 
     `first` and `growth` are first-cell height and growth ratio of the layers. Raises InputError: no room for
     layers, inlet or outlet. Raises NoValidGridError: cells are folded.

@@ -48,10 +48,7 @@ class SectionPlane:
 
     @classmethod
     def of(cls, row: Row, height: float, first: float, growth: float, share: float = 1.0) -> SectionPlane:
-        """Return the section of a row at a height, with first cells of height `first` in space.
-
-        `share` is that of `Cascade`.
-        """
+        """Return the section of a row at a height, with first cells `first` high; `share`: see `Cascade`."""
         u, lines = _lines(row.surface)
         s, theta = row.surface.crossings(lines, np.full(len(u), height)).T
         to = row.channel.meridional(height)

@@ -102,7 +102,7 @@ class StackedRow:
         return values.reshape(*self.columns.shape, 3)[:, :2]
 
     def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
-        """Return the nodes, and tasks that store nodes of the layers off the blade among them.
+        """Return the nodes, and tasks that fill in the nodes of layers off the blade later.
 
         The nodes of the second periodic side are not computed.
         """

@@ -59,8 +59,8 @@ class SceneSheet:
     """A layer of cells of a lattice.
 
     `axis` is the direction normal to the layer; None: the lattice is a layer. `node` is the index of the
-    layer along `axis`, `ranges` are the first and last nodes along the other directions. In a large volume
-    the layer has the index `at` along `across`, i, j or k.
+    layer along `axis`, `ranges` are the first and last nodes along the other directions. In a large volume,
+    whose lattices are parts of blocks, the layer has the index `at` along `across` (i, j or k).
     """
 
     lattice: int

@@ -88,10 +88,7 @@ class GrowthLines:
         return np.asarray(log(modulus(after) / modulus(before)) + self.offset)
 
     def edges(self, z: Complexes) -> tuple[Complexes, Complexes]:
-        """Return the first and the second edge (k,) of each pair, for nodes at `z` (n,).
-
-        Nodes and edges are complex numbers.
-        """
+        """Return the first and second edges (k,) of pairs as complex numbers, for nodes at `z` (n,)."""
         return z[self.nodes[:, 1]] - z[self.nodes[:, 0]], z[self.nodes[:, 2]] - z[self.begins]
 
     def largest_at(self, mesh: QuadMesh, rows: list[Indices]) -> Floats:

@@ -18,7 +18,7 @@ _WINDOW = 4  # columns to either side over which lengths along fronts are averag
 
 
 def ring_metric(ring: Ring, settings: LayerSettings, factors: Floats | float = 1.0) -> SizeMetric:
-    """Return the sizes of the cells beyond the front (outer edge) of a ring of layers.
+    """Return the target sizes of the cells beyond the front (outer edge) of a ring of layers.
 
     First cells have the height of the settings times `factors` (n,).
     """

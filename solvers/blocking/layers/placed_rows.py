@@ -25,7 +25,7 @@ _STEPS = 50  # of bisection, to round-off
 
 
 def layers_of(layout: Layout, rows: WallRows, row: int, settings: LayerSettings) -> int:
-    """Return the number of layers that fill a row in most columns without growing too fast."""
+    """Return the number of layers that fill a row of blocks, in most columns, without growing too fast."""
     alone = rows.across[np.nonzero(rows.across == row)[0]].min(axis=1) < 0  # blocks of no other row
     columns = np.concatenate(list(compress(rows.columns(layout, row), alone)))
     first, extra = settings.first, settings.constant - 1

@@ -21,8 +21,8 @@ _RESOLVED = 0.01  # smallest length of a cell at a corner over the distance of s
 def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floats:
     """Return the ascending arc lengths (n,) of columns around a loop; each corner gets a column.
 
-    `largest` is the largest distance between neighbouring columns. For each c in `sums`, the image of the
-    column at arc length s is the column at c - s.
+    `largest` is the largest distance between neighbouring columns. For each c in `sums`, the mirror image of
+    the column at arc length s is the column at c - s.
     """
     arcs = np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs)
     arcs = distinct(np.append(arcs, _beside_corners(loop, largest)))

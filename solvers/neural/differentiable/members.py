@@ -53,7 +53,7 @@ def check_failed(failed: str) -> None:
 
 
 def without_failed(make: Callable[..., Tensor], counts: tuple[int, int], *sides: Tensor) -> Tensor:
-    """Return the nodes (batch, ni, nj, 2) by `make` for `sides`, NaN without a grid; `counts`: ni, nj."""
+    """Return the nodes (batch, ni, nj, 2) by `make` for `sides`, NaN if no grid exists; `counts`: ni, nj."""
     left = torch.arange(len(sides[0]), device=sides[0].device)
     none = sides[0].new_full((len(left), *counts, 2), torch.nan)
     while len(left):

@@ -104,7 +104,7 @@ def fit(
     resume: bool = False,
     report: Callable[[Progress], None] | None = None,
 ) -> int:
-    """Train `task` in place and return the epoch whose weights it has.
+    """Train `task` in place, and return the epoch from which its final weights come.
 
     With `plan.patience` these are the weights with the least held-out loss. `checkpoint`: file that is
     written every `plan.checkpoint_every` epochs, and from which `resume` starts; `facts`: settings, with
@@ -230,10 +230,7 @@ def beside(output: Path) -> Path:
 
 
 def save_checkpoint(path: Path, state: Mapping[str, Any]) -> None:
-    """Replace the checkpoint at `path` atomically.
-
-    Raises SolverError: a weight is not finite; the last checkpoint is kept.
-    """
+    """Replace the checkpoint at `path` atomically. Raises SolverError, before that: a weight not finite."""
     for name, value in state["task"].items():
         if not torch.isfinite(value).all():
             raise SolverError(f"{name} is not finite after epoch {state['epoch']}; {SLOWER}")

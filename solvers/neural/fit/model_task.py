@@ -21,7 +21,7 @@ from meshonet.solvers.neural.samples import Samples
 
 
 class ModelTask(Task):
-    """Training of a model of the paper.
+    """Training of a model of the MeshONet paper.
 
     `targets`: (n, ni, nj, 2) the wanted outputs for the shapes `training`; `points`: numbers of points drawn
     for each step, inside and on the boundary (None: all); `seed`: of initial weights and points. Attribute

@@ -98,7 +98,7 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
         add: Tensor | None = None,
         room: str = "",  # noqa: ARG002
     ) -> Tensor:
-        """Return the convolution with layer `name` of channels x (batch, 8 in, m, n), already padded."""
+        """Return the convolution of padded x (batch, 8 in, m, n) with layer `name`; see `UNet.layer`."""
         if name == "lift":
             kernel = symmetry.lift(self.get_parameter("lift"), self.get_buffer("seen"))[..., None, None]
             bias = self.get_parameter("lift_bias").repeat_interleave(ORDER)

@@ -15,7 +15,7 @@ from meshonet.solvers.neural.samples import Samples
 
 
 class PhysicsTask(ModelTask):
-    """Networks of `MGNet` or `MeshNet` on the geometries of `samples`.
+    """Training of the networks of `MGNet` or `MeshNet` on the geometries of `samples`.
 
     `points`: numbers of points drawn for each step, anywhere inside and among the nodes of the boundary; None
     takes every node.

@@ -67,7 +67,7 @@ def train(
 
 
 def standard(model: str) -> Plan:
-    """Return the default plan of a model: the one that trained the shipped model, or the one of the paper."""
+    """Return the default settings (plan) of a training: those of the shipped model, or those of the paper."""
     plan: Plan = _module(model).PLAN
     return plan
 

@@ -29,8 +29,8 @@ def approach(
     """Return grids nearer to Winslow's than `z`, with the same boundaries, and the last step, both like `z`.
 
     Each step inverts, by sine transforms, the operator with alpha / (alpha + gamma) and gamma / (alpha +
-    gamma) at their means over the domain. Three quarters of the leading error of differences are corrected.
-    ::
+    gamma) at their means over the domain. Three quarters of the leading truncation error of the differences
+    are corrected. ::
 
         alpha z_xixi - 2 beta z_xieta + gamma z_etaeta = 0,
         alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2        of the previous iterate

@@ -74,7 +74,7 @@ class BaseComplex:
 def base_complex(mesh: QuadMesh, lines: Bools | None = None) -> BaseComplex:
     """Return the blocks of a quad mesh; `lines` (e,) is a mask of further edges at which blocks end.
 
-    Raises SolverError: the mesh is not manifold, or a region between lines is not a lattice.
+    Raises SolverError: the mesh is not manifold, or a region between lines has no ni x nj nodes.
     """
     quads = np.ascontiguousarray(mesh.quads, dtype=np.intp)
     bounds = mesh.on_wall.copy() if lines is None else mesh.on_wall | lines

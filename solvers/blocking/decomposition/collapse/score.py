@@ -25,9 +25,11 @@ SIZES = 8.0  # price in degrees of mean deviation if all cells are too long or s
 
 
 def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = None) -> float:
-    """Return the score of blocks; lower is better.
+    """Return the score of blocks, a weighted sum of penalties in degrees; lower is better.
 
-    `wanted` (e,) are target lengths of the edges; by default all edges have the same target.
+    Penalties are for deviations of angles from 90 degrees, turns of walls, wrong numbers of quads at the
+    boundary, the number of blocks (times `price`) and uneven sizes. `wanted` (e,) are target lengths of the
+    edges; by default all edges have the same target.
     """
     mesh = blocks.mesh
     off = deviations(mesh)

@@ -107,7 +107,7 @@ def _left_of(
 
 
 def corner_row(mesh: QuadMesh, corner: int, farthest: int) -> QuadMesh | None:
-    """Return the mesh with a row of quads around the node of a corner with a single quad; None if impossible.
+    """Return the mesh with a row of quads around a corner at which a single quad meets; None if impossible.
 
     The row is as far from the corner as regular nodes permit, but at most `farthest` quads away.
     """

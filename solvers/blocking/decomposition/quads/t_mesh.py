@@ -20,7 +20,7 @@ Face = tuple[Side, Side, Side, Side]
 
 @dataclass(frozen=True, eq=False)
 class TMesh:
-    """Arcs between the nodes of a motorcycle graph, and the faces between them.
+    """Arcs between the nodes of a motorcycle graph (lines from singular points), and the faces between arcs.
 
     Half-edge 2 a is arc a in the direction of its trail; half-edge 2 a + 1 is the same arc reversed.
     """
@@ -40,10 +40,7 @@ class TMesh:
 
 
 def t_mesh(graph: MotorcycleGraph) -> TMesh:
-    """Return the faces of a motorcycle graph.
-
-    Raises SolverError: a face that is not a rectangle of the map.
-    """
+    """Return the faces of a motorcycle graph. Raises SolverError: a face is not a rectangle of the map."""
     nodes, trail, span, ways = _arcs(graph)
     follow = _successors(graph, ways)
     faces = []

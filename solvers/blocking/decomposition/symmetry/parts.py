@@ -149,10 +149,7 @@ def _on_mirror(loop: Loop, number: int, mirror: Mirror) -> tuple[Floats, Floats]
 
 
 def _joined(row: Sequence[LoopPart]) -> Loop:
-    """Return the loop along stretches and the straight lines between them.
-
-    Raises SolverError: a ray cuts a sharp corner.
-    """
+    """Return the loop along stretches and lines between. Raises SolverError: a ray cuts a sharp corner."""
     counts = [len(stretch.points) for stretch in row]
     first = np.cumsum([0, *counts[:-1]])
     corners = np.concatenate([k + stretch.corners for k, stretch in zip(first, row, strict=True)])
