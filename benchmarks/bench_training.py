@@ -219,9 +219,10 @@ NOTE = """Read this page to choose `--batch` (shapes per step) and `--points` (r
 
 The network is trained on 30 arches of 101 x 101 nodes. Times are CPU times of one thread. The paper processes
 one geometry per step; it does not say whether with all grid points or with a random sample. The first two
-rows of the table are these two cases, and the two columns of speed-up are relative to them. The loss is
-computed from all points of all grids, after the stated number of geometries. Where a loop was run with
-several random seeds, the table gives the median loss, with minimum and maximum in brackets."""
+rows of the table are these two cases. *Speed-up over all points* is relative to the first row, *speed-up over
+1,200 points* to the second. The loss is computed from all points of all grids, after the stated number of
+geometries. Where a loop was run with several random seeds, the table gives the median loss, with minimum and
+maximum in brackets."""
 
 
 if __name__ == "__main__":

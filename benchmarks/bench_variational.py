@@ -219,26 +219,30 @@ HEAD = """# Four-sided domains: TFI, Winslow and variational grids
 Use this page to choose between `tfi`, `solve-pde --method winslow` and `solve-pde --method variational`. The
 option `--coarse N` solves on N x N nodes and interpolates. [Elliptic grids](../theory/elliptic.md),
 [variational grids](../theory/variational.md) and [the neural operator](quad-operator.md) have their own
-pages. The shape *bump* is a square with a half disc cut off; the row *infer, default* is the conformal map.
+pages. The shape *bump* is a square with a half disc cut off; the row *infer, default* solves Winslow's
+equations in a conformal strip.
 
-- *angle*: largest included angle of each cell, in degrees: maximum, 99th percentile and mean over the
-  cells. The maximum cannot be below the largest corner angle of the boundary (arch 147.5, hexagon 135).
+- *max / 99 % / mean angle*: maximum, 99th percentile and mean, over the cells, of the largest angle of a
+  cell, in degrees. The maximum cannot be below the largest corner angle of the boundary (arch 147.5, hexagon
+  135). *average*: mean over the domains.
 - *deviation at walls*: mean deviation from 90 degrees of the angle between the four sides and the grid
   lines that leave them.
-- *distance to full solve*: relative L2 distance to the grid that the same method solves on all nodes, the
-  first row of the method in the table. The neural operator is compared with the variational grid. On 3200 x
-  3200 nodes, where the variational method is not run on all nodes, distances are to the grid of `variational
-  --coarse 33`.
-- *folded*: number of folded cells, before repair.
+- *distance to full solve*: relative L2 distance to the grid that the same method computes on all nodes (its
+  first row in the table). The neural operator is compared with the variational grid. On 3200 x 3200 nodes,
+  where the variational method is not run on all nodes, distances are to the grid of `variational --coarse
+  33`.
+- *folded*: number of folded cells, before repair. *folded grids*: number of domains whose grid has such
+  cells.
 - *worse than Winslow's*: number of domains for which the maximum or the mean angle is larger than in
   Winslow's grid.
-- *CPU ms*: CPU time of one thread, best of several runs, while other programs used the machine.
+- *CPU ms*: CPU time of one thread, best of several runs (*median*: over the domains), while other programs
+  used the machine.
 - *copy of the grid in memory*: time to copy the finished grid once, for comparison.
 
-Around the notch of the wrench the variational method takes many iterations on fine grids; `--coarse auto`
-then solves on fewer nodes. The distance between a solution on 33 x 33 nodes and the solution on all nodes is
-the discretisation error of the coarse solution, which is of second order. Converging both solutions to 1e-6
-does not change this distance.
+On fine grids of the wrench the variational method takes many iterations, because of the notch; `--coarse
+auto` then solves on fewer nodes. The distance between a solution on 33 x 33 nodes and the solution on all
+nodes is the discretisation error of the coarse solution (second order). It is not an error of convergence:
+with both solutions converged to 1e-6, the distance is the same.
 
 ![Grids by five methods, coloured by the largest included angle](../img/quad-grids.png)
 """
@@ -246,8 +250,8 @@ PAPER = """
 ## What the MeshONet paper reports
 Xiao et al., arXiv 2501.11937, compare methods by colour maps of the largest included angle, without numbers.
 They report that MeshONet's angles are better than those of their PDE solver and TFI on arches and hexagons,
-equal to TFI's on wrenches, and not always better on semicircles. The table gives their times in seconds.
-Their programs are in Python and ran on another machine, MeshONet on a GPU.
+equal to TFI's on wrenches, and not always better on semicircles. The table gives the times of the paper in
+seconds. The programs of the paper are in Python and ran on another machine, MeshONet on a GPU.
 
 | nodes | PDE | TFI | MeshONet |
 | --- | --- | --- | --- |

@@ -86,8 +86,8 @@ by the file extensions. If an extension belongs to several formats, name the for
 - *blocks*: whether the blocks of a multi-block grid are *kept* in the file or *merged* into one unstructured
   mesh. A format without an entry cannot store a multi-block grid.
 - *many*: whether one file can contain several grids or boundaries.
-- *options*: variants of the format. Write them after a colon, for example `--to gmsh:4.1,ascii`. Choose at
-  most one of the words that slashes separate. The first word is the default, unless the extension implies
+- *options*: variants of the format. Write them after a colon, for example `--to gmsh:4.1,ascii`. Of words
+  separated by slashes, choose at most one; the first word is the default, unless the extension implies
   another one.
 
 """
