@@ -57,8 +57,8 @@ over all threads; they include the time in which a thread waits for another one.
 whether the two results are bitwise identical.
 
 On a machine that runs other programs, the speed-up says little. Compare the CPU times instead: if they do not
-rise with the number of threads, no time is lost while threads wait for each other. On idle cores, only parts
-that one thread executes alone, and the memory bandwidth, then limit the speed-up.
+rise with the number of threads, no time is lost while threads wait for each other. The speed-up on idle cores
+is then limited only by parts that one thread executes alone and by the memory bandwidth.
 """
 
 WHY = """

@@ -27,7 +27,7 @@ RIM = 0.1
 
 _RIVALS = """
 These methods without a network make at least as many valid grids as the networks with which they are
-compared. Their distances near the wall and their times are at most 5 % larger:
+compared. Their distances near the wall and their times exceed those of these networks by at most 5 %:
 """
 
 
