@@ -46,8 +46,8 @@ HEAD = """# Datasets of a million grids
 Read this page before you generate a dataset of very many grids. It gives the memory and time of such a batch,
 and the time to read a sample. A large dataset is divided into files called *parts*; the index file `out.h5`
 presents them as one HDF5 file ([large datasets](../guide/datasets.md)). The grids here are tiny, so that a
-million of them take only minutes; memory and the times for the index file do not depend on the size of the
-grids. Times are wall-clock times of one process.
+million of them take only minutes; memory and the times for the index file do not depend on the size of a
+grid. Times are wall-clock times of one process.
 """
 READING = """
 ## Reading
@@ -70,13 +70,14 @@ Times are medians over five new processes, each of which imports the package, op
 last grid. The script omits this table if Zarr is not installed (`pip install zarr`).
 """
 TAIL = """
-When `nodes` of an index file is opened, HDF5 reads the list of all parts, and searches it at each read. This
-takes about ten milliseconds for a thousand parts and grows with their number. Parts are therefore large: up
-to 1,000 grids or 256 MiB. A part holds 500 grids of 200 x 100 nodes, so a million such grids are 2,000 parts.
+When a program opens `nodes` in an index file, HDF5 reads the list of all parts; at each read it searches this
+list. The time for both is about ten milliseconds for a thousand parts and grows with the number of parts.
+Parts are therefore large: up to 1,000 grids or 256 MiB. If grids have 200 x 100 nodes, a part holds 500 of
+them, so a million such grids are 2,000 parts.
 
-Once the packages are imported, both formats take milliseconds. meshonet uses HDF5 for two reasons. The same
-ten lines of h5py, MATLAB or Julia read an index file, a single part, or a dataset without parts. And
-meshonet needs no further package.
+Once the package is imported, a program opens and reads a file of either format within milliseconds. meshonet
+uses HDF5 for two reasons. The same ten lines of h5py, MATLAB or Julia read an index file, a single part, or a
+dataset without parts. And meshonet needs no further package.
 """
 READER = """
 import json, sys, time, h5py

@@ -152,7 +152,7 @@ def batches(model: str, clock: bool) -> str:
     boundaries = domains(65, 80)[:64]
     lines = [
         "\n## 64 domains in one batch, 65 x 65\n",
-        "| method | CPU ms per grid | grids per second on one core | speed-up over single solves |",
+        "| method | CPU ms per grid | grids per second on one core | speed-up over the first row |",
         "| --- | --- | --- | --- |",
     ]
     ways: dict[str, Callable[[], object]] = {
@@ -247,8 +247,9 @@ four-sided domains. For the method see [neural operators](../theory/operators.md
 
 - `quad-general` predicts the variational grid, `quad-winslow` Winslow's grid. *n steps* and *n cycles* are
   `--polish n`: iterations of the variational method, or multigrid cycles for Winslow's grid.
-- *4 Picard steps, 33*: the input of the network, without its correction: four Picard steps for
-  Winslow's equations on 33 x 33 nodes.
+- *TFI*: transfinite interpolation. *--coarse n*: the solver runs on n x n nodes; its grid is interpolated.
+- *4 Picard steps, 33*: the grid to which the network adds a correction, from four Picard steps for Winslow's
+  equations on 33 x 33 nodes.
 - *valid*: share of grids without a folded cell, before repair.
 - *no worse than Winslow*: share of grids that are valid, and in which neither the maximum nor the mean angle
   is larger than in Winslow's grid.
@@ -269,8 +270,8 @@ TAIL = """
   time than `quad-winslow` needs for its prediction. On more nodes, `solve-pde --coarse 65` takes about the
   same time as `quad-winslow`, and its grids are about as close to the solution.
 - **Python**: the fastest call is `load("quad-general").solve(boundaries, "off", dtype="float32",
-  threads=2)`. The network then runs in single precision on two cores. The grids do not depend on the
-  number of threads.
+  threads=2)`. `"off"` omits the iterations after the network, which runs in single precision on two cores.
+  The grids do not depend on the number of threads.
 """
 
 if __name__ == "__main__":

@@ -123,11 +123,15 @@ FAMILIES_HEAD = """# The six test families
 
 Use these families of shapes to train and compare neural operators. They are the test cases of the MeshONet
 paper ([results](../benchmarks/paper/index.md)). The shapes of a family depend on one parameter. *arch*,
-*hexagon* and *wrench* are squares of side 1 with other top edges. *semicircle* is a channel, 2 long and 1
-high, with a semicircle on its floor. *hole* is a plate with a round hole, 2 by 2 around the origin.
+*wrench* and *hexagon* start from a square of side 1: the top edge of *arch* is half a sine wave, *wrench* has
+a notch in the top edge, and *hexagon* has a kink in the middle of the top and of the bottom edge.
+*semicircle* is a channel, 2 long and 1 high, with a semicircle on its floor. *airfoil* is a NACA 00xx airfoil
+with a sharp trailing edge, in a circular far field. *hole* is a plate, 2 by 2 around the origin, with a round
+hole.
 
 `sample-boundary --family NAME --count N` makes N shapes with parameters in the range below, or from A to B
-with `--range A:B`. `solve-pde` makes their grids.
+with `--range A:B`; `solve-pde` makes their grids. Topology quad means a four-sided grid, O a grid around a
+body or hole.
 """
 
 

@@ -156,15 +156,15 @@ def _upright(south: Floats, north: Floats, nj: int, name: str) -> Boundary:
     return Boundary(south, north, west, east, name=name)
 
 
-_KINKS = "angle of the kinks in degrees"
+_KINKS = "interior angle at the kinks in degrees"
 FAMILIES: dict[str, Family] = {
     member.name: member
     for member in (
         Family("arch", "height of the arch", -0.1, 0.4, -0.7, 2.0, "quad", arch),
         Family("hexagon", _KINKS, 90.0, 150.0, 45.0, 260.0, "quad", hexagon, to_low=True),
-        Family("wrench", "opening of the jaw", 0.15, 0.45, 0.02, 0.85, "quad", wrench, to_low=True),
-        Family("semicircle", "x of the centre", 0.7, 1.3, 0.25, 1.75, "quad", semicircle),
+        Family("wrench", "width of the notch", 0.15, 0.45, 0.02, 0.85, "quad", wrench, to_low=True),
+        Family("semicircle", "x coordinate of the centre", 0.7, 1.3, 0.25, 1.75, "quad", semicircle),
         Family("airfoil", "thickness in chords", 0.06, 0.24, 0.01, 0.6, "o", airfoil),
-        Family("hole", "y of the centre", -0.4, 0.4, -0.6, 0.6, "o", hole),
+        Family("hole", "y coordinate of the centre", -0.4, 0.4, -0.6, 0.6, "o", hole),
     )
 }
