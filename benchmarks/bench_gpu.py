@@ -48,9 +48,9 @@ this page. Rows that were not measured for lack of time are marked.
   second without and with gradients, the peak memory, whether two runs give bitwise equal nodes, and the
   largest distance from the nodes that the CPU computes. Grids of 65 x 65 nodes are made in batches, larger
   grids singly. In rows with `coarse=65`, the equations are solved on 65 x 65 nodes and the grid is
-  interpolated.
-  The aims are 100,000 grids of 65 x 65 nodes per second, one grid of 800 x 800 nodes in 3 ms, and one of 3200
-  x 3200 nodes in 40 ms. For the last size [the MeshONet paper](paper/index.md) reports 278 ms on an RTX 4090.
+  interpolated. The aims are 100,000 grids of 65 x 65 nodes per second, one grid of 800 x 800 nodes in 3 ms,
+  and one of 3200 x 3200 nodes in 40 ms. For the last size [the MeshONet paper](paper/index.md) reports 278 ms
+  on an RTX 4090.
 - **Operators**: grids per second and peak memory of `infer --device cuda` with the networks `airfoil-o`,
   `quad-general` and `hole-o`, for 256 grids of 65 x 65 and of 200 x 200 nodes.
 - **Training**: shapes per second and peak memory of the networks `meshonet` (of the paper), `fno2d` and

@@ -11,6 +11,7 @@ from types import ModuleType
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from reduce_pictures import place
 
 import meshonet
 from meshonet.geometry.arrays import SIDES
@@ -64,9 +65,9 @@ def main() -> None:
 def montage(files: list[Path], number: int, rows: list[str]) -> str:
     """Draw the grids of some domains into one picture, append their rows, return the words that show it."""
     figure = Figure(figsize=(11.0, 6.6))
-    for place, path in enumerate(files, start=1):
+    for cell, path in enumerate(files, start=1):
         grid = meshonet.solve_pde(path, cells=CELLS)
-        rows.append(draw(figure.add_subplot(ROWS, COLUMNS, place), grid, path.stem))
+        rows.append(draw(figure.add_subplot(ROWS, COLUMNS, cell), grid, path.stem))
     figure.tight_layout()
     picture = DOCS / "img" / f"gallery-{number}.png"
     with tempfile.NamedTemporaryFile(suffix=".png") as file:
