@@ -54,7 +54,7 @@ def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[F
 def interfaces(
     base: Node, zone: Node, counts: Triple, block: int
 ) -> Iterator[tuple[str, FaceWindow, str, Points, Triple]]:
-    """Yield, for each interface: name, own window, path of the donor, donor's range (2, 3), index mapping."""
+    """Yield, for each interface: name, own nodes (window), donor's path and range (2, 3), index mapping."""
     for _, group in children(zone, "ZoneGridConnectivity_t"):
         for name, joint in children(group, "GridConnectivity1to1_t"):
             ranges = dict(children(joint, "IndexRange_t"))

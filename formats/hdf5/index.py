@@ -36,7 +36,7 @@ class PartFacts:
     """Description of a part of a dataset, read from the part's file.
 
     `size` is the same in all parts. `columns` has length, row shape and type of each dataset. `common` has
-    digests of the facts that all grids of the part share.
+    digests of what the provenances of all grids of the part have in common.
     """
 
     path: Path

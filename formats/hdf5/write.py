@@ -130,7 +130,7 @@ class Writer:
             self._file.create_dataset("failed", data=list(failed), dtype=h5py.string_dtype())
 
     def close(self) -> None:
-        """Write the collected samples; facts that all provenances share are written as attributes."""
+        """Write the collected samples; what all provenances have in common is written as attributes."""
         self.flush()
         self._file.attrs.update({_attribute(name): fact for name, fact in self._common.items()})
 

@@ -37,7 +37,8 @@ def says_in_space(facts: Facts) -> bool:
 def nodes_by_facts(coordinates: Sequence[Floats], facts: Facts) -> Floats:
     """Return the nodes of a block from x, y[, z], each (n1, n2, n3), planar or in space.
 
-    Raises InputError: the block is not planar, and its facts do not say that it is in space.
+    Raises InputError: the block is not planar, and `facts` (texts of its file) do not say that it is in
+    space.
     """
     if not says_in_space(facts):
         return planar(coordinates)
@@ -45,7 +46,7 @@ def nodes_by_facts(coordinates: Sequence[Floats], facts: Facts) -> Floats:
 
 
 def grid_of_blocks(blocks: Sequence[tuple[Floats, Facts]], name: str = "") -> Grid:
-    """Return the grid of blocks, given by nodes and facts, in any order.
+    """Return the grid of blocks in any order, given by their nodes and the texts (facts) of their files.
 
     Raises InputError: a block is missing or repeated; connections do not match the nodes.
     """

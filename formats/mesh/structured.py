@@ -45,7 +45,7 @@ class FileBlock:
 
 
 def described_grids(blocks: Iterable[FileBlock], name: str) -> Iterator[Grid]:
-    """Yield the grids of blocks whose facts state the topology; blocks of one grid are consecutive."""
+    """Yield the grids of blocks whose texts (facts) state the topology; blocks of a grid are consecutive."""
     for number, group in groupby(blocks, key=lambda block: number_of_grid(block.facts)):
         read = ((block, in_place(block.place)(_described)(block)) for block in group)
         if number is not None:
@@ -61,7 +61,7 @@ def _described(block: FileBlock) -> Floats:
 
 
 def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Grid:
-    """Return the grid of a file with one block, using its facts if there are any.
+    """Return the grid of a file with one block, using its texts (`facts`) if there are any.
 
     Raises InputError: facts that do not match the nodes; see also `grids_of_file`.
     """

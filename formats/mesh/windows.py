@@ -57,7 +57,7 @@ class SidePart(NamedTuple):
 
 
 def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | None:
-    """Return the part of a side that is a window, or None. Raises InputError: no such part.
+    """Return the part of a side that a window covers, or None. Raises InputError: no such part.
 
     None is returned for a window that is no part of a single side, such as an edge of a volume.
     """

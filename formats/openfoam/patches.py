@@ -24,7 +24,7 @@ _FLAT = 1e-15  # largest squared difference of unit normals in a symmetry plane 
 
 
 class CasePatch(NamedTuple):
-    """Consecutive outer faces in the list of faces; `more` are additional entries."""
+    """A patch: consecutive faces in the list of faces; `more` are additional entries of its dictionary."""
 
     name: str
     kind: str

@@ -33,7 +33,7 @@ _INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")  # first word: an integer
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether `head` starts with node counts of a Plot3D grid; a whole file must fit them."""
+    """Return whether `head` starts with node counts of a Plot3D grid, which fit its length if it is whole."""
     textual = is_text(head)
     if textual and not _INTEGER_FIRST.match(head):
         return False

@@ -17,7 +17,7 @@ _ORDERS = {"<": "little", ">": "big"}  # names of byte orders
 
 
 def candidates(data: memoryview, wanted: Options = frozenset()) -> list[Candidate]:
-    """Return all layouts with exactly the length of the file.
+    """Return all file layouts (`Candidate`) whose length is that of the file.
 
     Arrays plane by plane are included if `wanted`, or if each Fortran record has one plane.
     Raises InputError: no layout fits.

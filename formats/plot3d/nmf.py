@@ -35,7 +35,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def write_map(path: Path, grids: Sequence[Grid], span: int = 2) -> None:
-    """Write the map of all blocks; the third index in the file is the index `span` (0 to 2) of the grid."""
+    """Write the neutral map of all blocks; the third index in the file is index `span` (0 to 2) of a grid."""
     dims: list[list[int]] = []
     rows: list[str] = []
     for grid in grids:

@@ -34,7 +34,7 @@ class AircraftAxes:
         return np.stack([points[..., 0], points[..., self.up], self.sign * points[..., self.span]], axis=-1)
 
     def to_file(self, grid: Grid) -> Grid:
-        """Return the `grid` of an aircraft in the axes of the file; i is reversed if they mirror the grid."""
+        """Return the `grid` of an aircraft in the axes of the file; i is reversed if axes mirror the grid."""
         if self == AircraftAxes():
             return grid
         if (self.sign > 0) != (self.up == 1):  # the other handedness

@@ -22,7 +22,7 @@ from meshonet.geometry.blocks.shared_nodes import shared_nodes
 
 @dataclass(frozen=True, eq=False)
 class Vertices:
-    """The distinct nodes of a grid of planar blocks; nodes of periodic pairs of sides are identified.
+    """The distinct nodes of a grid of planar blocks; the two nodes of a periodic pair count as one.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ def spline_slopes(
 ) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, 2) at the start and at the end of each interval.
 
-    Between `corners` (indices) it is the cubic spline, parabolic beside a corner, without overshoots
+    Between `corners` (indices) the curve is a cubic spline, parabolic beside a corner, without overshoots
     (`limited`). A closed curve does not repeat its first point. Its intervals in the mask `tangent` (n,) are
     straight lines, to which the splines beside them are tangent.
     """
@@ -100,10 +100,10 @@ def open_slopes(
 ) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, d) at the start and at the end of each interval of an open curve.
 
-    There is a spline between neighbouring `stops`, indices of points with the first and the last; all are
-    solved as one tridiagonal system. `chord` (intervals, d) are the vectors between points, `h` (intervals,)
-    their lengths. End slopes are `held` (2, intervals, d) where that is finite; else outer intervals are
-    parabolas, m_0 + m_1 = 2 delta_0.
+    Between neighbouring `stops` (indices of points, among them the first and the last) there is a spline; all
+    are solved as one tridiagonal system. `chord` (intervals, d) are the vectors between points, `h`
+    (intervals,) their lengths. End slopes are `held` (2, intervals, d) where that is finite; else outer
+    intervals are parabolas, m_0 + m_1 = 2 delta_0.
     """
     delta = chord / h[:, None]
     doubled = np.zeros(len(h) + 1, dtype=np.intp)

@@ -49,7 +49,7 @@ class Layout:
         return np.asarray(distinct(np.concatenate(corners)))
 
     def beside(self, on: Bools) -> list[Indices]:
-        """Return the node table (k, m) of a block for each side in the mask `on` (n,), as column 0."""
+        """Return block nodes (k, m) for each side in the mask `on` (n,) of nodes; column 0 is the side."""
         tables = [t for block in self.blocks for t in (block, block[:, ::-1], block.T, block.T[:, ::-1])]
         return [table for table in tables if on[table[:, 0]].all()]
 

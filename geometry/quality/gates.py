@@ -54,7 +54,7 @@ class Gate:
         return in_short(self._what, figure, self.compare, self.limit)
 
     def replaces(self, figure: str, compare: str) -> bool:
-        """Return whether the gate replaces a profile's limit on `figure` with comparison `compare`.
+        """Return whether the gate replaces a profile's limit, with the comparison `compare`, on `figure`.
 
         It does if both limit the same figure and statistic from the same side, above or below.
         """

@@ -152,7 +152,7 @@ class BladeSurface:
         return CubicTable(values, self.knots)
 
     def at(self, u: Floats, h: Floats) -> Floats:
-        """Return s and theta (p, m, 2) at places u (m,) or (p, m) and heights h (p, m)."""
+        """Return s and theta (p, m, 2) at u (m,) or (p, m), 0 to 1 around the blade, and heights h (p, m)."""
         return self.crossings(self.lines(u.ravel()), h, len(h) if u.ndim == 1 else 1)
 
     def crossings(self, lines: CubicTable, h: Floats, levels: int = 1) -> Floats:
@@ -171,7 +171,7 @@ class BladeSurface:
         return out
 
     def section(self, h: float, u: Floats) -> Floats:
-        """Return s and theta (m, 2) at places `u` (m,) and the height `h`."""
+        """Return s and theta (m, 2) at `u` (m,), 0 to 1 around the blade, and at the height `h`."""
         return self.crossings(self.lines(u), np.full(len(u), h))
 
     @property

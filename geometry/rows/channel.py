@@ -120,7 +120,7 @@ class Channel:
         return out
 
     def store(self, values: Floats, ids: Indices, space: Floats) -> None:
-        """Write x, y, z of points into `space` (levels, n, 3), at the indices `ids` (m,) along n.
+        """Write x, y, z of points into `space` (levels of the span, n, 3), at the indices `ids` (m,) along n.
 
         `values` (levels, m, 3) are s, theta, h of the points.
         """

@@ -197,7 +197,7 @@ class BladeProfile:
         return np.asarray(np.mod(self.leading + np.interp(u, *self._stops), self.curve.length))
 
     def corner_places(self) -> Floats:
-        """Return the ascending places u (c,), -0.25 to 0.75, of all corners."""
+        """Return the ascending coordinates u (c,) of all corners around the blade, from -0.25 to 0.75."""
         u, way = self._stops
         at = np.interp(np.mod(self.curve.corners - self.leading, self.curve.length), way, u)
         return np.sort(wrapped(at, -0.25))

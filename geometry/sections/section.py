@@ -76,9 +76,9 @@ class Section:
 
     @property
     def frame(self) -> tuple[Floats, float]:
-        """Leading edge (2,) and chord of the given shape, which becomes a leading edge at (0, 0) and chord 1.
+        """Leading edge (2,) and chord of the given shape, which is moved and scaled to (0, 0) and 1.
 
-        Most airfoil files nearly have this position and size; such shapes are unchanged: (0, 0) and 1.
+        Shapes that nearly have this position and size, as most airfoil files, are unchanged: (0, 0) and 1.
         """
         if isinstance(self.shape, Airfoil):
             nose, length = self.shape.leading_edge, self.shape.unit

@@ -13,7 +13,7 @@ from meshonet.geometry.errors import InputError
 
 
 def far_circle(centre: Floats, radius: float, n: int, start: float) -> Floats:
-    """Return nodes (n, 2) clockwise on a circle from the angle `start` (radians); the last is the first."""
+    """Return nodes (n, 2) clockwise on a circle from the angle `start` (radians); ends are equal."""
     angle = start - np.linspace(0.0, 2 * np.pi, n)
     nodes = centre + radius * np.stack([cos(angle), sin(angle)], axis=1)
     nodes[-1] = nodes[0]

@@ -51,8 +51,8 @@ class TanhLaw:
     def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> Self:
         """Return the law of `cells` cells from step `first` to `last`, met to a relative 1e-6.
 
-        The fraction `last_part` (1 or 0.5) of the last cell lies before 1; with 0.5, `cells` is no integer.
-        Raises InputError: the steps are too large together, or too few cells are between them.
+        The fraction `last_part` (1 or 0.5) of the last cell lies before s = 1; with 0.5, `cells` is no
+        integer. Raises InputError: the steps are too large together, or too few cells are between them.
         """
         start, end = first * cells, last * cells
         for _ in range(60):

@@ -23,7 +23,7 @@ def open_sides(quads: Indices, twin: Indices) -> Indices:
 def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
     """Return the twin (4 m,) of each half-edge, -1 at open edges, and surplus half-edges.
 
-    Half-edges are surplus from the third on an edge. `nodes` is the number of nodes.
+    The third and further half-edges of an edge are surplus. `nodes` is the number of nodes.
     """
     first, last = ends_of(quads)
     key = np.minimum(first, last) * nodes + np.maximum(first, last)

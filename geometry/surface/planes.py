@@ -53,7 +53,7 @@ def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
 
 
 def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:
-    """Return a mask (k,) of `sides` (k, 4) whose open edge, but not face, is within `slack` of a plane."""
+    """Return a mask (k,) of `sides` (k, 4) whose open edge is within `slack` of a plane, but not the face."""
     near = np.abs(nodes[sides, plane.axis] - plane.value) <= slack
     return np.asarray(near[:, :2].all(axis=1) & ~near[:, 2:].all(axis=1))
 

@@ -44,8 +44,9 @@ def core_of(fan: Floats, quarters: int, most: int, *, even: bool = False) -> Pol
     """Return the core of a `fan` (m + 1, n, 3) of curves that leave a pole at j = 0.
 
     The core and its rings are rounded, as a march requires; an `even` core is square, without kinks, across
-    which sizes would differ by up to 2. `quarters` is the angle of the fan in right angles; a closed fan
-    repeats its first curve, with m even. Columns are replaced up to square cells, but at most `most`.
+    which sizes would differ by a factor of up to 2. `quarters` is the angle of the fan in right angles; a
+    closed fan repeats its first curve, with m even. Columns are replaced until cells are square, but at most
+    `most`.
     """
     m = len(fan) - 1
     steps = norms(np.diff(fan, axis=1)).mean(axis=0)

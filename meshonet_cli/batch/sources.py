@@ -109,7 +109,7 @@ def _entries(
 def assembly(
     inputs: Inputs, read: Callable[[str], Iterator[Shape]], sampling: Sampling, session: Session
 ) -> Iterator[Item[Shape]]:
-    """Yield the domain formed by the shapes of all inputs; report an error and yield nothing."""
+    """Yield the domain that the shapes of all inputs form; after an error, report it and yield nothing."""
     from meshonet.geometry.shapes.assembly import assembled
 
     label = " + ".join(inputs.words)

@@ -57,7 +57,7 @@ def _surface(item: Item[Stack | Aircraft], parameters: Mapping[str, Any]) -> tup
 
 
 def shared(parameters: Mapping[str, Any], batch: Batch, criteria: Criteria | None) -> dict[str, Any]:
-    """Return `parameters`, with percentiles if the criteria need them, and with a worker's threads."""
+    """Return `parameters`, with percentiles if the criteria need them, and with the threads of one worker."""
     percentiles = criteria is not None and criteria.percentiles
     threads = batch.engine.threads(parameters.get("threads"))
     return {**parameters, "threads": threads, "percentiles": percentiles}

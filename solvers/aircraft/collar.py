@@ -144,8 +144,7 @@ def collar(
     Parameters
     ----------
     first, last : lengths of cells at the root, and (n,) at the outer loop.
-    straight : shape of the lines: 0 as in an elliptic grid, 1 parabolas normal to the root, in between a
-        mean.
+    straight : shape of the lines: 0 elliptic, 1 parabolas normal to the root, in between a mixture.
     """
     arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)

@@ -28,7 +28,7 @@ def columns_of(
     """Return the indices of wings, grouped in columns, from nose to tail.
 
     A fin above a wing, or close to it along the body, is in the wing's column. `sections` are the sections
-    (k, n, 3) of each wing on k key levels.
+    (k, n, 3) of each wing on k levels (surfaces around the body).
 
     Raises InputError: a fin above two wings.
     """
@@ -95,7 +95,7 @@ def _room(before: _Along, after: _Along, clear: float = _CLEAR) -> tuple[Floats,
 def holes_of(
     space: BodyMap, columns: Sequence[Sequence[WingLines]], sections: Sequence[Sequence[Floats]]
 ) -> tuple[tuple[tuple[Hole, ...], ...], ...]:
-    """Return the sections of wings (holes), by column from nose to tail, by wing, and by key level.
+    """Return the sections of wings (holes), by column from nose to tail, by wing, and by level.
 
     `sections` (k, n, 3) are the sections of each wing on these levels.
 

@@ -63,7 +63,7 @@ class WingLines:
     def of(
         cls, wing: Stack | SurfaceWing, name: str, body: Body, nodes: int, base: float | None = None
     ) -> Self:
-        """Return `nodes` lines of a wing; sharp trailing edges are opened to a base of `base` chords.
+        """Return `nodes` lines along the span of a wing; sharp trailing edges are opened to `base` chords.
 
         Raises InputError: too few nodes; a wing that does not begin inside the body or does not leave it.
         """

@@ -138,7 +138,7 @@ class Cascade:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Functions whose steps between nodes should grow slowly on the front, by loop; {} without limit."""
+        """Functions whose steps between nodes should grow slowly around layers, by loop; {} without limit."""
         return {BLADE: self.ring.along} if self.layers.limit else {}
 
     def factors_at(self, arcs: Floats) -> Floats:
@@ -156,7 +156,7 @@ class Cascade:
 
     @cached_property
     def ends(self) -> tuple[float, float]:
-        """Lengths from the front to inlet and outlet. Raises InputError: too short for the blocks."""
+        """Lengths from the layers to inlet and outlet. Raises InputError: too short for the blocks."""
         chord, (before, behind) = self.chord, self.reach
         for length, name, chords in ((before, "inlet", self.inlet), (behind, "outlet", self.outlet)):
             least = SHORTEST * abs(self.left)

@@ -57,7 +57,7 @@ class Passage:
         cls, front: Loop, period: complex, inlet: float, outlet: float, name: str = "",
         near: tuple[float, float] = (NEAR, NEAR), centre: complex | None = None,
     ) -> Passage:  # fmt: skip
-        """Return the passage around a closed front.
+        """Return the passage around a closed front (the blade, or the outer edge of its layers).
 
         Blocks end at the distances `near` from the front, in pitches, or `inlet` and `outlet` if smaller. The
         default of `centre` is the point farthest from the front.

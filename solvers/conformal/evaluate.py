@@ -26,8 +26,8 @@ Shift: TypeAlias = tuple[Floats, Callable[[Floats], Floats]]
 class StripGrid:
     """A solution in the strip, the conformal image of the domain, at the nodes of one grid.
 
-    `c` (2 MODES + 1, LEVELS) are modes of F = w - i theta at the Chebyshev points, `wall` and `far` (n,) are
-    F at the nodes of the two walls, and `eta` (nj,) ascends from 0 to 1.
+    `c` (2 MODES + 1, LEVELS) are Fourier modes of F = w - i theta at the Chebyshev points, `wall` and `far`
+    (n,) are F at the nodes of the two walls, and `eta` (nj,) ascends from 0 to 1.
     """
 
     def __init__(self, c: Complexes, wall: Complexes, far: Complexes, eta: Floats) -> None:
@@ -52,10 +52,10 @@ class StripGrid:
         return np.asarray(F + 1j * theta)
 
     def fill(self, lift: Lift, out: Floats, axis: Axis | None = None, shift: Shift | None = None) -> bool:
-        """Map the grid by `lift`, except walls, to planar `out` (n + 1, nj, 2); return whether it is finite.
+        """Map the grid, except walls, to the plane (`out`: (n + 1, nj, 2)); return whether it is finite.
 
-        The last row repeats the first bitwise. With an `axis`, rows i and n - i are mirror images. A `shift`
-        is added to phi. The points of a row are ::
+        `lift` is the conformal map. The last row repeats the first bitwise. With an `axis`, rows i and n - i
+        are mirror images. A `shift` is added to phi. The points of a row are ::
 
             levels 1 .. begin - 1 | panels' points | levels end .. nj - 2
         """

@@ -111,7 +111,7 @@ def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:
-    """Return modes (..., 2 MODES + 1, len(eta)) of a harmonic function from its modes `wall` and `far`."""
+    """Return modes (..., 2 MODES + 1, len(eta)) of a harmonic function, from those on `wall` and `far`."""
     count, T = MODES + 1, (far - wall)[..., :1, None].real
     k = wavenumbers(wall, xp)[:count]  # k and -k decay alike
     near, away = decay(k, T, array_like(eta, wall, xp), xp)
@@ -127,7 +127,7 @@ def to_columns(c: Any, xp: Any = np) -> Any:
 
 
 def from_columns(values: Any, xp: Any = np) -> Any:
-    """Return modes (..., 2 MODES + 1) of samples at `COLUMNS` equal steps of theta."""
+    """Return Fourier modes (..., 2 MODES + 1) of samples at `COLUMNS` equal steps of theta."""
     spectrum = xp.fft.fft(values) / COLUMNS
     return xp.concatenate([spectrum[..., : MODES + 1], spectrum[..., -MODES:]], -1)
 
@@ -135,7 +135,7 @@ def from_columns(values: Any, xp: Any = np) -> Any:
 def picard(
     c: Complexes, steps: int, settled: float = 0.0, diverged: float = np.inf
 ) -> tuple[Complexes, list[float]]:
-    """Return the modes of F after at most `steps` Picard steps, and the largest change of F in each step.
+    """Return the Fourier modes of F after at most `steps` Picard steps, and F's largest change in each step.
 
     A grid in the strip is w(theta, eta) = psi + i phi; F = w - i theta is periodic in theta (2 pi). The
     operator that a step inverts has the coefficients T^2, 0 and 1 of a uniform strip of height T::

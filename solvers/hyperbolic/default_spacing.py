@@ -36,8 +36,8 @@ def first_cell(boundary: Boundary) -> float:
 def first_cell_around_base(width: float, away: float, chord: float, ni: int, nj: int) -> float:
     """Return the first-cell height of a C grid that keeps a blunt base of this `width`.
 
-    It follows from the smallest cell length, at a sharp edge or on the base, and from `away`, the distance to
-    the far field.
+    The height follows from the smallest cell length, at a sharp edge or on the base, and from `away`, the
+    distance to the far field.
     """
     return _height(min(C_EDGE / ni * chord, COARSEST * width), away, nj)
 

@@ -29,7 +29,7 @@ class Edge(NamedTuple):
 
 
 def sharpest_edge(ring: Floats) -> Edge | None:
-    """Return the sharpest convex corner of a closed, clockwise wall (n, 2), if one turns by 60 degrees.
+    """Return the sharpest convex corner of a closed, clockwise wall (n, 2) among those of 60 degrees or more.
 
     The first node is not repeated.
     """

@@ -63,7 +63,7 @@ class Measures:
     slack: Floats | float = 1.0
 
     def at(self, places: Floats, closed: bool) -> Floats:
-        """Return the measures (k, n) at `places` (n,), periodic on closed curves."""
+        """Return the values (k, n) of the measures at `places` (n,), periodic on closed curves."""
         turns = np.zeros(len(places))
         if closed:
             turns, places = np.divmod(places, self.arcs[-1])

@@ -52,9 +52,9 @@ class LayerSettings:
         return cls(first, math.exp(NOMINAL * math.log(limit)), limit=limit, **others)
 
     def at(self, names: Collection[str]) -> LayerSettings:
-        """Return the settings for a wall whose stretches have the given `names`, some with heights.
+        """Return the settings for a wall whose parts have the given `names`, some with heights.
 
-        Raises InputError: stretches of the wall have different heights.
+        Raises InputError: parts of the wall have different heights.
         """
         if not self.heights:
             return self
@@ -76,7 +76,7 @@ class LayerSettings:
 
     @property
     def elsewhere(self) -> float:
-        """Logarithm of the largest ratio of neighbouring cells elsewhere, for example along walls."""
+        """Logarithm of the largest ratio of neighbouring cells along other lines, for example along walls."""
         return max(ELSEWHERE * math.log(self.limit or self.growth), math.log(MOST_GROWTH))
 
     @property

@@ -62,7 +62,7 @@ class Anew(Wrapper):
 
 @dataclass(frozen=True)
 class AroundWake(OneByOne):
-    """Makes C grids by marching with a default first-cell height, else by the variational method."""
+    """Makes C grids by marching with a default first-cell height, or by the variational method if better."""
 
     note: str = ""  # begins the notes, before the method's name
     name: str = "auto"

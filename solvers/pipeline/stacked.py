@@ -17,7 +17,7 @@ Sections: TypeAlias = "Stack | Row | Aircraft"  # inputs of `meshonet stack`
 
 
 def with_tip(what: Sections, tip: Tip | None, *, surface: bool = False) -> Sections:
-    """Return `what`, in a stack with another shape of the tip unless `tip` is None.
+    """Return `what`; the tip of a stack gets the shape `tip`, unless that is None.
 
     Raises InputError: a tip for a row or an aircraft; `surface` for a row, which has no surface grid.
     """

@@ -78,8 +78,8 @@ def gap_blocks(
 ) -> GapBlocks:
     """Return the blocks of a gap, with nodes between its ends.
 
-    `around` (k,) are the indices of the blade's nodes in a section, clockwise; `outline` (levels, k, 3) their
-    s, theta, h.
+    `around` (k,) are the indices of the blade's nodes in a section, clockwise; `outline` (levels along the
+    span, k, 3) their s, theta, h.
     """
     fill = ends.fill
     blade = row.channel.in_space(outline[:, fill.outline])

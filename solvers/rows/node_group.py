@@ -48,7 +48,7 @@ class NodeGroup:
         return out
 
     def values(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
-        """Return s, theta, h (levels, m, 3) of the nodes, from `arcs` and the spacing of each zone."""
+        """Return s, theta, h (levels, m, 3) of the nodes, from the arc lengths and spacing of each zone."""
         values = self.at(self._heights(arcs, spacings))
         self._exact_along_span(values)
         if self.around:

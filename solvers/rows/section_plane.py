@@ -132,11 +132,11 @@ class SectionPlane:
         return np.interp(u, np.append(self.places, 1.0), self._walls)
 
     def places_of(self, arcs: Floats) -> Floats:
-        """Return the places u (n,) at the arc lengths (n,) on the blade."""
+        """Return the coordinates u (n,), 0 to 1 around the blade, at the arc lengths (n,) on it."""
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
     def front_arcs(self, u: Floats) -> Floats:
-        """Return arc lengths (n,), on the outer edge of the layers, of columns from places u (n,)."""
+        """Return arc lengths (n,), on the outer edge of the layers, of columns from `u` (n,) on the blade."""
         ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)

@@ -50,12 +50,12 @@ class SpanLines:
 
 
 def slopes_at_keys(values: Floats) -> Floats:
-    """Return the derivatives (k, n, ...) at key heights of polynomials through `values` (k, n, ...)."""
+    """Return the derivatives (k, n, ...) at `key_heights` of polynomials through `values` (k, n, ...)."""
     return _times(_slopes(len(values)), values)
 
 
 def integrals_at_keys(values: Floats) -> Floats:
-    """Return the integrals (k, n, ...) from 0 to key heights of polynomials through `values`."""
+    """Return the integrals (k, n, ...) from 0 to `key_heights` of polynomials through `values`."""
     return _times(_integrals(len(values)), values)
 
 

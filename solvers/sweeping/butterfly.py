@@ -30,7 +30,7 @@ Sides: TypeAlias = Sequence[Floats]
 
 
 class FiveBlocks(NamedTuple):
-    """Division of closed curves: relative core size, rows of the ring, alignment with radii, 0 to 1."""
+    """Core and ring inside closed curves: relative size of the core, rows, alignment with radii, 0 to 1."""
 
     core: float
     rows: int

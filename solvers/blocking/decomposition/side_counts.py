@@ -135,7 +135,7 @@ def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
 
 
 def check_sides(layout: Layout) -> None:
-    """Raise SolverError if no counts can agree on periodic sides, or a block extends past an end of one."""
+    """Raise SolverError if no counts can agree on periodic sides, or a block extends past an end of these."""
     mesh = layout.mesh
     if not mesh.domain.periodic:
         return

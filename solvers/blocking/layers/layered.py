@@ -58,11 +58,11 @@ def layered(
     domain: Domain, loops: Sequence[int], settings: LayerSettings, *, stretches: Sequence[Stretch] = (),
     cells: int = 0, cell_size: float = 0.0, layout: Layout | None = None, timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
-    """Return a fine layout of about `cells` cells, with layers at `loops` and `stretches` of a domain.
+    """Return a fine layout of about `cells` cells, with layers at `loops` and `stretches` (parts of loops).
 
     Without `cells`, edges away from walls are at most `cell_size` long. `layout`, of a similar domain or of
-    its part outside the layers, is used instead of a decomposition. Raises InputError; SolverError;
-    NoValidGridError: folded cells.
+    its part outside the layers, is used instead of a decomposition. Raises InputError: too little room for
+    layers; SolverError: no blocks; NoValidGridError: folded cells.
     """
     timings = {} if timings is None else timings
     sheets = () if layout else tuple(k for k in loops if k and has_sharp_edge(domain.loops[k]))

@@ -42,7 +42,7 @@ def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings
     """Return a fine layout with layers in rows of blocks at walls; nodes move along the lines across a row.
 
     `settings` has one entry per row. First cells have exactly the given height; heights grow to that of the
-    cells beyond the front.
+    cells beyond the layers.
     """
     mesh = layout.mesh
     moved = np.zeros(len(mesh.nodes), dtype=bool)
@@ -69,7 +69,7 @@ def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings
 
 
 def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings, sheets: int) -> tuple[Bools, Indices]:
-    """Return a mask (n,) of nodes of rows that are fixed, and pairs (k, 2) of nodes that move together.
+    """Return a mask (n,) of the fixed nodes in rows, and pairs (k, 2) of nodes that move together.
 
     Each pair is a node on a wall and a node of the first cells above it. At corners, and in the first
     `sheets` rows (those around sharp edges), both nodes are fixed instead.

@@ -38,7 +38,7 @@ class Ring:
     wall : the loop.
     arcs : (n,) ascending arc lengths at which the columns of `levels` start. If the wall has corners, the
         first column starts at one.
-    levels : (n, m, 2) nodes from the wall (0) to the front (m - 1).
+    levels : (n, m, 2) nodes from the wall (0) to the front, the outer edge of the layers (m - 1).
     front : loop along the last level, with one point per column, and corners of two cells where the wall has
         corners.
     """
@@ -54,7 +54,7 @@ class Ring:
         return np.asarray(norms(np.diff(self.levels, axis=1)).sum(axis=1))
 
     def columns(self, places: Floats) -> tuple[Floats, Floats]:
-        """Return lines (k, m, 2) from the wall to the front, and the arc lengths (k,) of their starts.
+        """Return lines (k, m, 2) from the wall to the outer edge, and the arc lengths (k,) of their starts.
 
         `places` (k,) are the arc lengths on the front of the ends of the lines. Lines are interpolated by
         cubics through four columns, but never across a corner.
@@ -79,7 +79,7 @@ class Ring:
 
     @cached_property
     def along(self) -> Measures:
-        """Arc lengths of corresponding points: on the front, the wall, and the level next to the wall."""
+        """Arc lengths of corresponding points: on the outer edge, the wall, the level next to the wall."""
         n = len(self.arcs)
         index = np.arange(FINER * n + 1) / FINER
         knots = np.append(self.front.curve.knots, self.front.length)

@@ -56,7 +56,7 @@ class RowSizes:
     def of(
         cls, domain: Domain, number: int, stretches: Sequence[Stretch], settings: LayerSettings
     ) -> RowSizes:
-        """Return the sizes along stretches of a loop of a domain; without any, along the whole loop."""
+        """Return the sizes along `stretches` (parts) of a loop; without any, along the whole loop."""
         loop = domain.loops[number]
         arcs, length = sizes_by_bend(loop, loop.length / COLUMNS, TURN)
         gap = _gaps(domain, number, arcs)

@@ -39,7 +39,7 @@ class Stretch:
 
 
 def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int], tuple[Stretch, ...]]:
-    """Return the indices of the loops with layers all around, and the stretches of other loops with layers.
+    """Return the indices of the loops with layers all around, and the parts of other loops with layers.
 
     `names` are the walls with layers. Without names, `Domain.layered_loops` have layers, except stretches
     whose names mean no wall. Layers continue along an axis or symmetry line that continues a wall. Raises

@@ -163,7 +163,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """Functions whose steps between nodes should grow slowly, on fronts and circle `near`, by loop."""
+        """Functions whose steps between nodes should grow slowly on loops around layers, by loop index."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])

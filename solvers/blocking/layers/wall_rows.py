@@ -39,7 +39,7 @@ class WallRows:
     loops : for each row, the index of the loop along which it goes.
     across : (b, 2) index of the row, or -1, whose thickness a block spans from south to north, and from west
         to east; also valid for a refined layout.
-    back : (b, 2) whether this direction of the block leads from the front of the row to the wall.
+    back : (b, 2) whether this direction of the block leads from the outer edge of the row to the wall.
     """
 
     loops: tuple[int, ...]
@@ -54,7 +54,7 @@ class WallRows:
         return row
 
     def columns(self, layout: Layout, row: int) -> list[Indices]:
-        """Return, for each block of a row, the nodes (k, n) of its k lines from wall or wake to front."""
+        """Return, for each block of a row, the nodes (k, n) of k lines from wall or wake to outer edge."""
         tables = []
         for block, direction in zip(*np.nonzero(self.across == row), strict=True):
             table = layout.blocks[block].T if direction else layout.blocks[block]
@@ -109,10 +109,10 @@ def wake_of(mesh: QuadMesh, number: int) -> list[int]:
 def with_wall_rows(
     layout: Layout, stretches: Sequence[Stretch], sheets: Sequence[int] = (), mirrors: Sequence[Mirror] = ()
 ) -> tuple[Layout, WallRows]:
-    """Return a layout with rows of quads along `stretches` and around the loops `sheets`, and the rows.
+    """Return a layout with rows of quads along `stretches` (parts of loops) and around `sheets`, and rows.
 
-    Each loop in `sheets` has a sharp edge. If the quads of the layout are symmetric about `mirrors`, the
-    blocks are too. Raises SolverError: the lines of the mesh do not bound blocks.
+    `sheets` are loops with a sharp edge. If the quads of the layout are symmetric about `mirrors`, the blocks
+    are too. Raises SolverError: the lines of the mesh do not bound blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front

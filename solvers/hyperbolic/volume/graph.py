@@ -47,7 +47,7 @@ class Seen:
 
 @dataclass(frozen=True, eq=False)
 class MarchGraph:
-    """Arrays of ``kernels/surfaces/graph.h``; `order` (n,) are the surface nodes in the order of these."""
+    """Arrays of ``kernels/surfaces/graph.h``; `order` (n,) are the surface nodes in the arrays' order."""
 
     order: Indices
     red: int

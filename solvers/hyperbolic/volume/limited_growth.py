@@ -31,8 +31,8 @@ def slower_steps(steps: Floats, last_growth: Floats, growth: float) -> Floats:
     """Return `steps` (m,) of the last march, changed to grow less where cells grew too much.
 
     `last_growth` (m - 1,) is the largest ratio of neighbouring cells at each inner level of that march,
-    `growth` the limit. The logarithm of this ratio exceeds the logarithm of the ratio of steps by a factor,
-    which is assumed to depend on the distance from the wall.
+    `growth` the limit. The logarithm of this ratio is assumed to be that of the ratio of steps times a
+    factor, which depends on the distance from the wall.
     """
     length, most = float(steps.sum()), math.log(growth)
     ratio = np.maximum(log(steps[1:] / steps[:-1]), _LEAST * most)

@@ -10,7 +10,7 @@ from meshonet.geometry.errors import InputError
 
 
 def check_sides(least: int, nj: int = 2, **sides: Tensor) -> None:
-    """Raise InputError unless `sides` (..., n, 2) can bound a batch of grids; opposite sides are neighbours.
+    """Raise InputError unless `sides` (..., n, 2), in opposite pairs, can bound a batch of grids.
 
     `least`: smallest number of nodes of a side; `nj`: for bodies, number of nodes from wall to far field.
     """
@@ -93,8 +93,8 @@ def batched(
 def unit_of(values: Tensor) -> Tensor:
     """Return, for each member of `values` (batch, ...), a power of 2 near the maximum minus the minimum.
 
-    The result (batch, 1, ...) broadcasts with `values`. The quotient of both is exact, and its fourth powers
-    neither overflow nor vanish.
+    The result (batch, 1, ...) broadcasts with `values`. Division of `values` by it is exact, and fourth
+    powers of the quotients neither overflow nor vanish.
     """
     flat = values.detach().flatten(1)
     power = torch.frexp(flat.amax(1) - flat.amin(1)).exponent

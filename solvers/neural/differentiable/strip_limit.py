@@ -23,12 +23,12 @@ TOGETHER = 8  # members solved at once on a CPU, so that they fit in its cache
 
 
 def picard(c: Tensor) -> Tensor:
-    """Return the modes (batch, modes, LEVELS) of grids in the strip, `c`, after a Picard step."""
+    """Return the Fourier modes (batch, modes, LEVELS) of grids in the strip, `c`, after a Picard step."""
     return _stepped(c.mT).mT
 
 
 class Settled(torch.autograd.Function):
-    """The modes (batch, modes, LEVELS) that solve Winslow's equations, as a function of initial modes.
+    """The Fourier modes (batch, modes, LEVELS) that solve Winslow's equations, from initial modes.
 
     A solution c satisfies c = start + smoothing (Picard(c) - start): the highest modes remain near the start.
     """
@@ -43,7 +43,7 @@ class Settled(torch.autograd.Function):
     @staticmethod
     @once_differentiable
     def backward(ctx: Any, gradient: Tensor) -> Tensor:
-        """Return the derivative with respect to the initial modes, from a linear fixed-point iteration."""
+        """Return the derivative with respect to initial Fourier modes, by a linear fixed-point iteration."""
         start, levels = ctx.saved_tensors
         (result,) = in_parts(_pulled, _together(start), start.mT.contiguous(), levels, gradient.mT)
         return result.mT

@@ -230,7 +230,7 @@ def beside(output: Path) -> Path:
 
 
 def save_checkpoint(path: Path, state: Mapping[str, Any]) -> None:
-    """Replace the checkpoint at `path` atomically. Raises SolverError, before that: a weight not finite."""
+    """Replace the checkpoint at `path` atomically; raise SolverError instead if a weight is not finite."""
     for name, value in state["task"].items():
         if not torch.isfinite(value).all():
             raise SolverError(f"{name} is not finite after epoch {state['epoch']}; {SLOWER}")

@@ -66,7 +66,7 @@ class StripTask(Task):
     def validate(self) -> dict[str, float]:
         """Return ``loss`` (the median), ``p90`` and ``worst`` of the `distance` between output and R.
 
-        R is Winslow's solution in a held-out strip minus the harmonic base.
+        R is Winslow's solution in a held-out strip minus the harmonic extension of the walls.
         """
         pairs = zip(self.answers(), self.held_out.residual, strict=True)
         errors = [distance(answer, goal) for answer, goal in pairs]
@@ -129,5 +129,5 @@ def run(
 
 
 def distance(answer: Complexes, goal: Complexes) -> float:
-    """Return the root mean square over the strip of |answer - goal|, in radians, from modes (.., LEVELS)."""
+    """Return the root mean square over the strip of |answer - goal|, from Fourier modes (.., LEVELS)."""
     return float(np.sqrt((np.abs(answer - goal) ** 2).sum(axis=0).mean()))

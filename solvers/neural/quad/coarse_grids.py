@@ -94,7 +94,7 @@ def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, a
 
 
 def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
-    """Return grids `z` after the Picard steps that follow Winslow's head; parameters as in `answered`."""
+    """Return grids `z` after the Picard steps that follow Winslow's output; parameters as in `answered`."""
     sized, back = unit
     return z + times(approach(sized, xp, around, AFTER, harmonic=False)[0] - sized, back)
 

@@ -173,7 +173,7 @@ class Network:
         return np.asarray(moved.view(np.complex128)[..., 0])
 
     def moves(self, near: Complexes, step: Complexes, head: int) -> Complexes:
-        """Return the displacements (batch, m, n) that one head predicts for grids `near`.
+        """Return the displacements (batch, m, n) that one head (output) predicts for grids `near`.
 
         `step`: the last Picard step towards `near`; `head`: index of the head.
         """

@@ -45,10 +45,8 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
 def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
     """Return unrolled O grids `base` (batch, m + 1, n) of equal steps, moved by the network.
 
-    The last row of a result repeats the first row, without the period.
-
-    `factor`: (batch, 1, 1) scales them to unit size; `network`: as in `coarse_grids.answered`; `xp`: numpy or
-    torch.
+    The last row of a result repeats the first row, without the period. `factor`: (batch, 1, 1) scales the
+    grids to unit size; `network`: as in `coarse_grids.answered`; `xp`: numpy or torch.
     """
     strip = answered(base, (base * factor, 1.0 / factor), network, None, xp, around=True)
     if head == WINSLOW:

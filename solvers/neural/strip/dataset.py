@@ -80,9 +80,9 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
 class StripTargets:
     """Inputs (n, CHANNELS, COLUMNS) and (n, SCALARS), and wanted outputs (n, 2 Q, COLUMNS) of mean square 1.
 
-    R is Winslow's solution minus the harmonic base. An output times `scale` gives the coefficients of
-    R / size^2 in `basis` (Q, LEVELS - 2), the proper orthogonal decomposition across the strip in the H1
-    inner product.
+    R is Winslow's solution minus the harmonic extension of the walls (the base). An output times `scale`
+    gives the coefficients of R / size^2 in `basis` (Q, LEVELS - 2), the proper orthogonal decomposition
+    across the strip in the H1 inner product.
     """
 
     channels: Floats

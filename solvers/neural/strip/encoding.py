@@ -21,8 +21,8 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 
     `wall`, `far` (batch, 2 MODES + 1) are the Fourier modes of F. The input consists of three arrays:
 
-    - channels (batch, CHANNELS, COLUMNS): the harmonic base and its slope along theta at the depths `DEPTHS`,
-      both divided by the size;
+    - channels (batch, CHANNELS, COLUMNS): the harmonic extension of the walls and its slope along theta at
+      the depths `DEPTHS`, both divided by the size;
     - scalars (batch, SCALARS): the logarithm of the size, the height of the strip and its shear, each shifted
       so that its magnitude is about one;
     - size (batch,): the root mean square deviation of the walls from straight lines.
@@ -40,7 +40,7 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 
 
 def decode(coefficients: Any, basis: Any, scale: float, size: Any, xp: Any = np) -> Any:
-    """Return the modes (batch, 2 MODES + 1, LEVELS) of R, Winslow's solution minus the harmonic base.
+    """Return the Fourier modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic one.
 
     `coefficients`: (batch, 2 Q, COLUMNS) outputs, real parts, then imaginary parts; `basis`: (Q, LEVELS - 2)
     functions of the inner Chebyshev points; `scale`: of the training targets; `size`: (batch,) from `encode`.

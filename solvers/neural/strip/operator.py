@@ -23,7 +23,7 @@ from meshonet.solvers.solution import Solution
 
 @dataclass(frozen=True)
 class StripOperator(Operator):
-    """A strip network with its encoding; without weights, it returns the harmonic base.
+    """A strip network with its encoding; without weights, it returns the harmonic extension of the walls.
 
     `basis`: (Q, LEVELS - 2) basis functions of the network's targets; `scale`: size of the targets.
     """
@@ -46,7 +46,7 @@ class StripOperator(Operator):
         return cls(name, "o", header, weights, basis, scale, StripNetwork(weights))
 
     def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
-        """Return the modes (batch, 2 MODES + 1, LEVELS) of R, Winslow's solution minus the harmonic base.
+        """Return the modes (batch, 2 MODES + 1, LEVELS) of Winslow's solution minus the harmonic extension.
 
         `wall`, `far`: (batch, 2 MODES + 1) modes of the strip's walls; `hand`: (batch,) result of
         `meshonet.geometry.polygon.mirror.handedness`, so that mirror images get mirrored grids: -1 computes

@@ -62,7 +62,7 @@ class BaseComplex:
         return moved
 
     def side_lengths(self, unit: Floats | None = None) -> Floats:
-        """Return the lengths (b, 4) of the south, north, west, east sides, in units (e,) of each edge."""
+        """Return the lengths (b, 4) of south, north, west, east sides, in a `unit` (e,) for each edge."""
         edge, first, _ = self.sides
         length = self.mesh.edge_lengths
         if unit is not None:

@@ -31,7 +31,7 @@ class Frames:
 
 
 def cut_frames(field: CrossField) -> Frames:
-    """Return a direction (frame) for each triangle; frames agree except at a cut, which opens a disc."""
+    """Return a direction (frame) per triangle; frames agree except at cuts that make the surface a disc."""
     surface = field.surface
     turn, cut = surface_comb(surface.arrays, surface.size, field.quarters)
     keep = surface.on_wall.copy()

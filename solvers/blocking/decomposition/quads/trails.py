@@ -46,7 +46,7 @@ class Trails:
         return self._on_piece(self.vertex == vertex, 0.0)
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
-        """Return the wall trail through the point at `part` (0 to 1) of an edge, and its length up to it."""
+        """Return the wall line through the point at `part` (0 to 1) of an edge, and the length up to it."""
         return self._on_piece((self.face == face) & (self.edge == edge), part)
 
     def _on_piece(self, which: Bools, part: float) -> tuple[int, float]:
@@ -56,7 +56,7 @@ class Trails:
         return trail, float(start + part * (stop - start))
 
     def locate(self, trail: Indices, length: Floats) -> tuple[Indices, Floats]:
-        """Return the pieces (q,) at lengths (q,) along trails (q,), and the fractions (q,) of the pieces."""
+        """Return the pieces (q,) at lengths (q,) along lines `trail` (q,), and fractions (q,) of these."""
         ends = self.length[self.first[1:] + np.arange(len(self.first) - 1)]
         offset = np.append(0.0, np.cumsum(ends))
         owner = np.repeat(np.arange(len(ends)), np.diff(self.first))
@@ -102,7 +102,7 @@ def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int)
 
 
 def wall_trails(seamless: SeamlessMap) -> Trails:
-    """Return the closed trails along the walls, with the domain on their left, the outer loop first."""
+    """Return the closed lines along the walls, with the domain on their left, the outer loop first."""
     triangulation = seamless.surface
     faces, edges = triangulation.walls
     start = triangulation.triangles[faces, edges]

@@ -59,12 +59,13 @@ def usual_size(area: float, count: int) -> float:
 
 
 def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None = None) -> WallSizes:
-    """Return sizes along the walls for about `count` nodes, in the domain's unit.
+    """Return edge lengths along the walls for about `count` nodes, in the domain's unit.
 
     They are ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, at least ``h0 / 25`` or 1/400 of the loop,
-    whichever is less. h0 is `usual_size`. The gap is the distance to the nearest wall within 53 degrees of
-    the normal; the other wall at a wide corner is ignored. `finer` are further points (m, 2) with prescribed
-    sizes (m,). The gradient of the sizes is at most 0.35.
+    whichever is less. h0 is `usual_size`, the piece the length from corner to corner, the radius that of
+    curvature. The gap is the distance to the nearest wall within 53 degrees of the normal; the other wall at
+    a wide corner is ignored. `finer` are further points (m, 2) with prescribed sizes (m,). The gradient of
+    the sizes is at most 0.35.
     """
     largest = usual_size(domain.area, count)
     samples = [_sample(loop, largest) for loop in domain.loops]

@@ -77,7 +77,7 @@ def _all_about(domain: Domain, first: Mirror, count: int) -> tuple[Mirror, ...]:
 
 
 def mirror_about(domain: Domain, centre: Floats, along: Floats) -> Mirror | None:
-    """Return the mirror along a line; None if the domain is symmetric only to worse than `SAME` extents."""
+    """Return the mirror along a line; None if the domain deviates from symmetry by `SAME` extents or more."""
     middles, _ = _centroids(domain)
     apart = norms(_images(middles, centre, along)[:, None] - middles)
     apart[0, 1:] = apart[1:, 0] = np.inf  # the outer loop is its own image

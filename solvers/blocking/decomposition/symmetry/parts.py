@@ -62,9 +62,9 @@ class DomainPart:
 
 
 def spans_between(loop: Loop) -> list[Span]:
-    """Return the stretches of a part's outer loop from one corner with a single cell to the next.
+    """Return the spans of a part's outer loop from one corner with a single cell to the next.
 
-    Corners within a stretch have two cells.
+    Corners within a span have two cells.
     """
     corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
     turns = [(arc, cells) for arc, cells in corners if cells != 2]

@@ -43,12 +43,13 @@ def symmetric_blocks(
 ) -> BaseComplex:  # fmt: skip
     """Return symmetric blocks of the domain of `blocks`, or `blocks` if no symmetric ones are about as good.
 
-    `worth` is how much worse their score may be. With three, or more than four, mirrors through a centre,
-    blocks symmetric about all of them are tried: the given blocks, then blocks made from sectors. With two
-    perpendicular mirrors, blocks symmetric about both are tried first, then about one of them; blocks that
-    are also symmetric about the two diagonals are preferred. If the given blocks are symmetric, blocks made
-    from a part of the domain replace them only if they are better and not more numerous. If edge lengths are
-    prescribed, the quad mesh that `unsized` returns, for equal lengths, is tried last.
+    `worth` is how much worse the score of symmetric blocks may be. With three, or more than four, mirrors
+    through a centre, blocks symmetric about all of them are tried: the given blocks, then blocks made from
+    sectors. With two perpendicular mirrors, blocks symmetric about both are tried first, then about one of
+    them; blocks that are also symmetric about the two diagonals are preferred. If the given blocks are
+    symmetric, blocks made from a part of the domain replace them only if they are better and not more
+    numerous. If edge lengths are prescribed, the quad mesh that `unsized` returns, for equal lengths, is
+    tried last.
     """
     mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
     pair = every[:1] if len(every) % 2 else every[:: max(len(every) // 2, 1)]
