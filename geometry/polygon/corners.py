@@ -54,9 +54,9 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     oblique base are both corners too.
 
     The round end of a thin body that is given by few points can turn by up to 155 degrees at one point and is
-    still no corner. It is recognised by the thickness of the body: near a round end it grows like the square
-    root of the distance, near an edge linearly (`growth_exponent`). A closed polygon of at most `few` points
-    is not a sampled curve; any of its points may be a corner.
+    still no corner. It is recognised by the thickness of the body, which grows like the square root of the
+    distance near a round end, and linearly near an edge (`growth_exponent`). A closed polygon of at most
+    `few` points is not a sampled curve; any of its points may be a corner.
     """
     angle = np.abs(turning(points, closed=closed))
     if not angle.max() > KINK:
@@ -121,9 +121,9 @@ def _widens_on(points: Floats, k: int) -> bool:
 def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:
     """Return the exponent p with which a body becomes thicker away from its point k.
 
-    At a small distance d from point k of the polygon `points` (n, 2), the thickness is proportional to d^p: p
-    is about 1/2 behind a round end, 1 behind a wedge, and more behind a cusp. It is estimated from the two
-    points on each side of point k, and is infinite without such points.
+    At a small distance d from point k of the polygon `points` (n, 2), the thickness is proportional to d^p.
+    The exponent p is about 1/2 behind a round end, 1 behind a wedge, and more behind a cusp. It is estimated
+    from the two points on each side of point k, and is infinite without such points.
     """
     n = len(points)
     if n < 5 or (not closed and not 2 <= k < n - 2):

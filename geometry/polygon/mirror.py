@@ -29,8 +29,8 @@ def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
     The body is given by two curves, `wall` (n,) and `far` (n,). The sign, 1 or -1, is opposite for the mirror
     images of both curves, in reversed order; it is 0 if both are symmetric. The axis runs from the first node
     of `wall` to the middle between the nodes that are farthest from the first. Node k and node n - k are
-    partners. The sign is that of the largest distance between a node and the mirror image of its partner, on
-    `wall` or, if `wall` is symmetric, on `far`. The axis is given by a point and the square of its direction.
+    partners. The sign is that of the largest distance between a node and the mirror image of its partner on
+    `wall`; if `wall` is symmetric, on `far`. The axis is given by a point and the square of its direction.
     """
     a, b = farthest(wall)
     along = 0.5 * (wall[a] + wall[b]) - wall[0]

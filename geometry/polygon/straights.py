@@ -22,7 +22,7 @@ def find_kinks(points: Floats, *, few: int = FEW) -> Indices:
 
     A turn of more than 2 degrees is a kink if it is 20 times as large as both neighbouring turns. In a
     polygon of at most `few` points, all such turns are kinks if two successive turns in opposite directions
-    are at least half of the largest: a smooth curve would be a wave.
+    are at least half of the largest. A smooth curve through these points would be a wave.
     """
     turn = turning(points)
     size = np.abs(turn)

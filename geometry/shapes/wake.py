@@ -41,9 +41,9 @@ def cells_of_wake(
     """Return the number of cells along the wake of a C grid.
 
     The grid has `ni` nodes along xi, and `nodes_wanted` on the wake if that is given. By default, cells grow
-    by 13 % from `first` over `length`. The number of cells is limited to 20 to 23 % of all cells along xi,
-    and rounded to a multiple of the first of `steps` that is at most a quarter of the number. Raises
-    InputError: too few nodes left for the wall.
+    by 13 % from `first` over `length`. The number of cells is limited to 20 to 23 % of all cells along xi.
+    Then it is rounded to a multiple of a step: the first of `steps` that is at most a quarter of the number.
+    Raises InputError: too few nodes left for the wall.
     """
     if nodes_wanted is not None:
         cells = nodes_wanted - 1
@@ -71,9 +71,9 @@ def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
 def wake_line(wall: Floats, axis: Floats, chord: float, length: float, first: float, cells: int) -> Floats:
     """Return the nodes (cells + 1, 2) of a wake from the sharp trailing edge of a closed `wall` (n, 2).
 
-    With x along the `axis` and y to its left, y = tan(b) l (1 - exp(-x/l)), with the angle b of the bisector
-    of the edge (at most 34°) and the chord l. The first cell has the length `first`, the wake along the axis
-    the length `length`.
+    With x along the `axis` and y to its left, the wake is y = tan(b) l (1 - exp(-x/l)). Here b is the angle
+    of the bisector of the edge (at most 34°), and l the chord. The first cell has the length `first`, the
+    wake along the axis the length `length`.
     """
     upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
     along = upper / np.hypot(*upper) + lower / np.hypot(*lower)

@@ -39,13 +39,13 @@ def arcs_by_curvature(
 ) -> Floats:
     """Return arc lengths (cells + 1,) from one end of the trailing edge around the nose to the other.
 
-    The cell size h is a smooth minimum, 1/h⁴ = Σ 1/hₖ⁴, of four sizes: those at trailing and leading edge,
-    which increase by `GROWTH` times the distance; `TURN` / curvature, whose slope is at most `GROWTH`; and a
-    largest size, for which the integral of ds/h is the number of cells. If cells are too few, the sizes of
-    curvature and leading edge increase, with growth up to `HURRY` times as fast if `hurried` (C grids).
-    Beyond `_SCARCE` times, growth increases again; at last all sizes are scaled. With `based`, cells are also
-    too few if the largest exceeds `_LONGEST` mean cells; before that, growth from the edge is up to `RUSH`
-    times as fast, unless `at_edge` is given.
+    The cell size h is a smooth minimum, 1/h⁴ = Σ 1/hₖ⁴, of four sizes: two that start at trailing and leading
+    edge and increase by `GROWTH` times the distance; `TURN` / curvature, whose slope is at most `GROWTH`; and
+    a largest size, for which the integral of ds/h is the number of cells. If cells are too few, growth rises
+    up to `HURRY` times if `hurried` (C grids). Then the sizes of curvature and leading edge increase; beyond
+    `_SCARCE` times, growth rises with them. At last all sizes are scaled. With `based`, sizes are also
+    limited to `_LONGEST` mean cells, and growth from the trailing edge rises first, up to `RUSH` times,
+    unless `at_edge` is given.
 
     Parameters
     ----------

@@ -12,9 +12,9 @@ SAME = 1e-6  # largest relative difference of heights that count as the requeste
 def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> float:
     """Return the distance from the wall, in chords, at which y+ has the value `y_plus`.
 
-    On a turbulent flat plate, at the distance x = `chord_fraction` chords from its leading edge: y+ = y
-    u_τ/ν, u_τ/U = √(C_f/2), C_f = (2 log₁₀ Re_x - 0.65)^-2.3 (`SOURCE`), with `reynolds` of the chord. Raises
-    InputError: a value out of range, or x too small for a turbulent boundary layer.
+    The value is that of a turbulent flat plate, x = `chord_fraction` chords behind its leading edge: y+ = y
+    u_τ/ν, u_τ/U = √(C_f/2), C_f = (2 log₁₀ Re_x - 0.65)^-2.3 (`SOURCE`). `reynolds` is that of the chord.
+    Raises InputError: a value out of range, or x too small for a turbulent boundary layer.
 
     >>> f"{first_cell(1.0, 6e6):.3g}"
     '4.23e-06'

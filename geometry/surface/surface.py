@@ -77,12 +77,12 @@ class Surface:
 def surface_of(grid: Grid, *, poles: Literal["replace", "refuse"] = "replace") -> Surface:
     """Return the surface that the patches (ni, nj, 3) of a grid form together.
 
-    With notes, poles (sides that are single points) become cores unless `poles` is ``refuse``, open trailing
-    edges are closed, and patches with the opposite orientation reversed along i. A surface that is closed, or
-    that planes normal to one axis close, faces outwards; any other keeps the orientation of most of its area.
-    Raises InputError, with the place: a block that is no patch; an edge of zero length or of three
-    quadrilaterals; sheets that touch in a node; sides that nearly match, or meet with different nodes; a
-    trailing edge whose ends differ; no orientation.
+    Poles (sides that are single points) become cores unless `poles` is ``refuse``; open trailing edges are
+    closed; patches with the opposite orientation are reversed along i. Notes say so. A surface that is
+    closed, or that planes normal to one axis close, faces outwards; any other keeps the orientation of most
+    of its area. Raises InputError, with the place: a block that is no patch; an edge of zero length or of
+    three quadrilaterals; sheets that touch in a node; sides that nearly match, or meet with different nodes;
+    a trailing edge whose ends differ; no orientation.
     """
     if any(block.nodes.ndim != 3 or block.nodes.shape[-1] != 3 for block in grid.blocks):
         problem = "a surface is made of patches (ni, nj, 3), and a block of this grid is none"

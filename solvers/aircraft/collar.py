@@ -67,8 +67,8 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
     """Return how many nodes are on the `root` section up to the lines to the corners of the rectangle `box`.
 
     The first number counts from the middle of the trailing edge, the second from the nose, both on either
-    side. They are at least `fewest`, and such that cells beside a corner have similar lengths, and normals of
-    the root point most directly to the corners.
+    side. Both are at least `fewest`. They make cells beside a corner similar in length, and normals of the
+    root point directly to the corners.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)

@@ -60,8 +60,9 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
     """Return panels that cover the levels `first` to `last` - 1 of `eta`; none unless they save work.
 
     `eta` (nj,) ascends from 0 at the wall to 1; `height` is the difference of psi between wall and far field,
-    and `spread` the variation of psi along the wall. Maps to the plane are singular only at the wall: on a
-    panel as long as its distance from the wall, `NODES` points are exact to (3 + sqrt(8))^-NODES = 6e-13.
+    and `spread` the variation of psi along the wall. Maps to the plane are singular only at the wall. On a
+    panel as long as its distance from the wall, `NODES` points are therefore exact to (3 + sqrt(8))^-NODES =
+    6e-13.
     """
     ends: list[int] = []
     points, matrices = [np.empty(0)], [np.empty((NODES, 0))]

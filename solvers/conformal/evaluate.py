@@ -26,8 +26,8 @@ Shift: TypeAlias = tuple[Floats, Callable[[Floats], Floats]]
 class StripGrid:
     """A solution in the strip, the conformal image of the domain, at the nodes of one grid.
 
-    `c` (2 MODES + 1, LEVELS) are Fourier modes of F = w - i theta at the Chebyshev points, `wall` and `far`
-    (n,) are F at the nodes of the two walls, and `eta` (nj,) ascends from 0 to 1.
+    `c` (2 MODES + 1, LEVELS) are Fourier modes of F = w - i theta at the Chebyshev points. `wall` and `far`
+    (n,) are F at the nodes of the two walls; `eta` (nj,) ascends from 0 to 1.
     """
 
     def __init__(self, c: Complexes, wall: Complexes, far: Complexes, eta: Floats) -> None:

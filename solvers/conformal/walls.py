@@ -51,9 +51,9 @@ def is_rough(body: StripWalls) -> bool:
     """Return whether the strip hardly resolves the uneven wall spacing, so that cells may fold.
 
     The sum of the amplitudes, in radians, of Fourier modes beyond `MODES` / 2 is compared with `SHARPEST` and
-    `ROUGHEST`. It is at most 0.013 for airfoils, 0.06 with nodes evenly spaced around the leading edge, and
-    at least 0.02 for polygons and 0.01 for a square far field. Raises InputError: the strip does not resolve
-    the wall.
+    `ROUGHEST`. The sum is at most 0.013 for airfoils, or 0.06 with nodes evenly spaced around the leading
+    edge. It is at least 0.02 for polygons, and 0.01 for a square far field. Raises InputError: the strip does
+    not resolve the wall.
     """
     n = len(body.wall)
     k = np.minimum(np.arange(n), n - np.arange(n))

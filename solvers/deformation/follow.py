@@ -26,8 +26,8 @@ class Field:
 
     A source k is a boundary node that moves from w_k to w_k' and rotates by R_k, or stays. The displacement
     at x is the weighted mean of d_k(x) = w_k' + R_k (x - w_k) - x over all sources. The weights are A_k (r^-2
-    + near² r^-4) in the plane and A_k (r^-3 + near² r^-5) in three dimensions: A_k is the length or area that
-    belongs to node k, r is its distance from x, and `near` is the distance within which the second term is
+    + near² r^-4) in the plane and A_k (r^-3 + near² r^-5) in three dimensions. A_k is the length or area that
+    belongs to node k, and r the distance of this node from x; within the distance `near`, the second term is
     larger.
     """
 

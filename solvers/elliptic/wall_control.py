@@ -23,9 +23,9 @@ class ControlledEdge:
     """An edge (n, 2) at which angle and first-cell height are controlled.
 
     Sources φ(i, j) = p(i) e^{-b j} along the edge and ψ(i, j) = q(i) e^{-b j} across decay inwards. On a
-    uniform grid with steps dx and dy, a Fourier mode of p with wave number κ/dy rotates lines by
-    (dy/dx) p/(b + κ), and such a mode of q changes the logarithm of the height by q/(b + κ). A correction is
-    therefore the error, with each Fourier mode multiplied by b + κ.
+    uniform grid with steps dx and dy, a Fourier mode of p with wave number κ/dy rotates lines by (dy/dx) p/(b
+    + κ). Such a mode of q changes the logarithm of the height by q/(b + κ). A correction is therefore the
+    error, with each Fourier mode multiplied by b + κ.
 
     `across`: nodes from this edge to the opposite one; `periodic`: whether the edge is closed; `angle`: in
     degrees, between the edge and the lines that leave it; `height`: of first cells, 0 if it is free.

@@ -128,9 +128,10 @@ def distance_to_march(
 ) -> float:
     """Return the sum of steps by which a march from the body reaches the far field.
 
-    Around a circle of n nodes a step s leads from radius r to r + s (1 - e)/(1 + f s/r + 2 e s/r): f is the
-    weight of the flux along a level, e = 2π ε q/n + b h/r the dissipation, q its reduction where lines
-    diverge. Constants fitted on airfoils correct this for other bodies.
+    Around a circle of n nodes a step s leads from radius r to r + s (1 - e)/(1 + f s/r + 2 e s/r). Here f is
+    the weight of the flux along a level, and e = 2π ε q/n + b h/r the dissipation, with ε and b of the
+    settings, the height h of the level, and the reduction q where lines diverge. Constants fitted on airfoils
+    correct this for other bodies.
     """
     distance = front.outer - front.inner
     around = 2.0 * math.pi * settings.dissipation / len(front.start())

@@ -206,9 +206,9 @@ class Airfoil:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the boundary: the wall, and a circle (O grid) or a half circle and a wake (C grid).
 
-        Topology ``auto`` is ``c`` if cells at the wall will be thin and the trailing edge, as treated by
-        `Sampling.te`, is sharp, with an angle of at most 50 degrees. Raises InputError: topology ``quad``, or
-        ``c`` with a blunt trailing edge; too few nodes.
+        Topology ``auto`` is ``c`` if cells at the wall will be thin and the trailing edge is sharp, with an
+        angle of at most 50 degrees, after its treatment by `Sampling.te`. Raises InputError: topology
+        ``quad``, or ``c`` with a blunt trailing edge; too few nodes.
         """
         if sampling.topology == "quad":
             raise InputError("topology quad is not made from an airfoil", "use o or c")

@@ -70,9 +70,9 @@ def _share(values: Bools) -> float:
 def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
     """Return three measures (batch,) of how much worse complex grids `z` (batch, m, n) are than `goal`.
 
-    The first two are for a cell's largest angle: by how many radians its mean, and its maximum, over all
-    cells exceeds that of `goal`, at least 0. The third is log(1 + s / `SLIGHT`), where s is the sum of the
-    angles beyond the limits `NARROW` and `WIDE`, or beyond those of the same cell of `goal` if wider.
+    The first two concern each cell's largest angle: by how many radians its mean and its maximum over all
+    cells exceed those of `goal`, or 0. The third is log(1 + s / `SLIGHT`), where s is the sum of the angles
+    beyond the limits `NARROW` and `WIDE`, or beyond those of the same cell of `goal` if wider.
     """
     least, most = extremes(z)
     with torch.no_grad():

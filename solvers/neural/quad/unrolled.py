@@ -42,8 +42,8 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
 def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any = np) -> tuple[Any, Any, Any]:
     """Return the strips of `walls` (batch, m + 1, n), their centres (batch,), and the mask of `unrolled`.
 
-    Centres are the centroids of the bodies' closed walls `wall` (batch, ni) if `walls` wind once around them,
-    otherwise the points that `inside` returns for the closed curves (m,) ``walls[k, :-1, 0]``.
+    Centres are the centroids of the bodies' closed walls `wall` (batch, ni) if `walls` wind once around them.
+    Otherwise they are the points that `inside` returns for the closed curves (m,) ``walls[k, :-1, 0]``.
     """
     centres = middles(wall[:, :-1], xp)
     strips, once = unrolled(walls, centres, xp)

@@ -23,10 +23,9 @@ class Parametrisation:
 
         |grad u - s (cos theta, sin theta)|^2 + |grad v - s (-sin theta, cos theta)|^2
 
-    u or v is constant along each wall and is one unknown there. Along an edge of the cut, the change of w on
-    one side is that on the opposite side rotated by a multiple of 90 degrees (Lagrange multipliers). This is
-    the map of Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009) 77) without rounding translations to
-    integers.
+    u or v is constant along each wall and is one unknown there. Along the cut, the change of w on one side is
+    that on the other side, rotated by a multiple of 90 degrees (Lagrange multipliers). This is the map of
+    Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009) 77) without rounding translations to integers.
 
     Parameters
     ----------
