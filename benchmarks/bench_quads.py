@@ -255,7 +255,7 @@ four-sided domains. For the method see [neural operators](../theory/operators.md
   is larger than in Winslow's grid.
 - *angle*: largest included angle of each cell, in degrees. The tables give the maximum and the mean over
   the cells, averaged over the domains.
-- *gain*: (Winslow's angle - angle) / (Winslow's angle - angle of the full variational grid), in percent.
+- *gain*: (Winslow's angle - angle) / (Winslow's angle - angle of the row *variational*), in percent.
   *all*: ratio of the sums over all domains. *median*: median of the ratios of the single domains.
 - *CPU ms*: CPU time of one thread, while other programs used the machine.
 """
