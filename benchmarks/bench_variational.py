@@ -228,9 +228,8 @@ equations in a conformal strip.
 - *deviation at walls*: mean deviation from 90 degrees of the angle between the four sides and the grid
   lines that leave them.
 - *distance to full solve*: relative L2 distance to the grid that the same method computes on all nodes (its
-  first row in the table). The neural operator is compared with the variational grid. On 3200 x 3200 nodes,
-  where the variational method is not run on all nodes, distances are to the grid of `variational --coarse
-  33`.
+  first row in the table). The neural operator is compared with the variational grid. On 3200 x 3200 nodes the
+  variational method is not run on all nodes; the grid of `variational --coarse 33` takes its place.
 - *folded*: number of folded cells, before repair. *folded grids*: number of domains whose grid has such
   cells.
 - *worse than Winslow's*: number of domains for which the maximum or the mean angle is larger than in
