@@ -6,7 +6,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Bools, Floats
+from meshonet.geometry.arrays import Bools, Floats, shortest_ways
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
@@ -112,6 +112,14 @@ class Loop:
             return self.names[0]
         stretch = int(np.searchsorted(self.corner_arcs, arc % self.length, side="right")) - 1
         return self.names[stretch]
+
+    def steps(self, arcs: Floats, ways: Floats | float) -> Floats:
+        """Return the signed arc lengths (n - 1,) between `arcs` (n,) of nodes in order along the loop.
+
+        `ways` is 1 for nodes in the direction of the loop, else -1: one step may pass half of the loop.
+        """
+        step = shortest_ways(np.diff(arcs), self.length)
+        return np.where(step * ways < -EQUAL * self.length, step + ways * self.length, step)
 
     def sample(self, count: int) -> Floats:
         """Return `count` points (count, 2) at equal steps of arc length."""

@@ -9,7 +9,7 @@ from itertools import groupby
 
 import numpy as np
 
-from meshonet.geometry.arrays import Side, shortest_ways
+from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
@@ -103,8 +103,8 @@ def _patches(layout: Layout, line: Line, start: int, walls: Collection[str]) -> 
     places, domain = layout.mesh.places, layout.mesh.domain
     number, arcs = int(places.loop[nodes[0]]), places.arc[nodes]
     loop = domain.loops[number]
-    step = shortest_ways(np.diff(arcs), loop.length)
-    names = [loop.name_at(float(arc)) for arc in arcs[:-1] + 0.5 * step]
+    steps = loop.steps(arcs, 1.0 if side in ("south", "east") else -1.0)  # with the block on the left
+    names = [loop.name_at(float(arc)) for arc in arcs[:-1] + 0.5 * steps]
     patches = []
     for name, cells in groupby(names):
         stop = start + len(list(cells))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Bools, Floats, Indices, distinct, shortest_ways
+from meshonet.geometry.arrays import Bools, Floats, Indices, distinct
 from meshonet.geometry.cached import cached_property
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.wall_turning import corners_between, turning_between
@@ -100,13 +100,16 @@ class Chords:
     def arcs(self, edge: int) -> Floats:
         """Return the arc lengths (n,) of the nodes of a wall edge, without a jump at the loop's start."""
         nodes, places = self.edges[edge], self.layout.mesh.places
-        length = self.layout.mesh.domain.loops[places.loop[nodes[0]]].length
-        step = np.diff(places.arc[nodes])
-        step = shortest_ways(step, length)
-        if abs(np.sign(step).sum()) < len(step):  # a loop in two or three steps: keep the way of most
-            way = np.sign(np.sign(step).sum()) or 1.0
-            step = np.where(step * way < 0, step + way * length, step)
-        return places.arc[nodes[0]] + np.concatenate([[0.0], np.cumsum(step)])
+        loop = self.layout.mesh.domain.loops[places.loop[nodes[0]]]
+        steps = loop.steps(places.arc[nodes], self._ways[edge])
+        return places.arc[nodes[0]] + np.concatenate([[0.0], np.cumsum(steps)])
+
+    @cached_property
+    def _ways(self) -> Floats:
+        """(e,) 1 for wall edges along their loops, which have the domain on the left, -1 against them."""
+        ways = np.empty(len(self.edges))
+        ways[self.sides] = np.where(self.reversed, -1.0, 1.0) * (1.0, -1.0, -1.0, 1.0)
+        return ways
 
     def _walls(self) -> Iterator[tuple[int, Loop, Floats]]:
         """Yield the number, the loop and the arc lengths (n,) of each wall edge."""

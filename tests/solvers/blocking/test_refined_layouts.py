@@ -5,6 +5,9 @@ import pytest
 from known_meshes import annulus, box, corner, disc, mesh_of, rectangle
 
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.solvers.blocking.decomposition.collapse.base_complex import base_complex
 from meshonet.solvers.refinement.chords import Chords
@@ -82,3 +85,21 @@ def test_a_block_of_one_cell():
     fine = refine(layout, np.array([4, 3]))
     assert sorted(fine.blocks[0].shape) == [4, 5]
     np.testing.assert_allclose(areas(fine), 1 / 12)
+
+
+def test_one_cell_along_more_than_half_of_a_wall():
+    """The upper side of a section with a blunt base is longer than the rest of its outline."""
+    base, below, nose = [1.0, 0.01], [1.0, -0.01], [0.0, 0.0]
+    section = Loop.of_polygon(
+        np.array([base, below, nose, [0.5, 0.3]]), (0, 1, 2), ("base", "lower", "upper")
+    )
+    right, left, front = [3.0, 2.0], [3.0, -2.0], [-3.0, 0.0]
+    domain = Domain((Loop.of_polygon(np.array([right, front, left])), section))
+    sides = ([base, right, below, left], [below, left, nose, front], [nose, front, base, right])
+    mesh = mesh_of(domain, [np.reshape(side, (2, 2, 2)) for side in sides])
+    layout = Layout(mesh, tuple(mesh.quads[:, [0, 3, 1, 2]].reshape(-1, 2, 2)))
+    assert {patch.name for patch in to_grid(layout).patches} == {"outer", "base", "lower", "upper"}
+    fine = refine(layout, np.full(Chords.of(layout).count, 8))
+    assert areas(fine).min() > 0
+    on = fine.mesh.places.loop == 1
+    assert len(np.unique(fine.mesh.places.arc[on])) == np.count_nonzero(on) == 24
