@@ -66,6 +66,13 @@ class Source:
         """Return all bytes."""
         return self.data if self.data is not None else self.head(-1)
 
+    def bytes_below(self, most: int, kind: str) -> bytes:
+        """Return all bytes of a file, "a layout" or the like. Raises InputError: more than `most` bytes."""
+        if self.size > most:
+            problem = f"{self.size >> 20} MB are too much for {kind}"
+            raise InputError(problem, f"give a file below {most >> 20} MB", source=self.name)
+        return self.read_bytes()
+
     def text_bytes(self) -> bytes:
         """Return all bytes of a text file. Raises InputError: it is larger than 16 MB."""
         data = self.head(_MOST_TEXT + 1)

@@ -39,14 +39,13 @@ def _model(source: Source, read: Callable[[str], tuple[Any, ...]], kind: str) ->
         problem = "needs the package cadquery-ocp-novtk"
         raise InputError(problem, "install it: pip install 'meshonet[cad]'") from None
 
-    if source.size > _MOST_BYTES:
-        raise InputError(f"{source.size >> 20} MB are too much for a CAD file", "give one below 256 MB")
+    data = source.bytes_below(_MOST_BYTES, "a CAD file")
     messenger = Message.DefaultMessenger_s()
     for printer in list(messenger.Printers()):  # it writes to standard output, where reports go
         messenger.RemovePrinter(printer)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "part")
-        path.write_bytes(source.read_bytes())
+        path.write_bytes(data)
         notes: list[str] = []
         try:
             shape, *notes = read(str(path)) if _is_readable(path, kind) else (None,)

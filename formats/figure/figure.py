@@ -30,9 +30,9 @@ from meshonet.formats.figure.layers import (
     paint,
     rule,
 )
+from meshonet.formats.figure.view import nothing_in
 from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -93,8 +93,7 @@ def draw(
 def _visible(grid: Grid, singles: list[Grid], view: Box) -> list[CellsInView | None]:
     parts = [in_view(single, view) for single in singles]
     if not any(parts):
-        spans = "x {:.4g} to {:.4g}, y {:.4g} to {:.4g}".format(*_whole(grid))
-        raise InputError(f"zoom {view} shows none of the grid", f"the grid spans {spans}")
+        raise nothing_in(view, *grid.box)
     return parts
 
 

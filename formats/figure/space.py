@@ -17,7 +17,7 @@ from meshonet.formats.figure.layers import INK, Box, Colouring, limits_of
 from meshonet.formats.figure.painting import faint_ink, paint, painted, steps_of
 from meshonet.formats.figure.row_sections import RowSections
 from meshonet.formats.figure.slices import CellSheet, Cut, cut, layers
-from meshonet.formats.figure.view import View, flat_box
+from meshonet.formats.figure.view import View, flat_box, nothing_in
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import PLACES, Block, face_of
 from meshonet.geometry.blocks.grid import Grid
@@ -97,12 +97,8 @@ def _seen(grid: Grid, sheets: Sequence[CellSheet], colouring: Colouring | None, 
     ]
     points = np.concatenate(shown) @ axes[:2].T
     if not len(points):
-        spans = np.concatenate([sheet.nodes.reshape(-1, 3) for sheet in sheets])
-        text = ", ".join(
-            f"{name} {low:.4g} to {high:.4g}"
-            for name, low, high in zip("xyz", spans.min(axis=0), spans.max(axis=0), strict=True)
-        )
-        raise InputError(f"zoom {view.zoom} shows none of the grid", f"it spans {text}", parameter="zoom")
+        every = np.concatenate([sheet.nodes.reshape(-1, 3) for sheet in sheets])
+        raise nothing_in(view.zoom or (), every.min(axis=0), every.max(axis=0))
     low, high = points.min(axis=0), points.max(axis=0)
     pad = 0.03 * float((high - low).max())
     box = float(low[0] - pad), float(high[0] + pad), float(low[1] - pad), float(high[1] + pad)

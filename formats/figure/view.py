@@ -1,6 +1,7 @@
 """The part of a grid that a picture shows, and the direction of view."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -107,3 +108,9 @@ def flat_box(zoom: tuple[float, ...] | None, across: int | None = None) -> Box |
     if len(zoom) != 4:
         raise InputError("this picture is flat", "use x0,x1,y0,y1 of its two directions", parameter="zoom")
     return zoom[0], zoom[1], zoom[2], zoom[3]
+
+
+def nothing_in(zoom: Sequence[float], low: Floats, high: Floats) -> InputError:
+    """Return the error for a box that shows nothing of a grid with corners `low` and `high` (2,) or (3,)."""
+    spans = ", ".join(f"{name} {a:.4g} to {b:.4g}" for name, a, b in zip("xyz", low, high, strict=False))
+    return InputError(f"zoom {zoom} shows none of the grid", f"it spans {spans}", parameter="zoom")

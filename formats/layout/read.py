@@ -30,10 +30,8 @@ MOST_BYTES = 256 << 20  # largest file in bytes; parsing takes many times its si
 
 def read_layout(source: Source) -> Layout:
     """Return the layout of a file. Raises InputError: not JSON; not a layout; parts that do not match."""
-    if source.size > MOST_BYTES:
-        raise InputError(f"{source.size >> 20} MB are too much for a layout", "give a file below 256 MB")
     try:
-        data = json.loads(source.read_bytes().decode("utf-8-sig"))
+        data = json.loads(source.bytes_below(MOST_BYTES, "a layout").decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
         raise InputError(f"is not JSON ({printable(str(error))[:100]})", "write the layout again") from None
     if not isinstance(data, dict) or data.get("format") != NAME:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from meshonet.formats.mesh.surface import MOST_EDGES
-from meshonet.formats.outlines.joined import SAG, drawing_bytes, extent_checked, shapes_of_drawing
+from meshonet.formats.outlines.joined import MOST_BYTES, SAG, extent_checked, shapes_of_drawing
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
@@ -32,7 +32,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         from ezdxf.filemanagement import read
     except ImportError:
         raise InputError("needs the package ezdxf", "install it: pip install 'meshonet[dxf]'") from None
-    data = drawing_bytes(source)
+    data = source.bytes_below(MOST_BYTES, "a drawing")
     if data.startswith(b"AutoCAD Binary DXF"):
         raise InputError("is a binary DXF", "save it as text (ASCII) DXF")
     if b"\0" in data:  # no text has one, and a reader of drawings takes seconds to find out

@@ -7,7 +7,7 @@ import numpy as np
 
 from meshonet.formats.mesh.surface import MOST_EDGES, MeshBoundary, noted, shapes_of
 from meshonet.formats.mesh.unstructured import Indices
-from meshonet.formats.source import LARGEST, Source, printable
+from meshonet.formats.source import LARGEST, printable
 from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
@@ -15,13 +15,6 @@ from meshonet.geometry.shapes.shape import Shape
 MOST_BYTES = 64 << 20  # largest drawing that is read, in bytes
 SAG = 1e-5  # largest distance of a chord from its curve, relative to the extent
 MEET = 1e-6  # largest distance of two ends that are joined, relative to the extent
-
-
-def drawing_bytes(source: Source) -> bytes:
-    """Return the bytes of a drawing. Raises InputError: 64 MB or more."""
-    if source.size > MOST_BYTES:
-        raise InputError(f"{source.size >> 20} MB are too much for a drawing", "give a file below 64 MB")
-    return source.read_bytes()
 
 
 def shapes_of_drawing(lines: list[tuple[str, Floats]], skipped: Iterable[str], name: str) -> Iterator[Shape]:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from meshonet.formats.mesh.surface import MOST_EDGES
-from meshonet.formats.outlines.joined import SAG, drawing_bytes, extent_checked, shapes_of_drawing
+from meshonet.formats.outlines.joined import MOST_BYTES, SAG, extent_checked, shapes_of_drawing
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import cos, product, sin
@@ -134,7 +134,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
     """
     from xml.etree.ElementTree import ParseError, fromstring
 
-    data = drawing_bytes(source)
+    data = source.bytes_below(MOST_BYTES, "a drawing")
     if b"<!ENTITY" in data:  # entities can expand without bound, and no drawing needs one
         raise InputError("its XML defines entities", "save it again as plain SVG")
     try:

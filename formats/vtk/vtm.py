@@ -19,7 +19,7 @@ from meshonet.formats.output import final_name, whole_folder
 from meshonet.formats.source import Source, printable
 from meshonet.formats.vtk import escaped
 from meshonet.formats.vtk.vts import write
-from meshonet.formats.vtk.vts_read import read_block
+from meshonet.formats.vtk.vts_read import read_block, vtk_root
 from meshonet.geometry.blocks.extrude import plane_of_extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, in_place
@@ -71,18 +71,9 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
     Raises InputError: no such index; a file elsewhere, missing, or not ``.vts``.
     """
-    from xml.etree import ElementTree
-
     if source.path is None:
         raise InputError("names files beside itself, and a stream has none", "give its path")
-    if source.size > _MOST_BYTES:
-        raise InputError(f"{source.size >> 20} MB are too much for an index", "give a .vtm file")
-    try:
-        root = ElementTree.fromstring(source.read_bytes())  # noqa: S314  (expat bounds what entities expand to)
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise InputError(f"is not well-formed XML ({printable(str(error))[:80]})", "write it again") from None
-    if root.tag != "VTKFile" or root.get("type") != "vtkMultiBlockDataSet":
-        raise InputError("is no VTK multi-block file", "give one of type vtkMultiBlockDataSet")
+    root = vtk_root(source.bytes_below(_MOST_BYTES, "an index"), "vtkMultiBlockDataSet")
     names = [block.get("file", "") for block in root.iter("DataSet")]
     if not any(names):
         raise InputError("names no files", "write the file again")

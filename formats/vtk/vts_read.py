@@ -51,10 +51,26 @@ def read_block(source: Source) -> tuple[list[Floats], Facts]:
     return [points[..., k].T for k in range(3)], facts
 
 
-def _parsed(raw: bytes | mmap) -> tuple[Element, int, int]:
-    """Return the XML, and start and end of the appended bytes."""
+def vtk_root(text: bytes, kind: str) -> Element:
+    """Return the XML of a VTK file. Raises InputError: not XML; a document type; not of this `kind`."""
     from xml.etree.ElementTree import ParseError, fromstring
 
+    if b"<!" in text.replace(b"<!--", b"") or b"\0" in text:
+        # a document type can define entities that expand without bound; no VTK file has one
+        raise InputError("its XML has a document type or zero bytes", "write the file again")
+    try:
+        root = fromstring(text)  # noqa: S314  (no document type, so no entities)
+    except (ParseError, ValueError, LookupError) as error:
+        problem = f"is not well-formed XML ({printable(str(error))[:80]})"
+        raise InputError(problem, "write the file again") from error
+    if root.tag != "VTKFile" or root.get("type") != kind:
+        problem = f"is a VTK file of type {printable(root.get('type', '?'))[:60]}"
+        raise InputError(problem, f"give one of type {kind}")
+    return root
+
+
+def _parsed(raw: bytes | mmap) -> tuple[Element, int, int]:
+    """Return the XML, and start and end of the appended bytes."""
     tag = raw.find(b"<AppendedData")
     start = end = len(raw)
     if tag >= 0:
@@ -65,17 +81,7 @@ def _parsed(raw: bytes | mmap) -> tuple[Element, int, int]:
         if end < start:
             raise InputError("its appended data has no end", CUT)
     head = raw[:start] + raw[end:]
-    if b"<!" in head.replace(b"<!--", b"") or b"\0" in head:
-        # a document type can define entities that expand without bound; no VTK file has one
-        raise InputError("its XML has a document type or zero bytes", "write the file again")
-    try:
-        root = fromstring(head)  # noqa: S314  (no document type, so no entities)
-    except (ParseError, ValueError, LookupError) as error:
-        raise InputError(f"is not well-formed XML ({error})", "write the file again") from error
-    if root.tag != "VTKFile" or root.get("type") != "StructuredGrid":
-        problem = f"is a VTK file of type {printable(root.get('type', '?'))[:60]}"
-        raise InputError(problem, "give one of type StructuredGrid")
-    return root, start, end
+    return vtk_root(head, "StructuredGrid"), start, end
 
 
 def _encoding(root: Element, dataset: Element, raw: bytes | mmap, start: int, end: int) -> Encoding:

@@ -179,7 +179,7 @@ def test_what_cannot_be_drawn_is_refused(case: str) -> None:
 
 
 def test_a_box_beside_the_grid_is_refused() -> None:
-    with pytest.raises(InputError, match=r"shows none of the grid; the grid spans x 0 to 2\.1, y"):
+    with pytest.raises(InputError, match=r"shows none of the grid; it spans x 0 to 2\.1, y"):
         draw(channel(), zoom=(9.0, 10.0, 0.0, 1.0))
 
 

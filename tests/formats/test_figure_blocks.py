@@ -61,5 +61,5 @@ def test_a_zoom_shows_the_blocks_in_it() -> None:
     values = tuple(per_cell_of_blocks(grid, "max_angle"))
     axes = draw(grid, Colouring(values, "angle"), zoom=(0.2, 0.8, 0.2, 0.8)).axes[0]
     assert (*axes.get_xlim(), *axes.get_ylim()) == (0.2, 0.8, 0.2, 0.8)
-    with pytest.raises(InputError, match="shows none of the grid; the grid spans x -1 to 1, y -1 to 1"):
+    with pytest.raises(InputError, match="shows none of the grid; it spans x -1 to 1, y -1 to 1"):
         draw(grid, zoom=(2, 3, 2, 3))

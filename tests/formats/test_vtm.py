@@ -118,7 +118,7 @@ def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
     ("text", "message"),
     [
         ("hello", "is not well-formed XML"),
-        ("<a/>", "is no VTK multi-block file"),
+        ("<a/>", r"is a VTK file of type \?; give one of type vtkMultiBlockDataSet"),
         (INDEX.format(""), "names no files"),
         (INDEX.format('<DataSet file="../x.vts"/>'), "names '../x.vts', which is not below its folder"),
         (INDEX.format('<DataSet file="/etc/passwd"/>'), "which is not below its folder"),

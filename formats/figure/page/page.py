@@ -11,7 +11,7 @@ from meshonet.formats.figure.page.document import document, file_text
 from meshonet.formats.figure.page.packing import Packed
 from meshonet.formats.figure.page.scene import Scene, scene_of
 from meshonet.formats.figure.slices import Slice, cut, layers
-from meshonet.formats.figure.view import SEEN_FROM, View, check_flat
+from meshonet.formats.figure.view import SEEN_FROM, View, check_flat, nothing_in
 from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -90,8 +90,7 @@ def _zoom(grid: Grid, zoom: tuple[float, ...], at: Slice | None) -> list[float]:
         remedy = "use x0,x1,y0,y1" if grid.form == "plane" else "use x0,x1,y0,y1,z0,z1"
         raise InputError("the box is not one of this grid", remedy, parameter="zoom")
     if (box_low > high).any() or (box_high < low).any():
-        spans = ", ".join(f"{x} {a:.4g} to {b:.4g}" for x, a, b in zip("xyz", low, high, strict=False))
-        raise InputError(f"zoom {zoom} shows none of the grid", f"it spans {spans}", parameter="zoom")
+        raise nothing_in(zoom, low, high)
     return list(zoom)
 
 
