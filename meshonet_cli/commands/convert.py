@@ -48,18 +48,19 @@ def convert(
     ),
     plot3d: str | None = _output(
         metavar="WORDS", help="Variant of the Plot3D file to write, or to read if the output has another "
-        "format. WORDS are separated by commas: ascii/binary/fortran (fortran: binary with record marks), "
-        "multi/single, 2d/3d, no-iblank/iblank, little/big, float64/float32, whole/planes (reading only: "
-        "coordinates by block or by plane), span-k/span-i/span-j (writing only: file index of the third "
-        "direction of volumes). For reading, give only what the program does not recognise. In other "
-        "commands use --from plot3d:WORDS.",
+        "format: words with commas between them, at most one of each group. ascii/binary/fortran (fortran: "
+        "with record marks), multi/single (single: no block count), 2d/3d, no-iblank/iblank, little/big "
+        "(endian), float64/float32; for reading whole/planes (coordinates by block or by plane); for writing "
+        "span-k/span-i/span-j (file index of the third direction of volumes). The default for writing is the "
+        "first of each group, unless the extension implies another; for reading, give only what is not "
+        "recognised. In other commands: --from or --to plot3d:WORDS.",
     ),
     swap: bool = _option(
         default=False, help="Exchange xi and eta of a four-sided grid. The result is still right-handed.",
     ),
     normalise: bool = _option(
-        default=False, help="Scale and move the grid so that the leading edge is at (0, 0) and the trailing "
-        "edge at (1, 0). A four-sided grid is scaled to length 1.",
+        default=False, help="Move, turn and scale an O or C grid: leading edge to (0, 0), trailing edge to "
+        "(1, 0). Other grids: lower left corner of the bounding box to (0, 0), largest extent 1.",
     ),
     coarsen: int | None = _option(
         metavar="K", min=2, max=10_000, help="Keep every K-th node along each direction. K must divide the "
@@ -71,8 +72,8 @@ def convert(
     ),
     copies: str | None = _option(
         metavar="K[xL]", help="Join K copies of a periodic grid, e.g. passages of a blade row up to the "
-        "whole annulus. If the grid has two periods, KxL joins K copies along the first and L along the "
-        "second, in the order of the quality report. [default: 1]",
+        "whole annulus. KxL joins K copies along the first and L along the second of two periods, which the "
+        "quality report lists in this order. [default: 1]",
     ),
     revolve: o.Revolve = None,
     axis: o.Axis = None,

@@ -28,8 +28,8 @@ def infer(
     blocks: o.BlocksName = "auto",
     model: str | None = _option(
         metavar="NAME|PATH", help="Neural operator that makes the grid: the name of a shipped model (see "
-        "meshonet models), a .safetensors file, or base for the conformal solver without a network. C grids "
-        "are always marched, without an operator. [default: no operator; the method described above]",
+        "meshonet models), a .safetensors file, or base for the conformal solver without a network. Not for "
+        "C grids, which are always marched. [default: no operator; the method described above]",
     ),
     polish: str = _option(
         default="auto", metavar="auto|off|N", help="Number of solver iterations after the neural operator: "

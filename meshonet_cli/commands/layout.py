@@ -42,8 +42,8 @@ def layout(
     blocks: o.BlockOptions,
     run: o.RunOptions,
     far_field: float | None = _sampling(
-        metavar="R", help="Distance of the far field from the middle of all bodies, in lengths of their "
-        "common bounding box. [default: 15]",
+        metavar="R", help="Distance of the far field from the middle of all bodies, as a multiple of their "
+        "largest extent together. [default: 15]",
     ),
     first_cell: o.FirstCell = None, y_plus: o.YPlusAtWalls = None, reynolds: o.Reynolds = None,
     length: o.Length = None,

@@ -49,13 +49,13 @@ def plot(
     ),
     zoom: str | None = _option(
         metavar="x0,x1,y0,y1", help="Show only this region: x0,x1,y0,y1 of a planar grid, x0,x1,y0,y1,z0,z1 "
-        "in space. With --slice give either six numbers, or four for the two axes of the slice: in the "
-        "plane x=2.9, y0,y1,z0,z1, with y to the right. [default: the whole grid]",
+        "in space. For a --slice four numbers may limit its two axes instead: y0,y1,z0,z1 in the plane "
+        "x=2.9, whose y axis points to the right. [default: the whole grid]",
     ),
     slice_: str | None = _option(
         "--slice", metavar="SLICE", help="Draw this slice of a volume: a grid surface of constant index, "
-        "such as i=10 or k=-1 (the last), or a plane such as x=.5. [default: no slice; the walls, or the "
-        "whole boundary of a volume without walls]",
+        "such as i=10 or k=-1 (the last), or a plane such as x=.5. [default: the walls, or the whole "
+        "boundary of a volume without walls]",
     ),
     span: str | None = _option(
         metavar="S,...", help="Draw sections of a blade row, side by side, at these fractions of the span, "

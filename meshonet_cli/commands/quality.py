@@ -23,8 +23,8 @@ def quality(
     run: o.InputOptions,
     gates: o.GateOptions,
     plot: str | None = _output(
-        metavar="F.png", help="Draw the grid, coloured by max_angle, into this picture, or several into "
-        "'{stem}.png'.",
+        metavar="F.png", help="Draw the grid, coloured by max_angle, into this picture; for several grids "
+        "into '{stem}.png'.",
     ),
     html: str | None = _output(
         metavar="F.html", help="Write a report page with pictures, histograms, the worst cells, and the "
@@ -41,14 +41,14 @@ def quality(
         "divided by those of the reference.",
     ),
     pair: Literal["auto", "name", "order"] | None = _check(
-        help="Rule that assigns grids to the references of --compare. name: by name. order: by order. auto: "
-        "all grids to a single reference; of several references, by name if the names agree, else by order. "
-        "[default: auto]",
+        help="Rule that assigns grids to the references of --compare. name: equal names. order: first to "
+        "first, and so on. auto: all grids to a single reference; of several references, by name if the "
+        "names agree, else by order. [default: auto]",
     ),
     reynolds: float | None = _check(
-        metavar="RE", help="Reynolds number, based on --length, for which the report gives y+ of the first "
-        "cells at each wall on a turbulent flat plate. --fail-on 'y_plus>2' then refers to the largest y+ "
-        "of all walls.",
+        metavar="RE", help="Reynolds number, based on --length. The report then gives y+ of the first cells "
+        "at each wall, as on a turbulent flat plate; 'y_plus>2' in --fail-on refers to the largest of all "
+        "walls. [default: no y+]",
     ),
     length: float | None = _check(
         metavar="L", help="Reference length of --reynolds, in the unit of the grid. [default: 1]",

@@ -22,8 +22,8 @@ EXAMPLES = (
 _option = o.option_of(o.METHOD)
 
 AUTO = (
-    "hyperbolic for bodies with a first cell and for C grids (whose default first cell it chooses), "
-    "unless {coarse}, {refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
+    "hyperbolic with a first cell around a body, and for C grids without one unless {coarse}, {refine}, "
+    "{tol}, {max_cycles} or {initial} is given; variational for multi-block grids and volumes; else winslow"
 )
 SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves} | {"auto": AUTO}
 if TYPE_CHECKING:
@@ -57,10 +57,10 @@ def solve_pde(
         "iterations on all nodes. [default: 30; variational 200]",
     ),
     coarse: str = _option(
-        default="auto", metavar="auto|off|N", help="Solve on at most N x N nodes and interpolate to --res "
-        "by splines. off: solve on all nodes. auto: N = 257 for winslow with more than 512 nodes along a "
-        "side, N = 129 for variational with more than 257, at the same quality; all nodes for O grids and "
-        "with --tol, --max-cycles or --initial.",
+        default="auto", metavar="auto|off|N", help="Solve on at most N x N nodes and interpolate to --res by "
+        "splines. off: solve on all nodes. auto: N = 257 for winslow with more than 512 nodes along a side "
+        "of a four-sided domain, N = 129 for variational with more than 257, at the same quality; else, and "
+        "with --tol, --max-cycles or --initial, all nodes.",
     ),
     refine: o.Refine = 0,
     initial: str | None = _option(
@@ -81,9 +81,9 @@ def solve_pde(
 ) -> int:
     """Make elliptic, variational or marched grids.
 
-    Of a volume grid or six patches, the volume inside the six faces is filled. With --method hyperbolic a
-    volume is marched from the patches of a surface. A multi-block grid is smoothed, across the interfaces of
-    its blocks too.
+    Of a volume grid or six patches, the volume inside the six faces is filled. With a first cell, the volume
+    outside a surface is marched from its patches. A given multi-block grid is smoothed, across the interfaces
+    of its blocks too.
     """
     from meshonet_cli.tasks.grids import initial_grid, write_grids
 

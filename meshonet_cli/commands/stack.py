@@ -42,8 +42,8 @@ def stack(
     run: o.RunOptions,
     gates: o.GateOptions,
     around: int | None = _sampling(
-        metavar="N", help="Number of nodes around each section, odd, with the repeated first node. "
-        "[default: 129]",
+        metavar="N", help="Number of nodes around each section, odd; the first node counts twice. [default: "
+        "129]",
     ),
     span: int | None = _sampling(
         metavar="N", help="Number of nodes along z, from the first to the last section. [default: 49; more "
@@ -89,7 +89,7 @@ def stack(
     reynolds: o.Reynolds = None,
     length: float | None = _layer(
         metavar="L", help="Reference length of --reynolds, in the unit of --first-cell. [default: the "
-        "longest chord; in ducts the extent of the widest section]",
+        "longest chord; in ducts the largest extent of the sections]",
     ),
     growth: float | None = _layer(
         metavar="G", help="Largest ratio of the heights of neighbouring cells along a grid line away from "

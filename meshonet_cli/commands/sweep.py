@@ -66,29 +66,29 @@ def sweep(
     revolve: o.Revolve = None,
     axis: o.Axis = None,
     cells: int | None = o.option_of(o.DOMAIN)(
-        metavar="N", help="Approximate number of cells in the section. A circle has more if its area needs "
-        "them to be accurate to 0.1 %. [default: derived from --around for a circle, else 2500]",
+        metavar="N", help="Approximate number of cells in the section; more in a circle whose area is not "
+        "accurate to 0.1 % otherwise. [default: derived from --around for a circle, else 2500]",
     ),
     cell_size: float | None = o.option_of(o.DOMAIN)(
         metavar="H", help="Edge length of cells away from walls, in the unit of the section, instead of "
         "--cells.",
     ),
     layout: str | None = o.option_of(o.DOMAIN)(
-        metavar="LAYOUT.json", help="Use the blocks in this file for the section. meshonet layout writes it.",
+        metavar="LAYOUT.json", help="Use the blocks in this file for the section; meshonet layout writes it. "
+        "[default: new blocks]",
     ),
     walls: o.Walls = None,
     first_cell: str | None = o.option_of(o.BOUNDARY_LAYER)(
         "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, "
-        "in the unit of the section. WALL=H,WALL=H gives named walls of a multi-block section a height "
-        "each, and other walls no layers. Walls are all sides of a four-sided section, outer curves without "
-        "corners, and holes, but not sides named inlet, outlet, axis or symmetry. Other sections need "
-        "--walls. [default: no layers]",
+        "in the unit of the section. WALL=H,WALL=H gives only the named walls of a multi-block section "
+        "layers. Without names, layers are at all sides of a four-sided section, at holes, and at an outer "
+        "curve without corners, but not at sides named inlet, outlet, axis or symmetry. [default: no layers]",
     ),
     y_plus: o.YPlusAtWalls = None,
     reynolds: o.Reynolds = None,
     length: float | None = o.option_of(o.BOUNDARY_LAYER)(
-        metavar="L", help="Reference length of --reynolds, in the unit of the section. [default: the "
-        "bounding-box length of the section; the diameter of a pipe]",
+        metavar="L", help="Reference length of --reynolds, in the unit of the section. [default: the largest "
+        "extent of the section; the diameter of a pipe]",
     ),
     growth: float | None = o.option_of(o.BOUNDARY_LAYER)(
         metavar="G", help="Largest ratio of the heights of neighbouring cells along a grid line away from "

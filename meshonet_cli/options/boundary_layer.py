@@ -9,36 +9,37 @@ _option = option_of(BOUNDARY_LAYER)
 
 # fmt: off
 WallAngle = Annotated[float | None, _option(
-    metavar="DEGREES", help="Angle between grid lines and walls in degrees, for --method steger-sorenson. "
-    "Walls are the sides with a first cell; if there are none, south and north, or the body. [default: 90]",
+    metavar="DEGREES", help="Angle between grid lines and walls in degrees, for --method steger-sorenson. It "
+    "applies to sides with a first cell; if there are none, to south and north, or to the body. [default: "
+    "90]",
 )]
 Slide = Annotated[bool | None, _option(
-    "--slide/--no-slide", help="Move wall nodes along the walls, so that grid lines leave these at right "
+    "--slide/--no-slide", help="Move wall nodes along the walls, so that grid lines leave the walls at right "
     "angles: along south and north of a four-sided domain, or along all sides of a given multi-block grid. "
-    "[default: --slide if south and north have first cells and this command places their nodes, else "
-    "--no-slide]",
+    "[default: --slide for --method auto if this command places the wall nodes and south or north has a "
+    "first cell, else --no-slide]",
 )]
 FirstCell = Annotated[str | None, _option(
-    "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls. For "
-    "a grid of one block around a body the unit is the chord, or the bounding-box length of a body without "
-    "a chord; otherwise it is that of the input. WALL=H,WALL=H gives named walls a height each, and other "
-    "walls no layers. Walls of a four-sided domain: south, north and sides named wall. Walls of a "
-    "multi-block grid: the holes; without holes, all sides, if one is named inlet, outlet, axis or symmetry "
-    "(these four are no walls). --walls selects others. [default: no layers]",
+    "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, in "
+    "the unit of the input; around a body in one block, in chords or, without a chord, in largest extents of "
+    "the body (longer side of its bounding box). WALL=H,WALL=H gives only the named walls layers. Without "
+    "names, walls with layers are south, north and sides named wall in a four-sided domain; holes in a "
+    "multi-block grid; without holes, all sides except inlet, outlet, axis and symmetry, if there is one of "
+    "these. --walls selects others. [default: no layers]",
 )]
 YPlus = Annotated[float | None, _option(
-    metavar="Y", help="y+ of the height of the first cell, instead of --first-cell; y+ at the centre of the "
-    "cell is half of it. The conversion assumes a turbulent flat plate and needs --reynolds.",
+    metavar="Y", help="y+ at the height of the first cell, instead of --first-cell; at the centre of the "
+    "cell y+ is half of it. The height follows from --reynolds for a turbulent flat plate.",
 )]
 YPlusAtWalls = Annotated[str | None, _option(
-    metavar="Y|WALL=Y,...", help="y+ of the height of the first cell, instead of --first-cell; y+ at the "
-    "centre of the cell is half of it. WALL=Y,WALL=Y gives named walls of a multi-block grid a value each. "
-    "The conversion assumes a turbulent flat plate and needs --reynolds.",
+    metavar="Y|WALL=Y,...", help="y+ at the height of the first cell, instead of --first-cell; at the centre "
+    "of the cell y+ is half of it. WALL=Y,WALL=Y selects walls as --first-cell does. The height follows from "
+    "--reynolds for a turbulent flat plate.",
 )]
 Length = Annotated[float | None, _option(
     metavar="L", help="Reference length of --reynolds, in the unit of --first-cell. [default: chord or "
-    "bounding-box length of a body; extent of the south side of a four-sided domain; bounding-box length of "
-    "all holes of a multi-block grid]",
+    "largest extent of a body; distance from the first to the farthest node of south in a four-sided domain; "
+    "largest extent of all holes, else of the domain, in a multi-block grid; 1 for a marched volume]",
 )]
 Reynolds = Annotated[float | None, _option(
     metavar="RE", help="Reynolds number for --y-plus, based on --length.",
@@ -66,13 +67,13 @@ class LayerOptions:
     reynolds: Reynolds = None
     length: Length = None
     chord_fraction: float = _option(
-        default=0.5, metavar="X", help="Position, as a fraction of --length from the leading edge, at which "
-        "--y-plus becomes a height.",
+        default=0.5, metavar="X", help="Distance from the leading edge, as a fraction of --length, at which "
+        "the flat plate has this y+.",
     )
     growth: float | None = _option(
         metavar="G", help="Largest ratio of the heights of neighbouring cells along a grid line away from "
         "the wall, e.g. 1.15. The number of rows follows from it, unless --res gives NJ. [default: 1.2 for "
-        "multi-block grids; otherwise the ratio follows from the number of rows]",
+        "multi-block grids and marched volumes; otherwise the ratio follows from the number of rows]",
     )
     constant_layers: int | None = _option(
         metavar="K", min=1, help="Number of rows at the wall with the height of the first cell, before "

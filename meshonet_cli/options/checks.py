@@ -45,14 +45,14 @@ class GateOptions:
         metavar="GATE", help="Exit with code 1 if this condition holds, e.g. 'max_angle>170', "
         "'skewness.p99>0.8' (99th percentile) or 'folded>0'. Metrics include folded, max_angle, skewness, "
         "growth, wall_growth, equal_wall_cells, far_field, non_orthogonality, face_skewness, box_ratio and, "
-        "for multi-block grids, irregular; the documentation lists all on the page on quality. The "
-        "condition replaces the --profile limit of the same metric. For several grids a table shows which "
-        "of them pass. Repeatable.",
+        "for multi-block grids, irregular; the documentation's page on quality lists all. The condition "
+        "replaces the --profile limit of the same metric. For several grids a table shows which pass. "
+        "Repeatable.",
     )
     profile: list[Profile] | None = _option(
-        metavar="openfoam|pointwise|verdict|viscous", help="Check the grid against the thresholds of "
-        "another program or guideline: each gives pass, warn or FAIL, and a FAIL exits with code 1. The "
-        "documentation lists the thresholds on the page on quality. Repeatable.",
+        metavar="openfoam|pointwise|verdict|viscous", help="Check the grid against the thresholds of another "
+        "program or guideline, listed on the documentation's page on quality: each gives pass, warn or FAIL, "
+        "and a FAIL exits with code 1. Repeatable.",
     )
 
     def criteria(self, leave_out: bool = False, *, more: Sequence[str] = ()) -> "Criteria | None":

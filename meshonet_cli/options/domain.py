@@ -16,8 +16,8 @@ BlocksName = Annotated[Literal["auto", "single"], _option(
 )]
 Walls = Annotated[str | None, _option(
     metavar="NAME,NAME", help="Names of the walls with layers: holes, or named parts of a boundary curve. "
-    "Needs --first-cell or --y-plus. Layers end only at corners of about 90 degrees; if both sides of such "
-    "a corner are walls, their layers meet. [default: the walls described at --first-cell]",
+    "Such a part must end at corners of about 90 degrees; layers of two parts meet at their common corner. "
+    "Needs --first-cell or --y-plus. [default: see --first-cell]",
 )]
 
 
@@ -39,19 +39,20 @@ class BlockOptions:
     )
     layout: str | None = _option(
         metavar="LAYOUT.json", help="Use the blocks in this file, which meshonet layout wrote for the same "
-        "or a similar domain. For a grid with layers, make the layout with a first cell. The command layout "
-        "itself fits the blocks to its domain and writes them with about --cells cells.",
+        "or a similar domain, and with a first cell if the grid has layers. In meshonet layout: fit these "
+        "blocks to DOMAIN and write them with about --cells cells. [default: new blocks]",
     )
     periodic: list[str] | None = _option(
-        metavar="SIDE,SIDE", help="Names of two sides of the outer boundary, one a translation of the "
-        "other, whose nodes must match. Formats that know periodic sides mark them. Repeat the option for a "
+        metavar="SIDE,SIDE", help="Make the nodes of two named sides of the outer boundary match; one must "
+        "be a translation of the other. Formats that know periodic sides mark them. Repeat the option for a "
         "second pair. A GeoJSON file may have the property periodic instead.",
     )
 
     walls: Walls = None
     count: str | None = _option(
         metavar="SIDE=N,...", help="Number of cells along each named side of the domain, e.g. inlet=40. "
-        "Opposite sides of a block have equal numbers of cells, so some combinations are impossible.",
+        "Opposite sides of a block have equal numbers, so some combinations are impossible. [default: from "
+        "--cells]",
     )
 
     def parameters(self) -> dict[str, Any]:
@@ -73,9 +74,9 @@ class DomainOptions(BlockOptions):
     """Options of grids of domains: division into blocks, passage of a cascade."""
 
     pitch: str | None = _option(
-        metavar="DX,DY", help="Displacement from one blade of a cascade to the next, in the unit of the "
-        "input, which is one blade. The grid fills the passage around this blade; the nodes of its two "
-        "periodic sides match. Not with --layout: a passage always has the same blocks.",
+        metavar="DX,DY", help="Vector from one blade of a cascade to the next, in the unit of the input. The "
+        "input is one blade; the grid fills the passage around it, whose two periodic sides have matching "
+        "nodes. Not with --layout: a passage always has the same blocks.",
     )
     inlet: float | None = _option(
         metavar="L", help="Length of the passage upstream of the blade, in axial chords. Needs --pitch. "

@@ -42,7 +42,7 @@ To = Annotated[str | None, _option(
     "extension; hdf5 on standard output]",
 )]
 SkipExisting = Annotated[bool, _option(
-    help="Skip an input if its output file, or its part of a dataset, already exists.",
+    help="Do not replace existing output files or parts of a dataset; skip their inputs.",
 )]
 Threads = Annotated[int | None, _option(
     metavar="N", min=1, max=64, help="Number of threads for each grid; the result does not depend on it. "
@@ -89,12 +89,12 @@ class InputOptions(PrintOptions):
     """Selection of inputs from folders, zip archives and lists; shards; messages."""
 
     pick: list[str] | None = _option(
-        metavar="PATTERN", help="Use only files whose name matches PATTERN, e.g. 'naca*', from folders, "
-        ".zip files and lists. Case does not matter. Repeatable.",
+        metavar="PATTERN", help="Of folders, .zip files and lists, use only files whose name matches "
+        "PATTERN, e.g. 'naca*'. Case does not matter. Repeatable.",
     )
     shard: str | None = _option(
-        metavar="K/N", help="Process only inputs K, K+N, K+2N and so on (parts, if the output is a dataset "
-        "in parts), so that N jobs share the work. K is 1 to N.",
+        metavar="K/N", help="Process every N-th input (of a dataset in parts, every N-th part) from the K-th "
+        "on, 1 <= K <= N, so that N jobs share the work.",
     )
 
     def inputs(
@@ -131,8 +131,8 @@ class RunOptions(InputOptions):
         default=1, metavar="N", min=1, max=1024, help="Number of processes that share the inputs.",
     )
     engine: EngineName = _option(
-        default="processes", help="Engine that starts the processes: processes uses --jobs on this machine, "
-        "dask a Dask cluster, mpi the ranks of mpiexec -n N meshonet ...",
+        default="processes", help="Engine of the processes. processes: --jobs processes of this machine. "
+        "dask: a Dask cluster. mpi: the ranks of mpiexec -n N meshonet ...",
     )
     scheduler: str | None = _option(
         metavar="ADDRESS", help="Address of the scheduler for --engine dask, e.g. tcp://head:8786. "

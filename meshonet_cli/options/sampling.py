@@ -25,7 +25,7 @@ _option = option_of(SAMPLING)
 Resolution = Annotated[str | None, _option(
     "--res", metavar="N|NIxNJ[xNK]", help="Number of nodes: N along every direction, or NI along xi (around "
     "a body), NJ along eta (away from it) and NK along zeta (volumes). If --growth determines the number of "
-    "rows, N is NI. For a multi-block grid, number of cells along its longer extent. [default: the nodes of "
+    "rows, N is NI. For a multi-block grid, number of cells along its largest extent. [default: the nodes of "
     "the input; 200x100 for airfoils and outlines]",
 )]
 
@@ -36,17 +36,17 @@ class SamplingOptions:
 
     res: Resolution = None
     topology: TopologyName = _option(
-        default="auto", help="Topology of the grid. quad: four-sided. o: around a body. c: around an "
-        "airfoil and its wake; NI includes both sides of the wake. auto: c for an airfoil with a sharp "
-        "trailing edge and a first cell, o for other bodies and outlines with fewer than four corners, else "
-        "quad.",
+        default="auto", help="Topology of the grid. quad: four-sided. o: around a body. c: around an airfoil "
+        "and its wake; NI includes both sides of the wake. auto: c for an airfoil with a sharp trailing edge "
+        "if a first cell is given (not in tfi); o for other airfoils, and outlines with fewer than four "
+        "corners; else quad.",
     )
     spacing: SpacingName = _option(
-        default="auto", help="Distribution of the nodes along walls. uniform: equal cells. cosine: smaller "
-        "cells at both ends. tanh: smaller cells at both ends, whose length --le-spacing and --te-spacing "
-        "set for airfoils. curvature: smaller cells at both ends and at bends. conformal: equal steps on "
-        "the circle to which a conformal map takes the body. auto: curvature with a first cell; otherwise "
-        "conformal around airfoils (tanh with --le-spacing or --te-spacing) and smooth bodies, else uniform.",
+        default="auto", help="Distribution of the nodes along walls. uniform: equal cells. cosine, tanh: "
+        "smaller cells at both ends of a side, or at leading and trailing edge. curvature: there and at "
+        "bends. conformal: equal steps on the circle to which a conformal map takes the body. auto: "
+        "curvature in a C grid or with a first cell (not in tfi); otherwise tanh with --le-spacing or "
+        "--te-spacing; conformal around other airfoils and smooth bodies; else uniform.",
     )
     le_spacing: float | None = _option(
         metavar="H", help="Length of the wall cells at the leading edge, in chords. [default: from "
@@ -58,27 +58,28 @@ class SamplingOptions:
     )
     te: Literal["auto", "exact", "round", "wedge"] = _option(
         default="auto", help="Shape of a blunt trailing edge. exact: unchanged; grid angles at its two "
-        "corners deviate from 90 degrees by about 45. round: rounded corners; angles deviate by at most 10. "
-        "wedge: closed by a wedge of up to four base heights. auto: wedge for a C grid that is not marched, "
-        "or that has no first cell and a base of at most 0.005 chords; else exact.",
+        "corners are about 45 degrees off 90. round: rounded corners; at most 10 degrees off. wedge: closed "
+        "by a wedge, up to four base heights long. auto: wedge for a C grid that is not marched, or has no "
+        "first cell and a base of at most 0.005 chords; else exact.",
     )
     far_field: float | None = _option(
-        metavar="R", help="Smallest distance of the far field from the middle of the body, in chords of an "
-        "airfoil or largest extents of other bodies. For lift and drag use 100 or more. For a volume "
-        "marched from a surface, the marching distance in the unit of the surface. [default: 15; from a "
-        "surface 15 bounding-box lengths]",
+        metavar="R", help="Smallest distance of the far field from the middle of the body, in chords of a "
+        "single airfoil or largest extents of other bodies together. For lift and drag use 100 or more. For "
+        "a volume marched from a surface: marching distance, in the unit of the surface. [default: 15; from "
+        "a surface 15 largest extents]",
     )
     wake: float | None = _option(
         metavar="L", help="Length of the wake of a C grid, from the trailing edge, in chords. [default: "
         "--far-field]",
     )
     wake_nodes: int | None = _option(
-        metavar="N", help="Number of nodes along the wake of a C grid, including the trailing edge. Cell "
-        "lengths grow by a constant ratio. [default: about a fifth of NI]",
+        metavar="N", help="Number of nodes along the wake of a C grid, including the trailing edge. "
+        "[default: about a fifth of NI]",
     )
     base: float | None = _option(
-        metavar="T", help="Open a trailing edge thinner than T chords to this thickness. Both sides move "
-        "apart in proportion to the distance from the leading edge. --te then applies to this base.",
+        metavar="T", help="Open a trailing edge thinner than T chords to this thickness; both sides move "
+        "apart in proportion to the distance from the leading edge. --te applies to this base. [default: "
+        "unchanged]",
     )
     base_nodes: int | None = _option(
         metavar="N", help="Number of nodes on the base of a blunt trailing edge, including its two corners; "
@@ -86,11 +87,11 @@ class SamplingOptions:
         "and the cells next to it]",
     )
     smooth: float | None = _option(
-        metavar="TOL", help="Smooth noisy or rounded coordinates of an airfoil by splines that stay within "
-        "TOL chords of the points. Choose 3 times the standard deviation of the noise, or one unit of the "
-        "last digit: 1e-4 for four decimals. A corner more than 2 TOL from the line between the third "
-        "points before and after it stays. A base lower than TOL is closed. The report lists the changes. "
-        "Needs SciPy.",
+        metavar="TOL", help="Smooth noisy or rounded airfoil coordinates by splines within TOL chords of the "
+        "points. TOL should be 3 standard deviations of the noise, or one unit of the last digit: 1e-4 for "
+        "four decimals. A corner stays if it is more than 2 TOL off the line between the third points on its "
+        "two sides. A base lower than TOL is closed. The report lists the changes. Needs SciPy. [default: "
+        "off]",
     )
     corners: str = _option(
         default="auto", metavar="auto|I,J,K,L", help="Indices, from 0, of four points of an outline, in "

@@ -88,7 +88,8 @@ METHODS: Mapping[str, MethodEntry] = MappingProxyType(
         ),
         "thomas-middlecoff": MethodEntry(
             "meshonet.solvers.elliptic.solve:solve_thomas_middlecoff",
-            "Winslow's equations with control functions, which continue the node spacing of the sides inside",
+            "Winslow's equations with control functions, which continue the node spacing of the sides into "
+            "the interior",
             sweeps=False,
         ),
         "steger-sorenson": MethodEntry(
