@@ -37,7 +37,7 @@ class Sampling:
     spacing : str, optional
         Distribution of nodes along a wall, as for the option ``--spacing``. ``auto`` is ``conformal`` around
         airfoils and smooth bodies; ``tanh`` around airfoils if `le_spacing` or `te_spacing` is given;
-        ``curvature`` with a first-cell height; ``uniform`` elsewhere.
+        ``curvature`` in C grids and with a first-cell height; ``uniform`` elsewhere.
     le_spacing, te_spacing : float, optional
         Length of the wall cells at the leading and at the trailing edge, in chords.
     far_field : float, optional

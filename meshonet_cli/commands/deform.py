@@ -20,8 +20,8 @@ def deform(
     gates: o.GateOptions,
     wall: list[str] | None = _option(
         metavar="[NAME=]FILE", help="New shape of a wall: a file with an outline, a designation such as "
-        "naca:2412, or a grid whose wall has as many nodes. NAME is a wall or another named part of the "
-        "boundary; it may be omitted if the grid has one wall. Repeatable.",
+        "naca:2412, or a grid with equally many nodes on its wall. NAME is a wall or another named part of "
+        "the boundary; it may be omitted if the grid has one wall. Repeatable.",
     ),
     rotate: list[str] | None = _option(
         metavar="NAME=DEGREES@X,Y", help="Rotate the wall NAME in the plane, by DEGREES counter-clockwise "

@@ -55,11 +55,10 @@ def infer(
 
     The default method is the best in benchmarks for the kind of shape. O grids around bodies are made by a
     conformal map, or with a first cell by marching from the wall. C grids are marched from the wall.
-    Four-sided domains are filled by the variational method, or with a first cell by Winslow's equations with
-    source terms. All other planar domains are split into blocks. Volumes inside six faces are filled by the
-    variational method. With a first cell, the volume outside a surface is marched from the surface. A neural
-    operator makes the grid only if --model, --polish, --device or --fallback is given; the report then gives
-    the expected error of the grid.
+    Four-sided domains are filled by the variational method, or with a first cell by Winslow's equations. All
+    other planar domains are split into blocks. Volumes inside six faces are filled by the variational method.
+    With a first cell, the volume outside a surface is marched from it. A neural operator makes the grid only
+    if --model, --polish, --device or --fallback is given; the report then gives the expected error.
     """
     from meshonet_cli.tasks.grids import write_grids
 

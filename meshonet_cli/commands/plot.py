@@ -54,8 +54,8 @@ def plot(
     ),
     slice_: str | None = _option(
         "--slice", metavar="SLICE", help="Draw this slice of a volume: a grid surface of constant index, "
-        "such as i=10 or k=-1 (the last), or a plane such as x=.5. [default: the walls, or the whole "
-        "boundary of a volume without walls]",
+        "such as i=10 or k=-1 (the last), or a plane such as x=.5. [default: no slice but the walls; without "
+        "walls the whole boundary]",
     ),
     span: str | None = _option(
         metavar="S,...", help="Draw sections of a blade row, side by side, at these fractions of the span, "

@@ -28,7 +28,7 @@ def quality(
     ),
     html: str | None = _output(
         metavar="F.html", help="Write a report page with pictures, histograms, the worst cells, and the "
-        "results of --fail-on and --profile; of more than 20 grids, for the 20 worst.",
+        "results of --fail-on and --profile; only for the 20 worst of more than 20 grids.",
     ),
     per_cell: str | None = _output(
         metavar="F.vts", help="Write all metrics of every cell into this file: .vts, or .vtm for a "

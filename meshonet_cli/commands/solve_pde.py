@@ -22,7 +22,7 @@ EXAMPLES = (
 _option = o.option_of(o.METHOD)
 
 AUTO = (
-    "hyperbolic with a first cell around a body, and for C grids without one unless {coarse}, {refine}, "
+    "hyperbolic around a body with a first cell, and for C grids without one unless {coarse}, {refine}, "
     "{tol}, {max_cycles} or {initial} is given; variational for multi-block grids and volumes; else winslow"
 )
 SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves} | {"auto": AUTO}

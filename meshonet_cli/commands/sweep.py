@@ -66,8 +66,8 @@ def sweep(
     revolve: o.Revolve = None,
     axis: o.Axis = None,
     cells: int | None = o.option_of(o.DOMAIN)(
-        metavar="N", help="Approximate number of cells in the section; more in a circle whose area is not "
-        "accurate to 0.1 % otherwise. [default: derived from --around for a circle, else 2500]",
+        metavar="N", help="Approximate number of cells in the section; more in a circle whose area would be "
+        "wrong by over 0.1 %. [default: derived from --around for a circle, else 2500]",
     ),
     cell_size: float | None = o.option_of(o.DOMAIN)(
         metavar="H", help="Edge length of cells away from walls, in the unit of the section, instead of "
@@ -80,8 +80,8 @@ def sweep(
     walls: o.Walls = None,
     first_cell: str | None = o.option_of(o.BOUNDARY_LAYER)(
         "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, "
-        "in the unit of the section. WALL=H,WALL=H gives only the named walls of a multi-block section "
-        "layers. Without names, layers are at all sides of a four-sided section, at holes, and at an outer "
+        "in the unit of the section. WALL=H,WALL=H gives layers to the named walls of a multi-block section "
+        "only. Without names, layers are at all sides of a four-sided section, at holes, and at an outer "
         "curve without corners, but not at sides named inlet, outlet, axis or symmetry. [default: no layers]",
     ),
     y_plus: o.YPlusAtWalls = None,

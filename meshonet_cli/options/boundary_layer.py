@@ -20,12 +20,12 @@ Slide = Annotated[bool | None, _option(
     "first cell, else --no-slide]",
 )]
 FirstCell = Annotated[str | None, _option(
-    "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, in "
-    "the unit of the input; around a body in one block, in chords or, without a chord, in largest extents of "
-    "the body (longer side of its bounding box). WALL=H,WALL=H gives only the named walls layers. Without "
-    "names, walls with layers are south, north and sides named wall in a four-sided domain; holes in a "
-    "multi-block grid; without holes, all sides except inlet, outlet, axis and symmetry, if there is one of "
-    "these. --walls selects others. [default: no layers]",
+    "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls. Its "
+    "unit is that of the input, but around a body in one block the chord of an airfoil or the largest extent "
+    "of another body (longer side of the bounding box). WALL=H,WALL=H gives layers to the named walls only. "
+    "Without names, layers are at south, north and sides named wall of a four-sided domain; at holes of a "
+    "multi-block grid; without holes, at all sides except inlet, outlet, axis and symmetry, if there is one "
+    "of these. --walls selects others. [default: no layers]",
 )]
 YPlus = Annotated[float | None, _option(
     metavar="Y", help="y+ at the height of the first cell, instead of --first-cell; at the centre of the "
@@ -38,8 +38,8 @@ YPlusAtWalls = Annotated[str | None, _option(
 )]
 Length = Annotated[float | None, _option(
     metavar="L", help="Reference length of --reynolds, in the unit of --first-cell. [default: chord or "
-    "largest extent of a body; distance from the first to the farthest node of south in a four-sided domain; "
-    "largest extent of all holes, else of the domain, in a multi-block grid; 1 for a marched volume]",
+    "largest extent of a body; from the first to the farthest node of south in a four-sided domain; largest "
+    "extent of all holes, else of the domain, in a multi-block grid; 1 for a marched volume]",
 )]
 Reynolds = Annotated[float | None, _option(
     metavar="RE", help="Reynolds number for --y-plus, based on --length.",
@@ -73,7 +73,7 @@ class LayerOptions:
     growth: float | None = _option(
         metavar="G", help="Largest ratio of the heights of neighbouring cells along a grid line away from "
         "the wall, e.g. 1.15. The number of rows follows from it, unless --res gives NJ. [default: 1.2 for "
-        "multi-block grids and marched volumes; otherwise the ratio follows from the number of rows]",
+        "multi-block grids and marched volumes; otherwise from the number of rows]",
     )
     constant_layers: int | None = _option(
         metavar="K", min=1, help="Number of rows at the wall with the height of the first cell, before "

@@ -46,7 +46,7 @@ class GateOptions:
         "'skewness.p99>0.8' (99th percentile) or 'folded>0'. Metrics include folded, max_angle, skewness, "
         "growth, wall_growth, equal_wall_cells, far_field, non_orthogonality, face_skewness, box_ratio and, "
         "for multi-block grids, irregular; the documentation's page on quality lists all. The condition "
-        "replaces the --profile limit of the same metric. For several grids a table shows which pass. "
+        "replaces the --profile limit of the same metric. A table shows which of several grids pass. "
         "Repeatable.",
     )
     profile: list[Profile] | None = _option(

@@ -64,9 +64,9 @@ class SamplingOptions:
     )
     far_field: float | None = _option(
         metavar="R", help="Smallest distance of the far field from the middle of the body, in chords of a "
-        "single airfoil or largest extents of other bodies together. For lift and drag use 100 or more. For "
-        "a volume marched from a surface: marching distance, in the unit of the surface. [default: 15; from "
-        "a surface 15 largest extents]",
+        "single airfoil, else in largest extents of all bodies together. For lift and drag use 100 or more. "
+        "For a volume marched from a surface: marching distance, in the unit of the surface. [default: 15; "
+        "from a surface 15 largest extents]",
     )
     wake: float | None = _option(
         metavar="L", help="Length of the wake of a C grid, from the trailing edge, in chords. [default: "
@@ -88,10 +88,10 @@ class SamplingOptions:
     )
     smooth: float | None = _option(
         metavar="TOL", help="Smooth noisy or rounded airfoil coordinates by splines within TOL chords of the "
-        "points. TOL should be 3 standard deviations of the noise, or one unit of the last digit: 1e-4 for "
-        "four decimals. A corner stays if it is more than 2 TOL off the line between the third points on its "
-        "two sides. A base lower than TOL is closed. The report lists the changes. Needs SciPy. [default: "
-        "off]",
+        "points. Give 3 standard deviations of the noise, or one unit of the last digit: 1e-4 for four "
+        "decimals. A corner stays if it is more than 2 TOL off the line from the third point before to the "
+        "third after it. A base lower than TOL is closed. The report lists the changes. Needs SciPy. "
+        "[default: off]",
     )
     corners: str = _option(
         default="auto", metavar="auto|I,J,K,L", help="Indices, from 0, of four points of an outline, in "

@@ -177,7 +177,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         Reynolds number for `y_plus`.
     length : float, optional
         Reference length of the Reynolds number, in the unit of `first_cell`. None: the chord of a body, the
-        extent of the south side of a four-sided domain, or the extent of all holes of a multi-block domain.
+        extent of the south side of a four-sided domain, the extent of all holes, else of the outer boundary,
+        of a multi-block domain, or 1 for marching from a surface.
     chord_fraction : float, optional
         Position along the reference length, from 0 to 1, at which y+ is converted to a height.
     growth : float, optional
@@ -189,7 +190,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         First-cell heights at single sides of a four-sided domain.
     slide : bool, optional
         Whether nodes move along the walls south and north, so that grid lines leave them at right angles.
-        None: only if a first-cell height is given and meshonet has placed the wall nodes.
+        None: only with the method ``auto`` or ``best``, a first cell at south or north, and wall nodes that
+        meshonet has placed.
     wall_angle : float, optional
         Angle between grid lines and walls in degrees, for ``steger-sorenson``.
     coarse : int or 'auto', optional
