@@ -15,7 +15,7 @@ MOST_POINTS = 100_000  # largest number of points; a longer path is taken for a 
 
 
 def path_of(text: str) -> Path:
-    """Return the path of a file, TOML by its extension, or of standard input for ``-``.
+    """Return the path (a curve) in a file, TOML by its extension, or in standard input for ``-``.
 
     Points give a smooth curve, closed if the last equals the first. Raises InputError, with the place: an
     unreadable file; a line without three numbers; an unknown key; an invalid value.

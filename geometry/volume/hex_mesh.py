@@ -107,7 +107,7 @@ def second_layer(values: AnyArray, side: Side) -> AnyArray:
 def exchange(
     connections: Sequence[Connection], outside: FaceValues, inside: FaceValues
 ) -> None:  # fmt: skip
-    """Copy values just inside each of two connected sides to those just outside the other.
+    """Copy the values just inside each of two connected sides to the layer just outside the other side.
 
     `inside` and `outside` return views of these layers of a block and a side.
     """

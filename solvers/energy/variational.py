@@ -58,8 +58,8 @@ def solve(
 
     Parameters
     ----------
-    tol : displacement of all nodes that ends the iteration, over √cells times the mean cell size. None: 1e-4,
-        with at most `FEW` iterations, or `FEW_AROUND` for O grids.
+    tol : displacement of the nodes at which the iteration ends, divided by √cells times the mean cell size.
+        None: 1e-4, with at most `FEW` iterations, or `FEW_AROUND` for O grids.
     max_cycles : largest number of iterations on the finest level.
     initial : a grid with the same node counts, in place of nested iteration.
 

@@ -65,10 +65,11 @@ class Spline:
 def interpolate(
     faces: SixFaces, laws: Laws, spline: Spline | None = None, out: Floats | None = None
 ) -> Floats:
-    """Return nodes (ni, nj, nk, 3) by interpolation along three directions at `laws`, plus a `spline`.
+    """Return nodes (ni, nj, nk, 3) by interpolation along three directions, plus a `spline`.
 
-    Nodes are stored in `out` (3, ni, nj, nk) if given, since allocation costs as much as the computation.
-    Gordon and Hall, Int. J. Numer. Methods Eng. 7 (1973) 461-477.
+    `laws` are the parameters of nodes along edges (see `uniform_laws`). Nodes are stored in `out` (3, ni, nj,
+    nk) if given, since allocation costs as much as the computation. Gordon and Hall, Int. J. Numer. Methods
+    Eng. 7 (1973) 461-477.
     """
     planes = np.empty((3, *faces.counts)) if out is None else out
     sides = tuple(np.moveaxis(face, -1, 0) for face in faces.faces)

@@ -106,7 +106,7 @@ class Airfoil:
 
     @property
     def unit(self) -> float:
-        """Unit of wall cell sizes: the chord, or 1 if the chord is within 1 % of that.
+        """Unit of wall cell sizes: the chord, or 1 if the chord differs from 1 by at most 1 %.
 
         The chord of a cambered section exceeds the nominal chord, that of NACA 2412 by 8e-5.
         """

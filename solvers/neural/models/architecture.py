@@ -62,7 +62,7 @@ class Architecture:
         return points
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return the coordinates (batch, p, 2) minus the base at p points.
+        """Return the coordinates (batch, p, 2) of p points, minus those of the base grid.
 
         `xp`: numpy or torch; `w`: trained and fixed arrays by name; `inputs`: from `encode`; `places`: from
         `seen`; `index`: (p,) indices of the points among the nodes of the training grids, for models defined

@@ -38,7 +38,7 @@ def approach(
     `z`: (batch, n, n) complex grids of unit size, arrays of `xp` (numpy or torch); `around`: whether `z` are
     strips (batch, m + 1, n), whose last column is the first plus one period; `steps`: number of Picard steps;
     `harmonic`: whether to start from the harmonic grid; otherwise from `z`, accelerated by Anderson's method
-    with one previous iterate, J. ACM 12 (1965) 547-560. For NumPy it is compiled
+    with one previous iterate, J. ACM 12 (1965) 547-560. For NumPy, compiled code does the steps
     (`kernels/neural/approach.c`).
     """
     if xp is np:
