@@ -27,11 +27,11 @@ _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}  # errors of a di
 def whole_file(destination: str, *, make_folder: bool = False, beside: bool = False) -> Iterator[Path]:
     """Return a context with a temporary path, which becomes `destination` if the block succeeds.
 
-    The path is in the folder of the destination, and renamed in one step; for ``-`` (standard output),
-    devices and pipes it is copied at the end. On any exception it is removed, and the destination unchanged.
-    `make_folder` makes a missing folder. `beside`: more files are written next to the path, impossible on
-    streams. Raises InputError: the destination is a folder; its folder is missing or not writable; the disk
-    is full.
+    The file at this path is in the folder of the destination, and renamed in one step; for ``-`` (standard
+    output), devices and pipes it is copied at the end. On any exception the file is removed, and the
+    destination unchanged. `make_folder` makes a missing folder. `beside`: more files are written next to the
+    path, impossible on streams. Raises InputError: the destination is a folder; its folder is missing or not
+    writable; the disk is full.
 
     Examples
     --------

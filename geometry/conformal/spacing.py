@@ -40,8 +40,8 @@ def conformal_knots(
     Parameters
     ----------
     marks : (m,) ascending arc lengths in (0, length) at which there must be nodes.
-    at : (m,) indices of these nodes; None: multiples of a step.
-    steps : possible steps; the first that does not exceed the index of the first mark is used.
+    at : (m,) indices of these nodes; None: multiples of one of the `steps`.
+    steps : the first one that does not exceed the index of the first mark is used.
 
     Raises InputError: the wall in the strip is not a function of phi, or the iteration does not converge.
     """

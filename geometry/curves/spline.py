@@ -157,8 +157,8 @@ def limited(
     """Return the slopes (intervals, 2) `start` and `stop` of each interval without overshoots.
 
     Each tangent stays near the directions of the two chords at its point (n, 2). At `corners` (indices of
-    points) it may leave its only chord by as much as the polygon turns at the other end of the interval. A
-    closed curve does not repeat its first point.
+    points), where it has one chord, it may deviate by as much as the polygon turns at the other end of this
+    chord. A closed curve does not repeat its first point.
     """
     n = len(points)
     chord = rolled(points, -1) - points  # the last of an open curve is not used

@@ -10,7 +10,7 @@ def place_at(loop: Loop, arc: Floats) -> Floats:
     """Return numbers (n,), called places, for the points of a `loop` at the arc lengths `arc` (n,).
 
     The integer part is the index of the last corner before the point. The fractional part is the fraction of
-    the arc length from this corner to the next. On a loop without corners, it is that of the whole loop.
+    the arc length from this corner to the next. Without corners, it is that of the whole length.
     """
     arc = np.mod(arc, loop.length)
     if not loop.corners:

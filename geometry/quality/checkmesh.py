@@ -71,10 +71,7 @@ def worst_faces(grid: Grid, name: str) -> list[Floats]:
 
 
 def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:
-    """Return the cells (block, i, j) with a face of more than `angle` degrees or more than `skew`.
-
-    The angle is non-orthogonality, the other limit is on face skewness.
-    """
+    """Return the cells (block, i, j) that have non-orthogonality above `angle`, or skewness above `skew`."""
     cells: list[tuple[int, int, int]] = []
     for (block, i, j), angles, skews in _of_blocks(grid):
         where = skews > skew if angles is None else (angles > angle) | (skews > skew)

@@ -41,11 +41,11 @@ def arcs_by_curvature(
 
     The cell size h is a smooth minimum, 1/h⁴ = Σ 1/hₖ⁴, of four sizes: two that start at trailing and leading
     edge and increase by `GROWTH` times the distance; `TURN` / curvature, whose slope is at most `GROWTH`; and
-    a largest size, for which the integral of ds/h is the number of cells. If cells are too few, growth rises
-    up to `HURRY` times if `hurried` (C grids). Then the sizes of curvature and leading edge increase; beyond
-    `_SCARCE` times, growth rises with them. At last all sizes are scaled. With `based`, sizes are also
-    limited to `_LONGEST` mean cells, and growth from the trailing edge rises first, up to `RUSH` times,
-    unless `at_edge` is given.
+    a largest size, for which the integral of ds/h is the number of cells. If cells are too few, growth first
+    rises up to `HURRY` times if `hurried` (C grids). Next, sizes by curvature and at the leading edge
+    increase. When they exceed `_SCARCE` times their values, growth rises too. Last, all sizes are scaled.
+    With `based`, sizes are also limited to `_LONGEST` mean cells, and growth from the trailing edge rises
+    first, up to `RUSH` times, unless `at_edge` is given.
 
     Parameters
     ----------

@@ -81,9 +81,9 @@ def solve_pde(
 ) -> int:
     """Make elliptic, variational or marched grids.
 
-    Of a volume grid or six patches, the volume inside the six faces is filled. With a first cell, the volume
-    outside a surface is marched from its patches. A given multi-block grid is smoothed, across the interfaces
-    of its blocks too.
+    A volume is filled inside six faces, which are given as a volume grid or as six patches. With a first
+    cell, the volume outside a surface is marched from its patches. A given multi-block grid is smoothed,
+    across the interfaces of its blocks too.
     """
     from meshonet_cli.tasks.grids import initial_grid, write_grids
 

@@ -38,7 +38,7 @@ class Live:
 def followed(session: Session, history: str | None) -> Iterator[Callable[[Report, str], None]]:
     """Return a context that shows cycles on a terminal and writes them to the file `history`.
 
-    It gives a function to be called with the report of each grid and its output file.
+    Its value is a function, which is to be called with the report and the output file of each grid.
 
     Raises InputError: `history` does not end in ``.csv``, or its folder does not exist.
     """

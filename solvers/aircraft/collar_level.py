@@ -91,9 +91,10 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
 ) -> tuple[CollarPlan, list[CollarLevel]]:
-    """Return the plan for the collars around `holes`, sections of a wing from the root on, and the collars.
+    """Return the plan for the collars (cells around sections), and the collars around `holes`.
 
-    A collar is the cells around a section. Above and below collars, there are as few cells as growth permits.
+    `holes` are sections of a wing from the root on. Above and below collars, there are as few cells as growth
+    permits.
     """
     edge, nose = corners
     plan = CollarPlan(edge, nose, 4, FEWEST, FEWEST, first)

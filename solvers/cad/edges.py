@@ -34,7 +34,7 @@ class EdgeNodes:
 
 @dataclass(frozen=True, eq=False)
 class EdgeLaw:
-    """Node distribution of an edge: the fractional number of cells from its start to each of s parameters."""
+    """Node distribution of an edge: `cells` (n,) is the number of cells up to the parameters `parts` (n,)."""
 
     parts: Floats
     cells: Floats

@@ -144,8 +144,8 @@ def evened_loops(
 ) -> Layout:
     """Return the layout with nodes moved along loops; displacements decay across the adjacent blocks.
 
-    `measures` are those of each loop, by index. Corners are fixed; `limit` and `most` are as in
-    `evened_places`. If cells would fold, the given layout is returned.
+    `measures` are the functions that are evened on each loop, by index. Corners are fixed; `limit` and `most`
+    are as in `evened_places`. If cells would fold, the given layout is returned.
     """
     mesh = layout.mesh
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()

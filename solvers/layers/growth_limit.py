@@ -44,7 +44,7 @@ class GrowthLimit:
 
     @classmethod
     def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> GrowthLimit:
-        """Return the term for initial ρ `growth` (..., k), whose ρ0 is clipped to the limit."""
+        """Return the penalty term for initial ρ `growth` (..., k); ρ0 is ρ, clipped to the limit."""
         return cls(limit, np.clip(growth, -limit, limit), change)
 
     def values(self, growth: Floats, weight: float) -> Floats:
@@ -63,9 +63,10 @@ class GrowthLimit:
 
 
 def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part: Indices) -> Numbers:
-    """Return a step (m,); each of its parts is halved until the value that depends on it decreases, else 0.
+    """Return `step` (m,), in which each number is halved until the value that depends on it decreases.
 
     `values` returns all values (p,); `part` (m,) is the index of the value that depends on each unknown.
+    Numbers for which no halving helps are 0.
     """
     start = values(at)
     share = np.ones(len(start))

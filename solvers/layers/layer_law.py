@@ -20,8 +20,8 @@ def layer_arcs(
 
     The first `constant` cells have the height `first`, a number or (k,). The logarithms of the other heights,
     which never decrease, are a quadratic function of the index; the last height is about `last` (k,). If
-    `last` is infinite, the ratio is constant. The logarithm of a ratio is at most log(`growth`) or 1 +
-    `steeper` times that of the constant ratio, whichever is larger.
+    `last` is infinite, the ratio is constant. The logarithm of a ratio is at most the larger of log(`growth`)
+    and 1 + `steeper` times the logarithm of the constant ratio.
     """
     rows = cells - constant + 1  # the last constant cell and those that grow
     first = np.broadcast_to(np.asarray(first, dtype=np.float64), length.shape)

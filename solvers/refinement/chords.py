@@ -77,8 +77,8 @@ class Chords:
     def multiple(self) -> Indices:
         """(chords,) divisors that the counts of a symmetric layout must have, to be symmetric when refined.
 
-        The divisor is the number of mirrors for the chord around a ring, 2 for a chord along a wall with a
-        mirror through a corner, and 1 for other chords.
+        The divisor of a chord around a ring is the number of mirrors. If a chord has a wall edge with a
+        corner in the middle, which a mirror contains, it is 2, else 1.
         """
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):

@@ -43,7 +43,7 @@ def coarse_section(plane: SectionPlane, *, early: bool = True) -> Layout:
 def middle_section(
     planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], coarse: Layout | None = None
 ) -> Layout:
-    """Return the middle section of `planes` with about `cells` cells, layers and rows.
+    """Return the middle section of `planes`, with layers and about `cells` cells.
 
     Parameters
     ----------

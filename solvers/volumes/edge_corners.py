@@ -20,7 +20,7 @@ Ranges = list[tuple[int, int]]  # first and end index of nodes along each direct
 def check_corners(faces: SixFaces) -> None:
     """Raise InputError, with the node, if `faces` fold a cell wherever the inner nodes are.
 
-    At an edge of the volume, the three cell edges that meet in a node of the edge lie in two faces.
+    At an edge of the volume, two faces alone determine the corners of cells.
     """
     check_hand(faces)
     worst = []

@@ -75,7 +75,7 @@ class VolumeMultigrid:
         """Return x (3, ni, nj, nk) after a cycle on each level from the coarsest on, and two numbers.
 
         The first number is the largest difference of a coordinate between the two finest levels, about three
-        discretisation errors. The second is the largest change of a coordinate in the last cycle.
+        times the discretisation error. The second is the largest change of a coordinate in the last cycle.
         """
         last = len(self.levels) - 1
         x = self.levels[last].start.copy()

@@ -62,8 +62,8 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
 def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
     """Return distances (n + 1,) of nodes from the middle, on each half of a rounded base, lower first.
 
-    Cells are smaller where the curve turns more over four cells. `curve` and `end` are the results of
-    `rounded_base`. `cells`, at least 3, is the number of cells on a half that turns by 90 degrees.
+    Cells are smaller where the curve, averaged over four cells, turns more. `curve` and `end` are the results
+    of `rounded_base`. `cells`, at least 3, is the number of cells on a half that turns by 90 degrees.
     """
     per_cell = 64
     n = per_cell * cells  # on either half; index n is the middle

@@ -56,8 +56,8 @@ class Ring:
     def columns(self, places: Floats) -> tuple[Floats, Floats]:
         """Return lines (k, m, 2) from the wall to the outer edge, and the arc lengths (k,) of their starts.
 
-        `places` (k,) are the arc lengths on the front of the ends of the lines. Lines are interpolated by
-        cubics through four columns, but never across a corner.
+        `places` (k,) are the arc lengths, on the outer edge, of the ends of the lines. Lines are interpolated
+        by cubics through four columns, but never across a corner.
         """
         n = len(self.arcs)
         knots = np.append(self.front.curve.knots, self.front.length)

@@ -33,7 +33,7 @@ AROUND_CORNER = 2.5
 
 @dataclass(frozen=True, eq=False)
 class RowSizes:
-    """Sizes along a loop, at points on and between its stretches with layers.
+    """Sizes along a loop, at points on and between its parts with layers.
 
     Parameters
     ----------

@@ -41,8 +41,8 @@ class Stretch:
 def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int], tuple[Stretch, ...]]:
     """Return the indices of the loops with layers all around, and the parts of other loops with layers.
 
-    `names` are the walls with layers. Without names, `Domain.layered_loops` have layers, except stretches
-    whose names mean no wall. Layers continue along an axis or symmetry line that continues a wall. Raises
+    `names` are the walls with layers. Without names, `Domain.layered_loops` have layers, except parts whose
+    names mean no wall. Layers continue along an axis or symmetry line that continues a wall. Raises
     InputError, with the position: no boundary has this name; layers would end where the boundary is straight
     or at a reflex corner.
     """

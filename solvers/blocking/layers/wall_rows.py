@@ -109,7 +109,7 @@ def wake_of(mesh: QuadMesh, number: int) -> list[int]:
 def with_wall_rows(
     layout: Layout, stretches: Sequence[Stretch], sheets: Sequence[int] = (), mirrors: Sequence[Mirror] = ()
 ) -> tuple[Layout, WallRows]:
-    """Return a layout with rows of quads along `stretches` (parts of loops) and around `sheets`, and rows.
+    """Return a layout with rows of quads along `stretches` (parts of loops) and `sheets`, and these rows.
 
     `sheets` are loops with a sharp edge. If the quads of the layout are symmetric about `mirrors`, the blocks
     are too. Raises SolverError: the lines of the mesh do not bound blocks.

@@ -69,13 +69,13 @@ class MarchGraph:
 def march_graph(
     surface: Surface, planes: Sequence[Plane], in_plane: Indices, hollow: Floats, splay: float, boost: float
 ) -> MarchGraph:
-    """Return the graph of a surface.
+    """Return the nodes of a surface with their neighbours, in the order of the march.
 
     Parameters
     ----------
     planes, in_plane : planes of symmetry, and mask (p, k) of the open edges in each.
     hollow : (n,) distances from concave edges (`meshonet.geometry.surface.hollows`).
-    splay : relative excess distance of ghosts at free edges (`Seen.opposite`).
+    splay : by which fraction ghosts (nodes beyond free edges) are farther than nodes (`Seen.opposite`).
     boost : additional smoothing at irregular nodes.
     """
     n = len(surface.nodes)

@@ -47,7 +47,7 @@ def products(trunk: Any, branches: Any) -> Any:
 def initial(shapes: Shapes, rng: np.random.Generator) -> Arrays:
     """Return initial parameters: Glorot's uniform weights, spectral weights of size 1/inputs, biases 0.
 
-    Poles decay by factors of e^0.5 to e^20 and turn up to four times from xi = 0 to 1.
+    From xi = 0 to 1, exp(mu xi) of poles mu decays by factors of e^0.5 to e^20, in up to four turns.
 
     Glorot & Bengio, Understanding the difficulty of training deep feedforward neural networks (2010).
     """

@@ -16,7 +16,7 @@ Tables = tuple[Floats, Indices, Indices, Indices]
 
 
 def map_tables(seamless: SeamlessMap) -> Tables:
-    """Return arrays for compiled code: coordinates (t, 3, 2); neighbours, their edges, turns (t, 3) each."""
+    """Return the map as arrays: coordinates (t, 3, 2); neighbours, their edges, quarter turns (t, 3) each."""
     coords = np.ascontiguousarray(seamless.corner_coords).view(np.float64).reshape(-1, 3, 2)
     return coords, seamless.surface.neighbours, seamless.surface.neighbour_edge, seamless.turns
 
