@@ -51,14 +51,14 @@ Each of {count} aircraft has a fuselage with a round nose and a slender tail, an
 
 Grids have {around} nodes around the wing and {span} along the span, and a far field at {far:g} chords.
 
-- *folded*: grids with a cell in which the Jacobian at a corner, or one of its Bezier coefficients, is not
-  positive. (If all Bezier coefficients are positive, the Jacobian is positive in the whole cell.)
+- *folded*: grids with a cell in which the Jacobian at a corner, or a Bezier coefficient of the Jacobian, is
+  not positive. (If all Bezier coefficients are positive, the Jacobian is positive in the whole cell.)
 - *least scaled Jacobian*: the smallest [scaled Jacobian](../reference/metrics.md#cells-of-volumes) of a cell
   of the grid. *relative error of first cells*: the largest relative error of a first-cell height.
-- *growth*: take all pairs of consecutive edges along grid lines, also across blocks. The value is the share
-  of pairs whose lengths differ by a factor of at most 1.3.
+- *growth*: share of the pairs of consecutive edges along grid lines, also from block to block, whose lengths
+  differ by a factor of at most 1.3.
 - *normals*: 95th percentile of the angle between a grid line that leaves a wall and the normal of the wall.
-- *best*, *median* and *worst* are over the grids; of nodes and CPU times, the smallest is the best.
+- *best*, *median* and *worst* are over the grids. For nodes and CPU times, *best* means the smallest.
 - *CPU s*: one thread of {machine}, while other programs used the machine.
 
 A grid was made for {made} of the {count} aircraft; {folded} of these grids have folded cells.

@@ -155,8 +155,8 @@ WAKES = """
 
 A C grid is a four-sided domain whose south side consists of wake, airfoil and wake. The table gives averages
 over six grids of 201 x 65 nodes: around three airfoils, each with a far field at 5 and at 15 chords. The
-network for four-sided domains, `quad-general`, was not trained on such domains, and the 33 nodes per side on
-which it works are too few for the long south side. Without iteration its grids are worse than those of
+network for four-sided domains, `quad-general`, was not trained on such domains. It works on 33 nodes per
+side, which are too few for the long south side. Without iterations its grids are worse than those of
 transfinite interpolation (TFI). meshonet has no model for C grids; `infer` marches C grids from the wall.
 
 | method | valid % | max / mean angle, average | CPU ms, median |
@@ -164,13 +164,14 @@ transfinite interpolation (TFI). meshonet has no model for C grids; `infer` marc
 HOLES = """
 ## The moving hole of the MeshONet paper, 101 x 101
 
-The shapes are square plates with a round hole at different heights: from -0.4 to 0.4 in the row *random*, and
-up to 0.5 above or below the centre in the second row, for which the paper's models were not evaluated.
+The shapes are plates of 2 x 2 with a round hole of radius 0.35. The height of the centre of the hole,
+measured from the middle of the plate, is between -0.4 and 0.4 in the row *random*, and -0.5, -0.45, 0.45 or
+0.5 in the second row. The paper's models were not evaluated for the second row.
 
-The columns `hole-winslow` to MeshONet-hard give the median relative L2 distance to Winslow's solution and, in
-brackets, how many grids have folded cells. The last three columns give the maximum / mean angle, averaged
-over the grids. The network was not trained on such plates; the paper's models were trained on 30 of them
-([the reproduction](paper/index.md)).
+The columns from `hole-winslow` to MeshONet-hard give the median relative L2 distance to Winslow's solution
+and, in brackets, the number of grids with folded cells. The last three columns give the maximum / mean angle,
+averaged over the grids. The network was not trained on such plates. The paper's models were trained on 30 of
+these plates ([the reproduction](paper/index.md)).
 
 | split | hole-winslow | 2 cycles | MeshONet | MeshONet-hard | hole-o | hole-o, 5 steps | Winslow |
 | --- | --- | --- | --- | --- | --- | --- | --- |"""
@@ -181,38 +182,37 @@ HEAD = """# The neural operator for bodies: accuracy and time
 Read this page to decide whether the neural network `hole-o` is accurate enough for your O grids around
 bodies. For the method see [neural operators](../theory/operators.md).
 
-- `hole-o` (*network* in the tables) predicts the variational O grid, `hole-winslow` Winslow's grid. *n steps*
-  and *n cycles* are `--polish n`: after the network, n iterations of the variational method, or n multigrid
-  cycles for Winslow's equations.
+- The network `hole-o` (*network* in the tables) predicts the variational O grid. `hole-winslow`, a second
+  output of the same network, predicts Winslow's grid. *n steps* and *n cycles* mean `--polish n`: n
+  iterations of the variational method, or n multigrid cycles for Winslow's equations, follow the network.
 - The network was trained for only about nine minutes on one core: six epochs with 5,710 random bodies.
 - *valid*: share of grids without a folded cell, before repair.
-- *no worse than Winslow*: share of grids that are valid, and in which neither the maximum nor the mean angle
-  is larger than in Winslow's grid.
-- *max / mean angle*: maximum and mean, over the cells of a grid, of the largest angle of a cell, in degrees.
-  Both are averaged over the bodies.
-- *gain*: the reduction of the angle compared with Winslow's grid, in percent of the reduction that the
-  variational grid reaches. *all*: both reductions are summed over the bodies before the division. *median*:
-  the division is made for each body, and the value is the median of the results. The gain in the largest
-  angle is of the kind *all*.
+- *no worse than Winslow*: share of valid grids in which neither the maximum nor the mean angle is larger than
+  in Winslow's grid.
+- *max / mean angle*: each cell has a largest corner angle. The columns give the maximum and the mean of this
+  angle over the cells, in degrees, averaged over the bodies.
+- *gain*: by how much the angle is smaller than in Winslow's grid, in percent of the same difference for the
+  variational grid. *all*: both differences are summed over the bodies before the division; the gain in the
+  largest angle is computed in this way. *median*: median over the bodies of the gain of each body.
 - Bodies for which Winslow's iteration does not converge, a few in a hundred, are left out.
 - *CPU ms*: CPU time of one thread, while other programs used the machine.
 """
 TAIL = """
 ## Conclusions
 
-- `infer` without `--model` uses `hole-o` for compact bodies for which the conformal map fails. If the
-  network's grid on 65 x 33 nodes has folded cells, the elliptic solver generates the grid instead.
-- With five iterations after the network all grids are valid and angles are closer to 90 degrees than in
-  Winslow's grids, a quarter of which have folded cells before repair. This takes about three times as long as
-  Winslow's method.
+- `infer` without `--model` uses `hole-o` for compact bodies for which the conformal map fails. If the grid of
+  the network on 65 x 33 nodes has folded cells, the elliptic solver generates the grid instead.
+- With five iterations after the network, all grids are valid, and the angles are closer to 90 degrees than in
+  Winslow's grids. A quarter of Winslow's grids have folded cells before repair. Network and iterations take
+  about three times as long as Winslow's method.
 - `solve-pde --method variational` gives the best angles, and takes about three times as long as the
   network with five iterations.
 - In the grids of the network and of the variational method, grid lines cluster where a body is close to its
   far field.
 - For smooth bodies in a round far field and for thin bodies `infer` uses the conformal map and no network.
-- The network was not trained on bodies whose centroid lies outside them, such as clips, crescents and angle
-  sections. Its grids around such bodies often have folded cells, which five iterations or the repair remove.
-  For 25 plates, crescents and angle sections, all grids were valid after the iterations.
+- The network was not trained on bodies whose centroid lies outside the body, such as clips, crescents and
+  angle sections. Its grids around these bodies often have folded cells, which five iterations or the repair
+  remove. For 25 plates, crescents and angle sections, all grids were valid after the iterations.
 """
 
 if __name__ == "__main__":

@@ -172,28 +172,28 @@ HEAD = """# Expected errors of neural networks
 Read this page to decide whether you can rely on the *expected error* that `infer --model` reports, and on the
 threshold 0.03 for this error.
 
-The *answer* of a network is the grid that it predicts. To estimate its error, `infer` applies a few steps of
-the solver that the network imitates: 16 iterations of the variational method for `quad-general` and `hole-o`,
-one fixed-point (Picard) step for Winslow's equations for `airfoil-o`, and two multigrid cycles for
-`quad-winslow` and the networks of [the paper](../theory/paper-models.md). The expected error is the distance
-by which these steps move the nodes, divided by the size of the grid. The true error is the relative L2
-distance from the converged solution. An answer is accepted if its expected error is at most {threshold:g} and
-none of its cells is folded. With `--fallback`, `infer` replaces every answer that is not accepted by a grid
-of the solver.
+The *answer* of a network is the grid that it predicts. To estimate the error of an answer, `infer` applies a
+few steps of the solver that the network imitates: 16 iterations of the variational method for `quad-general`
+and `hole-o`, one fixed-point (Picard) step for Winslow's equations for `airfoil-o`, and two multigrid cycles
+for `quad-winslow` and the networks of [the paper](../theory/paper-models.md). The expected error is the
+relative L2 distance by which these steps move the nodes: the RMS distance divided by the RMS distance of the
+nodes from their centroid. The true error is the relative L2 distance of the answer from the converged
+solution. An answer is accepted if its expected error is at most {threshold:g} and none of its cells is folded. With
+`--fallback`, `infer` replaces every answer that is not accepted by a grid of the solver.
 
 The shapes are of the nine kinds in `benchmarks/yardstick`, on which no network was trained; there are {count}
 shapes of each kind. Six kinds are four-sided domains with 65 x 65 nodes, three kinds are bodies with 65 x 33
-nodes. The last row is the paper's network `meshonet`, trained on 30 arches of 33 x 33 nodes. It is evaluated
-on arches, on the paper's hexagons and semicircles, and on two of the six kinds of four-sided domains. The
-given nodes replace its boundary nodes, which folds cells.
+nodes. The last row is the paper's network `meshonet`, trained on 30 arches of 33 x 33 nodes. This network is
+evaluated on arches, on the paper's hexagons and semicircles, and on the four-sided domains `wavy` and
+`bumps`. The given nodes replace the boundary nodes of its answers, which folds cells.
 
 - `--polish auto` applies a few steps of the solver to the answer before its error is estimated; `--polish
   off` applies none.
 - *error*: true error. *correlation*: rank correlation of expected and true errors. *ratio*: expected error
   divided by true error, 5th, 50th and 95th percentile.
 - *low*: number of answers whose expected error is at most the threshold. *folded*: how many of these have
-  folded cells. *others*: how many of the other answers have folded cells.
-- *ms*: CPU time per grid, one thread.
+  folded cells. *others*: how many of the answers above the threshold have folded cells.
+- *ms*: CPU time to estimate the error of one grid, one thread.
 
 | network | grids | error, median / worst | correlation | ratio, 5 / 50 / 95 % | low | folded | others | ms |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
@@ -201,7 +201,8 @@ given nodes replace its boundary nodes, which folds cells.
 TAIL = """
 ![expected and true errors](confidence.png)
 
-Each point is an answer. Crosses are answers with folded cells; the dotted line is the threshold.
+Each point is an answer. Crosses are answers with folded cells. On the solid line both errors are equal; the
+dotted line is the threshold.
 """
 
 if __name__ == "__main__":

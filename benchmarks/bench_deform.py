@@ -42,19 +42,19 @@ The deformations are random (seed {seed}).
 
 - *airfoils*: the thickness is multiplied by 0.9 to 1.1, and the camber is changed by -2 to 2 % of the
   chord. The grids are C grids of 250 x 100 nodes with first cells of y+ = 1 at Reynolds number 6e6.
-- *flap*: the flap of an airfoil with slat and main element is rotated by up to 10 degrees in either
-  direction, about a point near the leading edge of the flap. The grid has several blocks, about 25,000
-  cells and first-cell heights of 1e-5.
+- *flap*: an airfoil has a slat, a main element and a flap. The flap is rotated by up to 10 degrees in either
+  direction, about a point near its leading edge. The grid has several blocks, about 25,000 cells, and
+  first-cell heights of 1e-5 in the unit of the outlines.
 
-The columns and methods of the table are:
+The columns of the table, and the two published methods, are:
 
-- *deformations*: kind, with their number in brackets. Random deformations that give an
+- *deformations*: kind of the deformations and, in brackets, how many were made. Random deformations with an
   invalid outline are left out; their number is {refused}.
 - *folded*: number of grids with folded cells and, if there are any, the largest number of folded cells in
   one grid.
 - *first cell*: largest relative change of a first-cell height, over all wall nodes and deformations.
-- *angle*: by how many degrees the deformation increases the largest cell corner angle of the grid; maximum
-  over all deformations.
+- *angle*: increase of the largest cell corner angle of the grid by the deformation, in degrees; maximum over
+  all deformations.
 - *CPU ms*: CPU time to compute the new grid from the grid and the new outline in memory, median / 90th
   percentile, one thread of {machine}, while other programs used the machine.
 - *IDW*: interpolation of displacements with weights 1/r^3 (Witteveen, Bijl, AIAA 2009-3996). *IDW,

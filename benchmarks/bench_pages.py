@@ -34,7 +34,7 @@ Times are medians of three runs. For the use of the pages see [pictures](../guid
 
 ## Size and time by number of cells
 
-The page contains all quality metrics of the cells.
+The page contains the metrics of the cells that `meshonet quality` prints without options.
 
 | nodes | cells | size, MB | bytes per cell | time to write, s | time to first drawing, s |
 | --- | --- | --- | --- | --- | --- |
@@ -44,7 +44,7 @@ OTHERS = """
 
 Each library writes a page of the same O grid of 100,000 cells, with grid lines and coloured by one metric.
 The scripts use the usual calls of the library. Only meshonet's page has a list of the worst cells and
-switches that hide blocks; with the other libraries these need further programming.
+switches that hide blocks; the other libraries need further programming for both.
 
 | library | size, MB | time to write, s | time to first drawing, s | metrics in the page |
 | --- | --- | --- | --- | --- |
