@@ -187,8 +187,8 @@ bodies. For the method see [neural operators](../theory/operators.md).
   iterations of the variational method, or n multigrid cycles for Winslow's equations, follow the network.
 - The network was trained for only about nine minutes on one core: six epochs with 5,710 random bodies.
 - *valid*: share of grids without a folded cell, before repair.
-- *no worse than Winslow*: share of valid grids in which neither the maximum nor the mean angle is larger than
-  in Winslow's grid.
+- *no worse than Winslow*: share of grids that are valid and have neither a larger maximum nor a larger mean
+  angle than Winslow's grid.
 - *max / mean angle*: each cell has a largest corner angle. The columns give the maximum and the mean of this
   angle over the cells, in degrees, averaged over the bodies.
 - *gain*: by how much the angle is smaller than in Winslow's grid, in percent of the same difference for the
@@ -205,8 +205,8 @@ TAIL = """
 - With five iterations after the network, all grids are valid, and the angles are closer to 90 degrees than in
   Winslow's grids. A quarter of Winslow's grids have folded cells before repair. Network and iterations take
   about three times as long as Winslow's method.
-- `solve-pde --method variational` gives the best angles, and takes about three times as long as the
-  network with five iterations.
+- `solve-pde --method variational` gives the angles closest to 90 degrees, and takes about three times as long
+  as the network with five iterations.
 - In the grids of the network and of the variational method, grid lines cluster where a body is close to its
   far field.
 - For smooth bodies in a round far field and for thin bodies `infer` uses the conformal map and no network.

@@ -68,8 +68,8 @@ with `--skip-existing`; *generated later* is the number of parts that this secon
 TAIL = """
 Each worker writes its own part files, so grids are not transferred between processes. The main process
 assigns the inputs and prints the reports. If a worker dies, only the part that it was writing is lost, and
-another worker makes it again. If an MPI rank dies, mpiexec stops all ranks without notice to the command; the
-parts written until then remain.
+another worker makes it again. If an MPI rank dies, mpiexec stops all other ranks; the parts written until
+then remain.
 """
 POINTS = 161
 ENVIRONMENT = {
