@@ -58,12 +58,14 @@ C grids around blunt trailing edges have one block, with the base closed by a we
 - *deviation*: absolute difference between a cell corner angle and 90 degrees, in degrees. *max* is the
   maximum over all cells, *away* the maximum over cells more than 3 cells from the trailing edge, *mean* the
   mean over all corners.
-- *growth*: largest growth ratio minus 1, along the wall (xi) and away from it (eta).
-- Rows for groups of shapes give the median / the 90th percentile over the shapes. *files* are airfoil files,
-  with a sharp or a blunt trailing edge; a blunt edge is *rounded* (`--te round`) or kept (*exact*).
-- *procedural* airfoils are random airfoils, whose wall nodes are distributed by every law of `--spacing`. In
-  some of these grids, adjacent cells along the wall differ in length by a factor of four, and cells at the
-  trailing edge are hardly longer than they are high.
+- *growth*: largest growth ratio minus 1, between cells along the wall (xi) and between cells along a line
+  that leaves the wall (eta).
+- Rows for groups of shapes give the median / the 90th percentile over the shapes; *folded* is the sum, *first
+  cell error* the maximum. *files* are airfoil files, with a sharp or a blunt trailing edge; a blunt edge is
+  *rounded* (`--te round`) or kept (*exact*).
+- *procedural* airfoils are random airfoils, each with a random distribution of wall nodes among those of
+  `--spacing`. In some of these grids, neighbouring cells along the wall differ in length by a factor of four,
+  and cells at the trailing edge are hardly longer than they are high.
 - *CPU ms*: CPU time from the file (for procedural airfoils: from the boundary) to nodes in memory, best
   of {repeat} runs (procedural: one run), one thread of {machine}, while other programs used the machine.
 
@@ -75,17 +77,17 @@ sharp trailing edge therefore get a C grid unless `--topology` is given.
 CONSTRUCT2D = """
 ## Compared with Construct2D
 
-The table compares meshonet's grids with hyperbolic grids of Construct2D: 250x100 nodes, first-cell height
-1e-5. Construct2D rounds blunt trailing edges, so its O grids are compared with meshonet's grids with rounded
-edges.
+The table compares meshonet's grids with hyperbolic grids of the program Construct2D: 250x100 nodes,
+first-cell height 1e-5. Construct2D rounds blunt trailing edges. Its O grids are therefore compared with
+meshonet's grids with rounded edges.
 
 | grid | deviation of Construct2D, max / mean | deviation of meshonet, max / mean |
 | --- | --- | --- |
 | O, NACA 0012, blunt | 18.7 / 3.5 | {0} |
-| O, LS(1)-0417, blunt | 24.8 / 3.3 | see the blunt, rounded files |
+| O, LS(1)-0417, blunt | 24.8 / 3.3 | not measured alone; see *blunt, rounded files* |
 | C, NACA 0012, sharp | 14.2 / 1.8 | {1} |
 
-In the grids of Construct2D the growth is 0.10 to 0.18 along the wall and 0.13 away from it, and the
+In the grids of Construct2D the *growth* (above) is 0.10 to 0.18 along xi and 0.13 along eta, and the
 first-cell height is exact. Construct2D takes 150 to 270 ms for 250x100 nodes and 1.24 s for 500x200.
 """
 DEFAULT_FIRST_CELL = """
@@ -94,8 +96,8 @@ DEFAULT_FIRST_CELL = """
 These C grids were generated with `--topology c` and without `--first-cell`. *marched* (`--method auto`)
 uses a first-cell height of one twentieth of the smallest cell along the wall, or a larger one if there
 are few rows. *variational* is `--method variational`. *first cells*: smallest and largest first-cell
-height in chords. The other columns are as above, with the median / the 90th percentile over the files with C
-grids above.
+height of a grid in chords, medians over the files. *CPU ms* is a median too. The other columns are as above,
+for the files with C grids above.
 
 """
 SQUARE = (100, 200, 400)
@@ -187,7 +189,7 @@ def procedural_row(count: int, ni: int, nj: int, first: float) -> str:
         begun = time.process_time()
         nodes = hyperbolic(edges, wall_spacing=first).grid.nodes
         table.append([*figures(nodes, first * edges.chord, 0), 1e3 * (time.process_time() - begun)])
-    return line(f"{count} procedural, every wall spacing law", np.array(table), ni, nj, first)
+    return line(f"{count} procedural, random wall spacing", np.array(table), ni, nj, first)
 
 
 def default_rows(cases: list[Case]) -> list[str]:

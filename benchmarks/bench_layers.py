@@ -39,27 +39,27 @@ HEAD = """# Grids in torch: accuracy and time
 
 Use this page to compare the functions of [`meshonet.layer`](../guide/layers.md), which generate grids in
 torch, with the compiled solvers: the distance between their grids, the folded cells, and the time of a
-gradient. Each function computes one batch of domains in double precision, and a batch in single precision,
-with sides rounded to single precision.
+gradient. Each function computes two batches of domains: one with sides in double precision, and one with
+sides rounded to single precision.
 
 - *Distance*: largest distance between a node and the corresponding node of the compiled solver, relative
-  to the domain size, over all domains. In single precision, the compiled solver gets the rounded sides
-  too, and the nodes of `meshonet.layer` have a rounding error of 6e-8.
+  to the domain size, over all domains. In single precision, the compiled solver computes with the same
+  rounded sides, and the nodes of `meshonet.layer` have a rounding error of 6e-8.
 - *Folded*: number of domains for which the grid of `meshonet.layer` has folded cells. *More*: number of
-  these domains for which the grid of the compiled solver has none.
-- *Backward*: time of the gradient with respect to all boundary nodes, divided by the time of the grids.
-- Times are CPU times of one thread.
+  domains for which only the grid of `meshonet.layer` has folded cells, not the grid of the compiled solver.
+- *Ms a grid*: CPU time to compute a grid, in milliseconds, with one thread. *Backward*: CPU time of the
+  gradient with respect to all boundary nodes, divided by the time of the grids.
 
 The domains of `conformal` are airfoils, those of the other functions four-sided domains. Airfoils without
 a conformal map are left out: 2 of the first 1,000.
 """
 
 TAIL = """
-The compiled variational solver stops before the optimum. For this comparison, Newton's method with the
-compiled gradient continues to the optimum, and the distance is measured from there. For `conformal`, the
-compiled Picard steps are repeated until the nodes do not move any more. The discrete solution of Winslow's
-equations has folded cells at sharp corners; `solve-pde` repairs these cells. `variational` converges for
-all 924 domains, without folded cells.
+The compiled variational solver stops before the minimum of its functional. For this comparison, Newton's
+method continues from the grid of this solver to the minimum, with the gradient of the compiled code; the
+distance is measured from the grid at the minimum. For `conformal`, the compiled Picard steps are repeated
+until the nodes do not move any more. The discrete solution of Winslow's equations has folded cells at sharp
+corners; `solve-pde` repairs these cells. `variational` converges for all 924 domains, without folded cells.
 """
 
 FUNCTIONS = "transfinite,winslow,variational,conformal"

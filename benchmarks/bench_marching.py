@@ -43,20 +43,20 @@ Use this page to find the quality and the CPU time of volume grids that are marc
 method see [marching from surfaces](../guide/marching-surfaces.md).
 
 - *surface*: the first four (a blended wing body, the ONERA M6 wing, two spheres) are read from files. *star*
-  and *dented* are deformed spheres. *patches, nodes*: their numbers on the surface. *levels*: number of node
-  layers from the surface to the far field.
+  and *dented* are deformed spheres. *patches, nodes*: numbers of patches and of nodes of the surface.
+  *levels*: number of nodes along a grid line from the surface to the far field.
 - *first cell, distance*: prescribed first-cell height, and distance of the far field, in the unit of the
   surface.
 - *tries*: number of marches, each with other smoothing parameters, until the grid was valid.
 - *folded*: number of cells in which a corner Jacobian, or a Bezier coefficient of the Jacobian, is not
-  positive.
+  positive. If all these coefficients are positive, the Jacobian is positive everywhere in the cell.
 - *error*: largest relative error of the first-cell height.
 - *quality*: the smallest divided by the largest Jacobian at the eight corners of a cell, in the worst
   cell. The marching program pyHyp prints the same measure. *SJ*: minimum scaled Jacobian at the corners.
-- *off the normal*: angle in degrees between grid lines and the normals of the node layers, mean / 99th
-  percentile / maximum.
-- *growth*: three growth ratios, each minus 1: prescribed, and largest along a grid line after the march /
-  after nodes are redistributed along the grid lines.
+- *off the normal*: angle in degrees between the grid lines that leave the surface and the normals of the
+  grid surfaces that they cross, mean / 99th percentile / maximum.
+- *growth*: three growth ratios, each minus 1. The first is prescribed. The others are the largest along a
+  grid line: after the march / after nodes are then redistributed along the grid lines.
 - *CPU*: CPU time in seconds to march and to test the volume, without reading and writing, best of 3. *us a
   node*: the same time in microseconds per node of the volume. *process*: CPU time of the whole command,
   including reading and writing; only for surfaces that are read from files. One thread of {machine}, while

@@ -39,25 +39,28 @@ HEAD = """# Blade rows
 Use this page to find the quality of grids of blade rows, and the CPU time to generate them. [Blade
 rows](../guide/blade-rows.md) explains how to make such grids.
 
-Rotor 37 is NASA's transonic compressor rotor, with its tip gap of 0.356 mm. Its two grids differ in
-`--cells`; the first-cell height is 1e-4 chords and the growth ratio 1.2. The blade of a random row is
-interpolated between two real airfoils, one at the hub and one at the casing. These properties are random:
+Rotor 37 is NASA's transonic compressor rotor, with its tip gap of 0.356 mm. The table has two grids of this
+rotor with different `--cells`, first-cell heights of 1e-4 chords and a growth ratio of 1.2. The blade of a
+random row is interpolated between two real airfoils, one at the hub and one at the casing. These properties
+are random:
 
 | property | range |
 | --- | --- |
-| stagger at mid-span | 0 to 65 degrees; it changes by up to 30 degrees towards hub and casing |
-| solidity at mid-span | 0.7 to 2 |
+| stagger at mid-span | 0 to 65 degrees; at hub and casing it differs by up to 30 degrees |
+| solidity (chord / distance between blades) at mid-span | 0.7 to 2 |
 | ratio of hub radius to tip radius | 0.4 to 0.9 |
 | channel | cylindrical, conical or curved |
-| gap | 0 to 3 % of the span, in two of three rows; the others have no gap |
+| tip gap | up to 3 % of the span in two of three rows; the others have no gap |
 
-Grids of random rows have about {cells} cells, or more if their layers need more, and first-cell heights of
-{first:g} chords. Radial rows are centrifugal impellers, radial turbines, mixed-flow pumps (about half of
-these three with a tip gap) and vaned diffusers. The last two lines are for groups of rows: "30 of 30" have a
-valid grid, and *nodes* and *CPU s* are medians.
+Grids of random rows were made with `--cells {cells}`; they have more cells if their layers need more. Their
+first-cell heights are {first:g} chords. Radial rows are centrifugal impellers, radial turbines, mixed-flow
+pumps and vaned diffusers; about half of the impellers, turbines and pumps have a tip gap. The last two lines
+of the table are for groups of rows. "30 of 30" means that all 30 rows have a valid grid; *nodes* and *CPU s*
+are medians.
 
 - *folded*: number of cells with a corner Jacobian of zero or less / number of cells in which a Bezier
-  coefficient of the Jacobian is zero or less.
+  coefficient of the Jacobian is zero or less. If all these coefficients are positive, the Jacobian is
+  positive everywhere in the cell.
 - *SJ*: scaled Jacobian of cells: minimum / 0.1th percentile / mean. For groups of rows: median / smallest
   of the minima of the rows.
 - *angle*: largest angle of the faces of a cell in degrees: maximum / 99.9th percentile. For groups of
@@ -66,11 +69,11 @@ valid grid, and *nodes* and *CPU s* are medians.
 - *growth*: ratio of consecutive edges along all grid lines, also across block interfaces: 99th percentile
   / 99.9th percentile / maximum. For groups of rows: median of the 99.9th percentiles of the rows / largest
   ratio in all rows.
-- *periodic*: largest distance between a node of `periodic2` and the rotated node of `periodic1`, divided
-  by the radius.
+- *periodic*: largest distance between a node of the side `periodic2` and the corresponding node of
+  `periodic1`, rotated by one pitch, divided by the radius.
 - *blade*: largest distance of a blade node from the surface through the given profiles, in chords; not
   measured for groups.
-- *CPU s*: one thread of {machine}, while other programs used the machine.
+- *CPU s*: CPU time in seconds, with one thread of {machine}, while other programs used the machine.
 
 | grid | nodes | folded | SJ | angle | first cells | growth | periodic | blade | CPU s |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |

@@ -37,21 +37,23 @@ HEAD = """# Volumes inside six faces
 <!-- made by python benchmarks/bench_volumes.py --page docs/benchmarks/volumes.md -->
 
 Use this page to find the CPU time and the quality of volume grids inside six faces.
-[Volumes](../guide/volumes.md) explains how to make such grids. Times are CPU times of one thread, the
-minimum of several runs. *Relative to copy*: this time divided by the time to copy the nodes into memory
+[Volumes](../guide/volumes.md) explains how to make such grids. The variational method solves on 33³ nodes and
+interpolates to all nodes; the rows *spline* are this interpolation. Times are CPU times of one thread, the
+minimum of several runs. *Relative to copy*: the time divided by the time to copy the nodes into memory
 that is already allocated. *Deviation*: for each cell corner, the largest deviation of its three angles
-from 90 degrees; the tables give the mean and the 99th percentile over all corners. *SJ*: scaled Jacobian
-at the corners.
+from 90 degrees; the tables give the mean and the 99th percentile (*99 %*) over all corners of a grid.
+*SJ*: scaled Jacobian at the corners. *Valid*: number of grids without folded cells. Medians and the 90th
+percentile (*90 %*) are over the domains.
 """
 
 NETWORKS = """## A network: 3DMeshNet
 
 `train --model meshnet` trains a 3DMeshNet for each of the first {count} of these domains, with {epochs} steps
 (15,000 by default), default settings and seed 0. The training is part of the CPU time. The boundary nodes
-that the network predicts do not lie on the given faces. The largest distance of a boundary node from its
+that the network predicts do not lie on the given faces: the largest distance of a boundary node from its
 given position is {off} % of the size of the domain (median over the domains). The predicted boundary nodes
 are therefore replaced by the given nodes (row *given faces*, `infer --answer pasted`). In the row *repaired*,
-folded cells are then repaired, as `infer` does by default.
+folded cells are then repaired, as by `infer` without options.
 """
 
 METHODS: dict[str, Callable[[SixFaces], Solution]] = {

@@ -53,15 +53,16 @@ Each of the {count} wings has two sections, drawn at random from {files} airfoil
 trailing edges. The taper is 0.25 to 1 and the twist -8 to 4 degrees. The tip is displaced by -0.2 to 0.8
 spans downstream (sweep) and by -0.1 to 0.25 spans upwards (dihedral). The far field is at 15 chords, in the
 first row of the table at 12 chords. The {count} blades are drawn in the same way; they stand between two
-walls. First-cell heights are in chords; *81 around* is the number of nodes around a section.
+walls. First-cell heights are in chords. *81 around* means 81 nodes around a section, *113 layers* 113 nodes
+along a grid line from the wall to the far field.
 
-- *valid*: grids without a folded cell, by the corner Jacobians.
+- *valid*: number of grids in which all corner Jacobians are positive. *nodes*: median number of nodes.
 - *first cell error*: largest relative error of the first-cell height over all wall nodes; for blades, over
   the wall nodes of the two given sections.
-- *minimum scaled Jacobian* (*SJ*), *largest angle* (of cell faces, degrees): median / worst over the
-  grids.
-- *CPU s*: CPU time to compute the grid and its quality report, median / maximum, one thread of {machine},
-  while other programs used the machine.
+- *minimum scaled Jacobian* (*SJ*), *largest angle* (of cell faces, in degrees) of a grid: median / worst
+  over the grids.
+- *CPU s*: CPU time to compute the grid and its quality report, median / maximum, with one thread of
+  {machine}, while other programs used the machine.
 
 | grids | valid | nodes | first cell error | minimum scaled Jacobian | largest angle | CPU s | µs per node |
 | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -140,7 +141,8 @@ def pipes() -> str:
         ),
         "knot, closed": (knot, 0.4),
     }
-    lines = ["", "## Pipes", "", "| path | folded | nodes | minimum SJ | largest angle | CPU ms |",
+    lines = ["", "## Pipes", "", "A butterfly grid of a circular cross-section is swept along each path.", "",
+             "| path | folded | nodes | minimum SJ | largest angle | CPU ms |",
              "| --- | --- | --- | --- | --- | --- |"]  # fmt: skip
     for name, (points, radius) in paths.items():
         begun = time.process_time()

@@ -54,8 +54,8 @@ ERRORS_HEAD = """# Held-out errors of the shipped models
 Look here for the accuracy of the neural networks (models) that are part of meshonet: the distance between
 grids of a model and grids of the solver, on *held-out* shapes, which were not used in training. The training
 parameters are in [shipped models](../reference/models.md); `meshonet models` prints errors and parameters.
-The loss after each epoch is in `docs/benchmarks/curves`; `quad-first` is the first of the two training runs
-of `quad-general`.
+The loss after each epoch is in `docs/benchmarks/curves`. `quad-general` was trained in two runs;
+`quad-first` is the first of them.
 """
 C_GRIDS = """## C grids: no model
 
@@ -223,9 +223,10 @@ def strip_figures(figures: dict[str, Any], _: str) -> list[str]:
     lines = [
         f"The held-out samples are {figures['strips']} random airfoils. A",
         "[conformal map](../theory/o-grids.md) takes each domain to a strip. The error is the root mean",
-        "square distance from Winslow's solution in the strip, in radians. *base* is the initial grid (the",
-        "harmonic extension of the boundary), which the network corrects. *n Picard* adds n Picard steps",
-        "towards Winslow's solution. The weights are stored in float16.\n",
+        "square distance from Winslow's solution in the strip, whose coordinates are in radians. *base* is",
+        "the initial grid (the harmonic extension of the boundary), which the network corrects.",
+        "*+ n Picard* means that n Picard steps towards Winslow's solution follow. Median, percentile and",
+        "maximum are over the airfoils. The weights are stored in float16.\n",
         "| method | median | 90th percentile | maximum |",
         "| --- | --- | --- | --- |",
     ]
@@ -241,10 +242,11 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     counts, domains = ("65 x 33", "domains around bodies") if bodies else ("33 x 33", "four-sided domains")
     lines = [
         f"The held-out samples are {figures['domains']} random {domains}. One network predicts both the",
-        "variational grid and Winslow's grid. Errors are relative L2 distances from the solver's grid",
-        f"on {counts} nodes, without solver iterations after the network. *initial* is the",
-        "median error of the initial grid, which the network corrects; *valid* is the share of grids",
-        "without folded cells.\n",
+        f"variational grid and Winslow's grid, here on {counts} nodes and without solver iterations after",
+        "the network. An error is the root mean square distance of the nodes from the solver's grid, divided",
+        "by the root mean square distance of the nodes of the solver's grid from their mean. *initial* is",
+        "the median error of the initial grid, which the network corrects; *valid* is the share of",
+        "predicted grids without folded cells.\n",
         "| predicted grid | median error | 90th percentile | initial | valid |",
         "| --- | --- | --- | --- | --- |",
     ]
@@ -258,9 +260,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "In the variational grid the largest angles of cells are smaller than in Winslow's grid. The\n"
-        f"predicted grid reaches {100 * gain['mean_gain']:.0f} % of this reduction for the mean over the\n"
-        f"cells, and {100 * gain['max_gain']:.0f} % for the maximum.",
+        "The largest angles of cells are smaller in the variational grid than in Winslow's grid. The\n"
+        f"predicted variational grid reaches {100 * gain['mean_gain']:.0f} % of this reduction of the mean\n"
+        f"over the cells, and {100 * gain['max_gain']:.0f} % of the reduction of the maximum.",
     ]
     return lines
 

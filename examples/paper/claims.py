@@ -61,17 +61,17 @@ def _on_loss(case: str, means: Mapping[str, float]) -> str:
     known = [name for name in BASELINES if name in ratios]
     below = [name for name in known if ratios[name] < 1.0]
     verdict = "confirmed" if known and min(ratios[name] for name in known) >= ORDERS else "not confirmed"
-    text = f"**Loss: {verdict} on this budget** ({case}). "
+    text = f"**Loss: {verdict} on this budget** (case {case}). "
     if below:
         text += f"{len(below)} of {len(known)} baselines have a lower loss than MeshONet. "
     else:
         text += f"MeshONet's loss is the lowest of {len(known) + 1}. "
-    times = ", ".join(f"{ratios[name]:.2g} times (`{name}`)" for name in known)
-    text += f"The losses of the baselines are {times} MeshONet's."
+    times = ", ".join(f"{ratios[name]:.2g} (`{name}`)" for name in known)
+    text += f"The losses of the baselines are {times} times MeshONet's."
     newer = [name for name in NEWER if name in ratios]
     if newer:
-        times = ", ".join(f"{ratios[name]:.2g} times (`{name}`)" for name in newer)
-        text += f" The losses of newer operators, which the paper only cites, are {times} MeshONet's."
+        times = ", ".join(f"{ratios[name]:.2g} (`{name}`)" for name in newer)
+        text += f" The losses of newer operators, which the paper only cites, are {times} times MeshONet's."
     return text
 
 

@@ -128,7 +128,7 @@ def race(results: Path, pages: Path) -> str:
     head = ["case", "model", "shapes seen", "seeds", "mean square error, end of training"]
     head += ["relative L2 of test grids", "seconds"]
     order = sorted(losses, key=losses.__getitem__)
-    ranked = f"From the least loss to the largest: {', '.join(order)}."
+    ranked = f"In the order of their losses, the smallest first: {', '.join(order)}."
     return f"{ranked}\n\n![loss](loss.png)\n\n{table(head, rows)}"
 
 

@@ -12,8 +12,8 @@ MeshONet is a neural network that learns to predict the grid of a shape from its
 come from `meshonet` commands: `make paper` samples the six [families of shapes](../../reference/families.md),
 solves for their grids, trains the networks, evaluates them and measures the results. The commands are in
 `examples/paper/Makefile`; [paper models](../../theory/paper-models.md) describes the networks. The paper
-measures quality by the largest included angle of a cell, and shows this angle in colour maps without numbers.
-This page therefore quotes the paper's claims.
+measures quality by the largest included angle of each cell. It shows these angles only in colour maps, without
+numbers; this page therefore tests what the paper says in words.
 """
 
 STANDS = """
@@ -22,41 +22,47 @@ STANDS = """
 
 LOWEST = """The paper claims that MeshONet's loss is orders of magnitude below the losses of four other networks, the
 baselines. Here all networks are trained on one *budget*: the same shapes, equally often, with the same
-learning-rate schedule. Values are mean ± standard deviation over the random seeds.
+learning-rate schedule. Values are mean ± standard deviation over the random seeds. A *case* is a family with a
+*split* of its shapes into training and test shapes ([splits](#quality-case-by-case)).
 
 """
 
 CLAIMS = """
 The paper's claims about quality compare MeshONet with transfinite interpolation (TFI) and with a solver of
-Winslow's equations (PDE). Here we compare the largest included angle of a grid, averaged over the test grids; lower is better.
-The column *max angle against TFI / PDE* says whether MeshONet's angle is below, equal to or above the angle
-of TFI / of the PDE solver. The column *claimed* translates the words of the paper: "better" means below,
-"slightly worse" means above. A dash means that the paper makes no claim.
+Winslow's equations (PDE). Here we compare the largest included angle of a grid, averaged over the test grids;
+lower is better. The column *max angle against TFI / PDE* says whether MeshONet's angle is below, equal to or
+above the angle of TFI / of the PDE solver. The column *claimed* translates the words of the paper: "better"
+means below, "as good" equal, and "slightly worse" above. A dash means that the paper makes no claim.
 
 As in the paper, the boundary nodes of the network's output are replaced by the given nodes (*boundary
 pasted*). This folds cells if the error of the network at the boundary exceeds the height of the first row of
-cells. `meshonet-hard`, our variant of MeshONet, matches the boundary exactly. *Repaired* grids are the output of `infer`
-without options, which repairs folded cells. The last four columns are numbers of folded cells.
+cells. `meshonet-hard`, our variant of MeshONet, matches the boundary exactly. *Repaired* grids are the output
+of `infer` without options, which repairs folded cells. The last four columns are numbers of folded cells in
+all test grids together.
 """
 
 SPEED = """
-**Speed: not confirmed for a multigrid solver.** The paper reports that MeshONet is four orders of magnitude faster than a PDE
-solver, which takes 140 s for 100 x 100 nodes. `solve-pde` takes {times} times as long as MeshONet
-([mesh refinement](#mesh-refinement)).
+**Speed: not confirmed for a multigrid solver.** The paper reports that MeshONet is four orders of magnitude
+faster than a PDE solver, which takes 140 s for 100 x 100 nodes. Depending on the number of nodes, our solver
+`solve-pde` takes {times} times as long as MeshONet ([mesh refinement](#mesh-refinement)).
 """
 
 QUALITY = """
 ## Quality, case by case
 
-Each case has 36 shapes of 101 x 101 nodes: 30 for training and 6 for tests. *Interpolation* tests the middle
-of the parameter range and trains on both ends. *Extrapolation* tests one end of the range. *Random* tests
-random parameters. All values are for test grids. *Relative L2* is the distance from the converged Winslow
-solution. *Boundary error* is the largest distance of a predicted boundary node from the given node. *Max
-angle* and *mean angle* are the largest included angle of a cell, in degrees: maximum and mean over a grid.
+Each case has 36 shapes of 101 x 101 nodes: 30 for training and 6 for tests. The split *interpolation* tests
+the middle of the range of the family's parameter and trains on both ends, *extrapolation* tests one end, and
+*random* tests random parameters. All values are for test grids; *median*, *mean* and *worst* are over these
+grids.
+
+*Relative L2* is the root mean square distance between the nodes and the converged Winslow solution, divided by
+the root mean square distance of the solution's nodes from their mean. *Boundary error* is the largest distance
+of a predicted boundary node from the given node. For each cell the largest included angle is taken, in
+degrees: *max angle* is its maximum, and *mean angle* its mean over the cells of a grid.
 
 The networks learn from the grids of the rows *PDE*. For the wrench, Winslow's equations fold 4 to 18
-cells of each grid at the two corners of 270 degrees; these cells are repaired. For wrench and airfoil, modes that are
-computed from the training grids replace the trunk network of `meshonet-hard`
+cells of each grid at the two corners of 270 degrees; these cells are repaired. For wrench and airfoil,
+`meshonet-hard` uses modes computed from the training grids instead of its trunk network
 ([reasons](../../theory/paper-models.md#meshonet-hard)).
 """
 
@@ -73,8 +79,8 @@ RACE = """
 ## Loss on one budget
 
 All models are trained on the same budget, with the same random points in each step. Values are mean ±
-standard deviation over the random seeds. A figure of the paper, over 100,000 iterations, shows MeshONet's
-loss orders of magnitude below the others.
+standard deviation over the random seeds. In the paper's figure of the loss over 100,000 iterations, MeshONet's
+loss is orders of magnitude below the others.
 
 `meshonet-hard` learns a correction of an initial grid. Its loss is the error of this correction and
 cannot be compared with the other losses; compare the relative L2 errors instead. `fno2d` learns
@@ -85,13 +91,14 @@ its output to 101 x 101 nodes.
 SHELF = """
 ## Every model on every case
 
-All models are trained on all families and splits with one budget: 300 epochs (9,000 shapes) on grids of 51 x 51 nodes, with
-the same schedule and the same random points in each step. The tables of quality
-above have fifty times this budget (ten times for `meshonet-hard` on the airfoil). Settings are the defaults of each model.
+All models are trained on all families and splits with one budget: 300 epochs (9,000 shapes) on
+grids of 51 x 51 nodes, with the same schedule and the same random points in each step. In the tables of
+quality above, networks saw fifty times as many shapes (`meshonet-hard` on the airfoil ten times as many).
+Settings are the defaults of each model.
 
-For each random seed (0 and 1) the median of the relative L2 distances of the network's output from the test
-grids is taken; the table gives mean ± standard deviation of the two medians. The least value of each row is
-bold.
+For each of two random seeds, the median of the relative L2 distances of the network's output from the test
+grids is taken; the table gives mean ± standard deviation of the two medians. The smallest value of each row
+is bold.
 """
 
 AGAINST = """The paper compares MeshONet's loss with those of four baselines on one case; it only cites WNO, KNO and
@@ -100,18 +107,19 @@ LNO. If the claim held for errors too, MeshONet's error would be the smaller one
 PHYSICS = """
 ## Physics-informed networks
 
-Each of these networks, with 5,122 weights, is trained for one geometry. The time to generate a grid is therefore the
-training time (*seconds*). The geometry is the arch of [mesh refinement](#mesh-refinement) with 101 x 101 nodes; *relative L2* is the distance from
-the converged Winslow solution. The paper gives no values for these networks; it says that they are as good as the PDE
-solver but do not generalise.
+Each of these networks, with 5,122 weights, is trained for one geometry only; the time to generate a grid is
+therefore the training time (*seconds*). The geometry is the arch of [mesh refinement](#mesh-refinement) with
+101 x 101 nodes; *relative L2* is the distance from the converged Winslow solution, as above. The paper gives no
+values for these networks; it says that they are as good as the PDE solver but do not generalise.
 """
 
 TIME = """
 ## Mesh refinement
 
 The table gives seconds from boundary nodes in memory to grid nodes in memory. The shape is an arch that was
-not used in training. Grids of more than 512² nodes `solve-pde` solves on 257² nodes and interpolates. Our
-times are those of one thread on {machine}, the paper's MeshONet ran on an RTX 4090.
+not used in training. For more than 512² nodes, `solve-pde` solves on 257² nodes and interpolates the solution.
+A dash means that the time was not measured. Our times are for one thread on {machine}; the
+paper's MeshONet ran on an RTX 4090.
 """
 
 MAPS = """
@@ -126,8 +134,9 @@ SETTINGS = """
 The optimiser is Adam with a learning rate of 0.001, which is multiplied by 0.9 after each fifteenth of the
 epochs. `meshonet-hard` on wrenches uses 0.003 with a cosine schedule. A step uses 30 shapes, with 1000 random
 points inside and 200 on the boundary (a quarter of these for `meshonet-hard` with the setting `modes`). The
-loss of `meshonet` weights the mean square errors inside by 900, on the boundary by 1000. Runs *one* are the
-physics-informed networks. Seconds count from the last start of a run.
+loss of `meshonet` is 900 times the mean square error inside plus 1000 times the mean square error on the
+boundary. Runs whose names begin with *one* are the physics-informed networks. Seconds count from the last
+start of a run.
 """
 
 SECONDS = {
