@@ -102,8 +102,9 @@ def test_tables_say_what_the_results_hold(tmp_path: Path) -> None:
     assert "| arch.interpolation | deeponet | 60 | 1 | 1.0e+00 ± 0e+00 | 1.2e-02 ± 0e+00 | 7 |" in page
     loss = (
         "**Loss: not confirmed on this budget** (case arch.interpolation). MeshONet's loss is the lowest "
-        "of 2. The losses of the baselines are 1.7 (`deeponet`) times MeshONet's. The losses of newer operators, which the paper "
-        "only cites, are 1.7 (`wno`) times MeshONet's. Mean square error: meshonet 6.0e-01 ± 0e+00, deeponet "
+        "of 2. The losses of the baselines are 1.7 (`deeponet`) times MeshONet's. The losses of newer "
+        "operators, which the paper only cites, are 1.7 (`wno`) times MeshONet's. Mean square error: "
+        "meshonet 6.0e-01 ± 0e+00, deeponet "
     )
     assert loss in page, "below, but not by orders of magnitude"
     assert "| TFI (`tfi`) | 0.0004 |" in page
