@@ -154,7 +154,7 @@ class Stack:
 
     @property
     def cants(self) -> Floats:
-        """(n,) cant of the sections in radians.
+        """(n,) cant (rotation about x) of the sections in radians.
 
         A cant ``panel`` is the mean dihedral of the adjacent panels, and 0 in a plane of symmetry.
         """

@@ -134,7 +134,7 @@ def _level_with_fin(columns: Sequence[ColumnPlan], plans: Sequence[ColumnPlan]) 
 
 
 def level_patches(space: BodyMap, plan: LevelPlan, holes: Sequence[Sequence[Hole]]) -> list[Floats]:
-    """Return the patches (ni, nj, 3), in s, theta, zeta, of one level around the sections `holes`.
+    """Return the patches (ni, nj, 3), in s, theta, zeta (`BodyMap`), of one level around sections `holes`.
 
     First come the patches around wings, from nose to tail, then those between wings. Two patches at the nose
     and two at the tail follow: rows of cells, and a core that covers the tip.
@@ -172,7 +172,7 @@ def _from_tail(nodes: Floats, length: float) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class BodyEnd:
-    """The part of the grid at the nose or the tail; s and theta of the nodes are equal on all levels."""
+    """The part of the grid at nose or tail; s and theta (`BodyMap`) of its nodes are equal on all levels."""
 
     theta: Floats  # (n,) angles of the lines from the pole, the tip of nose or tail
     core: PoleCore  # block that covers the pole, in a plane with polar coordinates s, theta
@@ -213,8 +213,8 @@ class BodyEnd:
     def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
         """Return two patches (., ., 3) up to the `side` (n, 3) of a column: rows, and a core at the pole.
 
-        `last` (n,) are the lengths in s of the cells at the side. Nodes are s, theta, zeta, with s from the
-        pole; `points` maps nodes to space.
+        `last` (n,) are the lengths in s of the cells at the side. Nodes are s, theta, zeta (`BodyMap`), with
+        s from the pole; `points` maps nodes to space.
         """
         begin, end, *sizes = self._lines(side, last)
         lines = lines_between(points, begin, end, (sizes[0], sizes[1]), self.cells)

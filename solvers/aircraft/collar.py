@@ -38,7 +38,7 @@ Within: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True)
 class Rectangle:
-    """The rectangle around the section of a wing, by its limits of s and theta."""
+    """The rectangle around the section of a wing, by its limits of s and theta (`BodyMap`)."""
 
     front: float
     back: float
@@ -182,7 +182,7 @@ def _rows(arcs: Floats, rows: int, first: float, last: Floats) -> Floats:
 
 
 def lengths(root: Floats, outer: Floats) -> Floats:
-    """Return the lengths (n,) of the lines that join the loops `root` and `outer` (n, 2) in a collar."""
+    """Return the lengths (n,) of the lines that join the nodes of the loops `root` and `outer` (n, 2)."""
     return _lines(root, outer)[0][:, -1]
 
 

@@ -55,7 +55,7 @@ class ColumnPlan:
 
     @property
     def bands(self) -> int:
-        """Number of cells above and below the collars, from keel to crown."""
+        """Number of cells above and below the collars (cells around wings), from keel to crown."""
         return self.collars[0].low + (0 if self.fin_alone else self.collars[0].top)
 
     @property
@@ -71,7 +71,7 @@ class ColumnPlan:
         return before, sum(n * each.edge for n, each in zip(shares, self.collars, strict=True))
 
     def with_bands(self, cells: int, low: int | None = None) -> ColumnPlan:
-        """Return the plan with `cells` cells above and below the collars, `low` of them below.
+        """Return the plan with `cells` cells above and below the collars around wings, `low` of them below.
 
         If `low` is None, the ratio of cells above and below is kept.
         """
@@ -91,7 +91,7 @@ class ColumnPlan:
 def planned_column(
     holes: Sequence[Sequence[Hole]], first: float, growth: float
 ) -> tuple[ColumnPlan, list[ColumnLevel]]:
-    """Return the plan for a column of cells around `holes` (by wing and level), and each level's column."""
+    """Return the plan for a column (keel to crown) around `holes` (by wing and level), and each level's."""
     corners = planned_corners([hole for each in holes for hole in each])
     collars, levels = zip(*(planned_collar(each, corners, first, growth) for each in holes), strict=True)
     plan = ColumnPlan(collars, holes[-1][0].fin)
@@ -121,7 +121,7 @@ class ColumnLevel:
         return cls(plan, tuple(levels))
 
     def with_counts(self, plan: ColumnPlan) -> ColumnLevel:
-        """Return the column with the numbers of cells of another `plan`; the collars keep their nodes."""
+        """Return the column with the cell counts of a `plan`; the collars around wings keep their nodes."""
         levels = (replace(each, plan=counts) for each, counts in zip(self.levels, plan.collars, strict=True))
         return replace(self, plan=plan, levels=tuple(levels))
 

@@ -14,9 +14,9 @@ _INVERSES = 0.2, 5.0  # range of the reciprocal of the exponent
 def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Floats:
     """Return the places (..., 3) at the distance `first` from `wall` on lines towards `beside` (..., 3).
 
-    Places are s, theta, zeta. The fraction t of the line is found by iteration. Near the wall the distance is
-    proportional to a power of t; its exponent, 1 except at a pointed nose or tail, is estimated from the last
-    two iterates.
+    Places are s, theta, zeta of `BodyMap`. The fraction t of the line is found by iteration. Near the wall
+    the distance is proportional to a power of t; its exponent, 1 except at a pointed nose or tail, is
+    estimated from the last two iterates.
     """
     away, foot = beside - wall, space.points(wall)
     scale = inverse = np.ones(away.shape[:-1])

@@ -58,12 +58,12 @@ Each = TypeVar("Each")
 
 
 def ordered(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[Each]:
-    """Return `values`, one per wing by index, in the order of `columns`."""
+    """Return `values`, one per wing by index, in the order of `columns` (groups of wings)."""
     return [values[k] for column in columns for k in column]
 
 
 def grouped(columns: Sequence[Sequence[int]], values: Sequence[Each]) -> list[list[Each]]:
-    """Return `values`, one per wing in the order of `columns`, as a list for each column."""
+    """Return `values`, one per wing in the order of `columns` (groups of wings), as a list for each group."""
     rest = iter(values)
     return [list(islice(rest, len(column))) for column in columns]
 

@@ -20,7 +20,7 @@ Side: TypeAlias = tuple[Floats, Floats]
 def lines_between(
     points: Points, begin: Floats, end: Floats, sizes: tuple[Floats, Floats], cells: int
 ) -> Floats:
-    """Return nodes (n, cells + 1, 3) of s, theta, zeta on lines from `begin` to `end` (n, 3).
+    """Return nodes (n, cells + 1, 3), s, theta, zeta (`BodyMap`), on lines from `begin` to `end` (n, 3).
 
     `sizes` (n,) are the differences in s over the first and the last cell. Between them, the lengths of cells
     in space change smoothly.

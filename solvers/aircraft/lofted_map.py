@@ -125,8 +125,8 @@ def map_around(body: Body, far: float) -> BodyMap:
 def points_above(space: BodyMap, foot: Floats, first: float) -> Floats:
     """Return the points (n, 3) on normals of the body, at the distance `first` from it.
 
-    `foot` (n, 3) are s, theta, zeta of the feet of the normals. Around a body of revolution, lines of
-    constant s and theta are normal to the body.
+    `foot` (n, 3) are s, theta, zeta (`BodyMap`) of the feet of the normals. Around a body of revolution,
+    lines of constant s and theta are normal to the body.
     """
     if isinstance(space, LoftedMap):
         return np.asarray(space.points(foot) + first * space.normals(foot))

@@ -33,7 +33,7 @@ def tip_patches(loop: Floats, first: float) -> tuple[Floats, Floats]:
 
 
 def canted_tip_patches(loop: Floats, first: float, cant: float) -> tuple[Floats, Floats]:
-    """Return the patches inside a closed `loop` in a plane with a `cant` in radians (see `tip_patches`)."""
+    """Return the patches inside a `loop` in a plane rotated about x by `cant` radians (see `tip_patches`)."""
     if not cant:
         return tip_patches(loop, first)
     place, cants = loop[0, 1:], np.array([-cant, cant])

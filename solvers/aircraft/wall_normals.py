@@ -25,7 +25,7 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
     Parameters
     ----------
     normal : (p, 3) points on normals of the body at the distance `first`, the height of first cells.
-    rings : indices (n, m) of the lines of each collar, from the wing outwards.
+    rings : indices (n, m) of the lines of cells around each wing, from the wing outwards.
     """
     turned = (normal - points[1]) / first
     turned[points[0, :, 2] == 0.0, 2] = 0.0
@@ -44,7 +44,7 @@ def off_body(points: Floats, normal: Floats, rings: Sequence[Indices], first: fl
 def off_wing(points: Floats, ring: Indices, first: float, *, closed: bool) -> Floats:
     """Return `points` (k, p, 3), moved so that lines of cells around a wing are normal to the span.
 
-    `ring` (n, m) are the indices of the lines of the collar; first cells are `first` high.
+    `ring` (n, m) are the indices of the lines around the wing; first cells are `first` high.
     """
     lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
     wall, away = lines[0], (lines[1] - lines[0]) / first

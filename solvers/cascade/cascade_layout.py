@@ -185,7 +185,7 @@ def attached_cells(
     cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric, layers: int | None = None,
     longest: Mapping[int, float] | None = None,
 ) -> int:  # fmt: skip
-    """Return the number of cells in the layers and in the rows to inlet and outlet, for `counts` (chords,).
+    """Return the number of cells in the layers and in the rows to inlet and outlet, for `counts` of chords.
 
     `layers` replaces the number of layers; `longest` are lower bounds of the lengths of rows, by loop index.
     """

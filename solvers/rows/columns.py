@@ -38,7 +38,8 @@ def straight_near(lines: Floats, away: Floats) -> Floats:
 def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
     """Return s, theta `values` (k, m, 2), moved along k columns to a first-cell height `first` in space.
 
-    `space` (k, m, 3) are x, y, z of the nodes. The displacements fade to zero at the outer ends.
+    `space` (k, m, 3) are x, y, z of the nodes, s is that of `Channel`. The displacements fade to zero at the
+    outer ends.
     """
     steps = norms(np.diff(space, axis=1))
     return resampled(values, steps, with_first(steps, np.full(len(steps), first)))

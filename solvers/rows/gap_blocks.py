@@ -46,8 +46,8 @@ def gap_ends(
 
     Parameters
     ----------
-    beside : function of the height that returns (k, 2, 3) s, theta, h of the blade's nodes, clockwise, and of
-        those next to them.
+    beside : function of the height that returns (k, 2, 3) s, theta, h (`Channel`) of the blade's nodes,
+        clockwise, and of those next to them.
     lead : index of the node at the leading edge.
     zone : the gap.
     first, growth : height of the cells inside the outline, and largest ratio of neighbouring cells.
@@ -79,7 +79,7 @@ def gap_blocks(
     """Return the blocks of a gap, with nodes between its ends.
 
     `around` (k,) are the indices of the blade's nodes in a section, clockwise; `outline` (levels along the
-    span, k, 3) their s, theta, h.
+    span, k, 3) their s, theta, h (`Channel`).
     """
     fill = ends.fill
     blade = row.channel.in_space(outline[:, fill.outline])

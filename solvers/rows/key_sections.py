@@ -52,7 +52,7 @@ class SectionPlan:
     wake: tuple[float, float]
 
     def bent(self, plane: SectionPlane, nodes: Floats) -> Floats:
-        """Return nodes (n, 2) in (m', theta), shifted in theta to follow the wake."""
+        """Return nodes (n, 2) in m' (`MeridionalMap`) and theta, shifted in theta to follow the wake."""
         most = self.wake[0] + self.wake[1] * (plane.height - 0.5)
         start = float(plane.edges[1, 0])
         t = np.maximum(nodes[:, 0] - start, 0.0) / (plane.map.length - start)
@@ -70,7 +70,7 @@ class LayerColumns:
 
     @classmethod
     def of(cls, plane: SectionPlane, places: Floats) -> LayerColumns:
-        """Return the columns of nodes that begin on the blade at `places` u (k,)."""
+        """Return the columns of nodes that begin on the blade at `places` u (k,), 0 to 1 around it."""
         front = plane.front_arcs(places)
         lines, walls = plane.cascade.ring.columns(front)
         lines = straight_near(lines, plane.from_corners(walls))

@@ -48,7 +48,7 @@ class NodeGroup:
         return out
 
     def values(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
-        """Return s, theta, h (levels, m, 3) of the nodes, from the arc lengths and spacing of each zone."""
+        """Return s, theta, h of `Channel` (levels, m, 3), from the arc lengths and spacing of each zone."""
         values = self.at(self._heights(arcs, spacings))
         self._exact_along_span(values)
         if self.around:
@@ -56,7 +56,7 @@ class NodeGroup:
         return values
 
     def at(self, heights: Floats) -> Floats:
-        """Return s, theta, h (levels, m, 3) at `heights` (levels, m); first cells at the blade are exact."""
+        """Return s, theta, h of `Channel` (levels, m, 3) at `heights` (levels, m); first cells are exact."""
         values = np.empty((*heights.shape, 3))
         values[..., :2], values[..., 2] = self.lines.at(heights), heights
         np.clip(values[..., 0], 0.0, 1.0, out=values[..., 0])
@@ -107,7 +107,8 @@ class NodeGroup:
     def store(self, values: Floats, rises: Sequence[Rise], space: Floats) -> None:
         """Store x, y, z of the group's nodes in `space` (levels, n, 3) of all nodes.
 
-        `values` (levels, m, 3) are s, theta, h of the group's nodes; `rises` displace nodes of layers.
+        `values` (levels, m, 3) are s, theta, h (`Channel`) of the group's nodes; `rises` displace nodes of
+        layers.
         """
         self.row.channel.store(values, self.ids, space)
         if rises:

@@ -86,7 +86,8 @@ def raise_layers(
     rises : the displacements.
     space : (levels, k, rows, 3) x, y, z of the nodes.
     heights : (levels, k) heights of the nodes on the blade.
-    ends : levels at the ends of blade and gaps, levels next to these, and heights of the cells in between.
+    ends : levels (indices along the span) at the ends of blade and gaps, levels next to these, and heights of
+        the cells in between.
     first : height of first cells at the blade.
     """
     rows = space.shape[2]

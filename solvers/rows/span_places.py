@@ -84,7 +84,7 @@ class SpanPlaces:
 
 
 def at_corners(places: Floats, corners: Floats) -> Floats:
-    """Return `places` u (k,), with the place nearest to each of the `corners` u (c,) moved there."""
+    """Return `places` (k,) around a blade, with the one nearest to each of the `corners` (c,) moved there."""
     out = places.copy()
     out[corner_nodes(places, corners)] = corners
     return out
@@ -155,7 +155,7 @@ def upright(
     ends: tuple[Floats, Floats], free: tuple[bool, bool], planes: Sequence[SectionPlane], pairs: Indices,
     fixed: Bools,
 ) -> tuple[Floats, Floats]:  # fmt: skip
-    """Return places u (k,) at hub and casing with which lines across the channel lean less.
+    """Return places (k,) around the blade, at hub and casing, with which lines across the channel lean less.
 
     No node moves beyond an edge of the blade. No node moves at all if, in the half of the span at a free end,
     no line leans by more than `LEAN`.

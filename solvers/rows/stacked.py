@@ -27,7 +27,7 @@ _AT_ONCE = 1 << 16  # number of nodes that are computed together, so that they f
 
 @dataclass(frozen=True, eq=False)
 class RowNodes:
-    """Nodes of all levels: in space, and s, theta, h on and next to the blade; theta = atan2(y, z)."""
+    """Nodes of all levels along the span: in space, and s, theta, h (`Channel`) on and next to the blade."""
 
     space: Floats  # (levels, n, 3) x, y, z
     beside: Floats  # (levels, k, 2, 3) s, theta, h of the blade's nodes, clockwise, and of those next to them
@@ -96,7 +96,7 @@ class StackedRow:
         return second, partner[second]
 
     def beside(self, height: float) -> Floats:
-        """Return s, theta, h (k, 2, 3) of nodes on and next to the blade, at an end of blade or gap."""
+        """Return s, theta, h of `Channel` (k, 2, 3), on and next to the blade, at the end of blade or gap."""
         group = self._group(self.columns.ravel(), self.around)
         values = group.at(np.full((1, self.columns.size), height))
         return values.reshape(*self.columns.shape, 3)[:, :2]

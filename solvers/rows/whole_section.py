@@ -28,7 +28,7 @@ def whole_section(
 
     Parameters
     ----------
-    beyond : layout of the blocks beyond the layers in (m', theta).
+    beyond : layout of the blocks beyond the layers, in m' (`MeridionalMap`) and theta.
     layers : number of rows of the layers.
     largest : size of the largest cells.
     longest : largest lengths in any section of the rows to inlet and outlet, by loop; they determine numbers

@@ -63,7 +63,7 @@ def suited(
     chords: Chords, counts: Indices, least: Indices, *, finer: int = 1, multiple: int = 1,
     fixed: Mapping[int, int] = _NONE, named: bool = True,
 ) -> Indices:  # fmt: skip
-    """Return the admissible cell counts (chords,), at least `least`, that are nearest to `counts`.
+    """Return the admissible cell counts of chords (rows of blocks), at least `least`, nearest to `counts`.
 
     Admissible counts are multiples of `multiple` and agree along the two sides of each periodic pair. If
     `named`, they add up to the counts given for named sides, times `multiple`. `fixed` prescribes the counts
@@ -124,7 +124,7 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return `counts` (chords,), scaled so that named sides have nearly their given cell counts."""
+    """Return cell `counts` of chords (rows of blocks), scaled so that named sides have nearly theirs."""
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())
@@ -155,7 +155,7 @@ def _unmatched(sides: Periodic) -> str:
 
 
 def alike_along_sides(chords: Chords, counts: Indices) -> bool:
-    """Return whether `counts` (chords,) give equal numbers of cells on both sides of every periodic pair."""
+    """Return whether cell `counts` of chords are equal in sum on both sides of every periodic pair."""
     return all(
         sum(value * counts[chord] for chord, value in row.items()) == 0.0 for row, _, _ in _alike(chords)
     )

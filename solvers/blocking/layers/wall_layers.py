@@ -175,7 +175,7 @@ class WallLayers:
         return self.of_ring(number).rows(float(self.rings[number].thickness.max()))
 
     def attached_cells(self, chords: Chords, counts: Indices) -> int:
-        """Return the number of cells in rings and in rows to the far field, for `counts` (chords,)."""
+        """Return the number of cells in rings and in rows to the far field, for cell `counts` of chords."""
         along = chords.along_loops(counts).tolist()
         total = sum(along[number] * self.ring_rows(number) for number in self.rings)
         if self.near is not None:
