@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from meshonet.formats.registry import format_for_output, format_of, read_grids, read_shapes
+from meshonet.formats.registry import format_for_output, format_of, is_designation, read_grids, read_shapes
 from meshonet.formats.source import LARGEST, open_source
 from meshonet.formats.table import TABLE
 from meshonet.geometry.blocks.boundary import Boundary
@@ -117,18 +117,23 @@ class Conversion:
 
 
 def plot3d_variant(
-    words: str | None, output: str, from_format: str | None, to_format: str | None
+    words: str | None, source: str, output: str, from_format: str | None, to_format: str | None
 ) -> tuple[str | None, str | None]:
     """Return the formats to read and to write, one of them with the Plot3D options `words`.
 
     The options apply to the output if that is Plot3D, else to the input. Raises InputError: an unknown
-    option.
+    option; neither is Plot3D.
     """
     if words is None:
         return from_format, to_format
     written = format_for_output(output, to_format).name if to_format or Path(output).suffix else ""
     if written.startswith("plot3d"):
         return from_format, f"{written}:{words}"
+    if from_format is None and source != "-" and not is_designation(source):
+        record = format_of(open_source(source))
+        if record.read_grids is not None and record.name != "plot3d":
+            problem = f"neither the input ({record.name}) nor the output ({written or to_format}) is Plot3D"
+            raise InputError(problem, "leave {plot3d} out", source=source, parameter="plot3d")
     return f"{from_format or 'plot3d'}:{words}", to_format
 
 

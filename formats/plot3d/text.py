@@ -101,7 +101,10 @@ def _spelled(word: bytes, data: bytes) -> bytes:
 
 def _not_a_number(word: bytes, data: bytes) -> InputError:
     line = data[: max(data.translate(_FREE_FORMAT).find(word), 0)].count(b"\n") + 1
-    shown = word[:40].decode("latin-1")
+    if not word.isascii():
+        remedy = "name its format with {from_format}, or give a Plot3D file"
+        return InputError("holds binary data beside text", remedy, place=f"line {line}")
+    shown = word[:40].decode("ascii")
     return InputError(
         f"{shown!r} is not a number",
         "write numbers only, or name another format with {from_format}",

@@ -63,6 +63,7 @@ def parse(text: str, source: str, stem: str = "") -> list[Shape]:
         if not rings:
             raise InputError("0 blocks of points", "give closed curves, or four edges divided by blank lines")
         if len(rings) == 1:
+            _check_count(rings[0], lines)
             return [domain_or_body(_with_notes(_closed_curve(rings[0], name), notes))]
         names = [""] * len(rings)
         if len(rings) == len(blocks):
@@ -119,6 +120,17 @@ def _rings(rows: list[Line]) -> list[list[Line]]:
         rings.append(rows[start : end + 1])
         start = end + 1
     return rings
+
+
+def _check_count(rows: list[Line], lines: list[Line]) -> None:
+    """Raise InputError if a curve has fewer than 3 points and words follow its first."""
+    beside = (each for each in lines[rows[0].number :] if each.kind not in ("blank", "row", "noted"))
+    words = next((each for each in beside if not each.text.lstrip().startswith("#")), None)
+    if len(rows) < 3 and words is not None:
+        called = f"{words.text.strip()[:40]!r} is no pair of numbers"
+        problem = f"{called}, and there are {len(rows)} points without it"
+        remedy = "correct the line; a closed curve needs at least 3"
+        raise InputError(problem, remedy, place=f"line {words.number}")
 
 
 def _domains(rings: list[list[Line]], names: list[str], name: str, notes: tuple[str, ...]) -> list[Shape]:

@@ -135,7 +135,9 @@ def _check(counts: tuple[int, ...], k: int, *, blocks: bool = False) -> None:
     whole = max(k, 1)
     near = [whole * max(1, (n - 1) // whole) + 1 for n in counts]
     remedy = f"make the grid with {'x'.join(map(str, near))} nodes, say"
-    if blocks:
+    if blocks and len(counts) == 3:
+        remedy = f"make the grid with a multiple of {k} cells along every direction of its blocks"
+    elif blocks:
         remedy = "make the grid with {refine} K, which lets every block be halved K times"
     if common > 1:
         remedy = f"use a number that divides {common}, or {remedy}"

@@ -18,8 +18,9 @@ from meshonet_cli.terminal.session import Session
 def convert_files(batch: Batch, conversion: Conversion, plot3d: str | None = None) -> int:
     """Convert the inputs to another format and return the exit code; `plot3d` is a variant of Plot3D."""
     files = batch.files
-    from_format, to_format = plot3d_variant(plot3d, files.output, files.from_format, files.to_format)
-    boundaries = conversion.of_boundaries(batch.inputs.first(), files.output, from_format, to_format)
+    first = batch.inputs.first()
+    from_format, to_format = plot3d_variant(plot3d, first, files.output, files.from_format, files.to_format)
+    boundaries = conversion.of_boundaries(first, files.output, from_format, to_format)
     put = None if boundaries else conversion.extruder(files.output, to_format)
     read = partial(conversion.read, fmt=from_format, boundaries=boundaries)
     make = each(_converted, conversion=conversion, warn=batch.session.warn)

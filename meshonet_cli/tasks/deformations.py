@@ -6,11 +6,13 @@ from functools import partial
 from meshonet.api.deform import rotation
 from meshonet.api.files import only, read_all
 from meshonet.formats.registry import read_grids
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.motion import Motion
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.criteria import Criteria
 from meshonet.solvers.deformation.targets import NewWall
 from meshonet.solvers.pipeline.deformations import DeformRequest, make_deformed
+from meshonet.solvers.pipeline.result import Result
 from meshonet_cli.batch.run import Batch, BatchTask, each
 from meshonet_cli.options.groups import bad_value
 from meshonet_cli.tasks.grids import made_by
@@ -24,8 +26,23 @@ def write_deformed(
     percentiles = criteria is not None and criteria.percentiles
     request = DeformRequest(allow_invalid, percentiles, batch.engine.threads(threads))
     batch.session.judges = criteria is not None
-    make = each(made_by, solve=partial(make_deformed, walls=walls, request=request), criteria=criteria)
+    make = each(made_by, solve=partial(_deformed, walls=walls, request=request), criteria=criteria)
     return batch.run(BatchTask(partial(read_grids, fmt=batch.files.from_format), make))
+
+
+def _deformed(grid: Grid, walls: Mapping[str, NewWall] | NewWall, request: DeformRequest) -> Result:
+    """Return the deformed grid; errors name the option that moves the walls, if it is one."""
+    try:
+        return make_deformed(grid, walls=walls, request=request)
+    except InputError as error:
+        if error.parameter == "wall" and isinstance(walls, Mapping):
+            options = {_option(new) for new in walls.values()}
+            error.parameter = options.pop() if len(options) == 1 else ""
+        raise
+
+
+def _option(new: NewWall) -> str:
+    return "wall" if not isinstance(new, Motion) else "rotate" if new.turn else "shift"
 
 
 def walls_of(
@@ -57,7 +74,7 @@ def walls_of(
         moved = tuple(a + b for a, b in zip(first, motion.shift, strict=True))
         motions[name] = Motion(moved, turn.turn)
     for name, motion in motions.items():
-        _put(walls, name, motion, "rotate" if motion.turn else "shift")
+        _put(walls, name, motion, _option(motion))
     return walls
 
 

@@ -132,6 +132,25 @@ def test_plot3d_is_written_and_read_in_the_variant_asked_for(meshonet: Meshonet,
     assert "grid.p3d: is not little: it fits" in done.err
 
 
+def test_options_of_plot3d_between_other_formats_are_refused(meshonet: Meshonet, grid_vts: Path) -> None:
+    done = meshonet("convert", grid_vts, "back.h5", "--plot3d", "ascii")
+    assert (done.code, done.err.count("\n")) == (2, 1)
+    assert "grid.vts: --plot3d: neither the input (vts) nor the output (hdf5) is Plot3D" in done.err
+    assert not Path("back.h5").exists()
+    assert meshonet("convert", grid_vts, "grid.dat", "--to", "plot3d:ascii").code == 0
+    assert meshonet("convert", "grid.dat", "back.h5", "--plot3d", "ascii").code == 0
+
+
+def test_coarsening_a_volume_that_does_not_divide_names_no_option_of_planar_grids(
+    meshonet: Meshonet,
+) -> None:
+    Path("line.csv").write_text("0 0 0\n2 0 0\n")
+    assert meshonet("sweep", "circle:1", "line.csv", "--planes", "4", "-o", "pipe.h5").code == 0
+    done = meshonet("convert", "pipe.h5", "half.h5", "--coarsen", "2")
+    assert done.code == 2
+    assert "make the grid with a multiple of 2 cells along every direction of its blocks" in done.err
+
+
 def test_iblank_is_told_of(meshonet: Meshonet, grid_vts: Path) -> None:
     assert meshonet("convert", grid_vts, "grid.p3d", "--plot3d", "iblank").code == 0
     assert "iblank" not in meshonet("convert", "grid.p3d", "grid.h5").err

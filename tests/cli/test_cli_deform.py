@@ -78,7 +78,7 @@ def test_a_batch_names_its_failures(meshonet: Meshonet) -> None:
     meshonet("infer", "naca:0012", "--res", "41x15", "--te", "exact", "-o", "blunt.h5", "-q")
     done = meshonet("deform", "start.h5", "blunt.h5", "--shift", "wall=0,30", "-o", "{stem}-made.h5")
     assert done.code == 2
-    assert "start.h5: --wall: wall is moved to the other side of farfield" in done.err
+    assert "start.h5: --shift: wall is moved to the other side of farfield" in done.err
     done = meshonet("deform", "start.h5", "blunt.h5", "--shift", "wall=0,.1", "-o", "{stem}-made.h5", "-q")
     assert done.code == 0, done.err
     assert {path.name for path in Path().glob("*-made.h5")} == {"start-made.h5", "blunt-made.h5"}
@@ -93,7 +93,10 @@ def test_a_batch_names_its_failures(meshonet: Meshonet) -> None:
         (("--rotate", "wall=ten@0,0"), "is not NAME=DEGREES@X,Y"),
         (("--shift", "wall=1"), "is not NAME=DX,DY"),
         (("--shift", "wall=1,2,3", "--rotate", "wall=5@0,0"), "is turned in the plane"),
-        (("--shift", "tail=1,2"), "has no 'tail'"),
+        (("--shift", "tail=1,2"), "--shift: the grid has no 'tail'"),
+        (("--rotate", "tail=5@0,0"), "--rotate: the grid has no 'tail'"),
+        (("--rotate", "tail=5@0,0", "--shift", "wall=1,2"), "start.h5: the grid has no 'tail'"),
+        (("--wall", "tail=naca:2412"), "--wall: the grid has no 'tail'"),
         (("--wall", "missing.dat"), "missing.dat"),
         (("--wall", "two.csv"), "two.csv: holds several, where the new shape of a wall is asked for; give a"),
     ],

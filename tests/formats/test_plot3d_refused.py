@@ -43,6 +43,7 @@ CASES = {
     "zeros": (bytes(4000), "has 4000 bytes and no binary Plot3D layout fits"),
     "word": (text(values="1 2 3\n4 five 6"), "line 4: 'five' is not a number; write numbers only"),
     "escape": (text(values="1 \x1b[2J"), r"line 3: '\\x1b\[2J' is not a number"),
+    "bytes": (text(values="1 2\n4 ") + bytes(range(128, 200)), "line 5: holds binary data beside text"),
     "repeat of nothing": (text(values="3*"), r"line 3: '3\*' is not a number"),
     "repeat by a word": (text(values="x*3"), r"line 3: 'x\*3' is not a number"),
     "bomb": (text(values="999999999*0"), "repeats a number too often for its size; write the values out"),

@@ -211,3 +211,8 @@ def test_four_edges_are_called_as_lines_above_them_say(step):
     assert {p.side: p.name for p in b.patches} == dict(
         zip(("south", "east", "north", "west"), names, strict=True)
     )
+
+
+def test_words_beside_too_few_points_are_named():
+    with pytest.raises(InputError, match="line 3: 'foo' is no pair of numbers, and there are 2 points"):
+        parse("0,0\n1,0\nfoo\n", "bad.csv")
