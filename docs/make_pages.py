@@ -240,13 +240,14 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     """Return the held-out errors of a network for four-sided domains or bodies."""
     bodies = topology != "quad"
     counts, domains = ("65 x 33", "domains around bodies") if bodies else ("33 x 33", "four-sided domains")
+    middle = "the middle of the body" if bodies else "the mean of the boundary nodes"
     lines = [
         f"The held-out samples are {figures['domains']} random {domains}. One network predicts both the",
         f"variational grid and Winslow's grid, here on {counts} nodes and without solver iterations after",
         "the network. An error is the root mean square distance of the nodes from the solver's grid, divided",
-        "by the root mean square distance of the nodes of the solver's grid from their mean. *initial* is",
-        "the median error of the initial grid, which the network corrects; *valid* is the share of",
-        "predicted grids without folded cells.\n",
+        f"by the root mean square distance of the nodes of the solver's grid from {middle}.",
+        "*initial* is the median error of the initial grid, which the network corrects; *valid* is the share",
+        "of predicted grids without folded cells.\n",
         "| predicted grid | median error | 90th percentile | initial | valid |",
         "| --- | --- | --- | --- | --- |",
     ]
