@@ -124,7 +124,7 @@ def _conflict(names: tuple[str, ...], given: Mapping[str, int], sums: Sums, leas
 
 
 def nearer(chords: Chords, counts: Indices, multiple: int = 1) -> Indices:
-    """Return cell `counts` of chords (rows of blocks), scaled so that named sides have nearly theirs."""
+    """Return cell `counts` of chords, scaled so that named sides have nearly their given cell counts."""
     counts = counts.copy()
     for name, row in sums_of(chords).items():
         total = sum(times * counts[chord] for chord, times in row.items())
