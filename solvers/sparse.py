@@ -84,7 +84,7 @@ class SparseMatrix:
         return product.reshape(np.shape(x))
 
     def factor(self) -> Factor:
-        """Return A = P^T L D L^T P, which exists for positive definite and quasi-definite matrices.
+        """Return the factors of A = P^T L D L^T P; A must be positive definite or quasi-definite.
 
         A quasi-definite matrix is ((K, C^T), (C, -E)) with positive definite K and E: Vanderbei, SIAM J.
         Optim. 5 (1995) 100-113.

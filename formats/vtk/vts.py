@@ -42,7 +42,7 @@ def write(
     facts: Facts | None = None,
     block: int = 0,
 ) -> None:
-    """Write a block, with cell data (ni-1, nj-1[, nk-1]) by name, and texts `facts` (`facts_of`)."""
+    """Write a block, with cell data (ni-1, nj-1[, nk-1]) by name, and `facts`, texts by name."""
     nodes = grid.blocks[block].nodes
     cells = dict(cell_data or {})
     for name, values in cells.items():

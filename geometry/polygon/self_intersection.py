@@ -57,8 +57,8 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
     """Return up to `limit` crossings or contacts of segments of a polygon (n, 2) that are not neighbours.
 
     A segment that runs back along its neighbour is also reported. A closed polygon does not repeat its first
-    point. Only segments that overlap along an oblique direction are compared; for too many pairs, shapely
-    searches.
+    point. Only segments whose projections on an oblique line overlap are compared; with too many such
+    pairs, shapely compares them.
     """
     p = np.ascontiguousarray(points, dtype=np.float64)
     end = np.roll(p, -1, axis=0) if closed else p[1:]

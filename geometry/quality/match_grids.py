@@ -14,8 +14,8 @@ class GridMatcher:
     """Finds, for each grid, the grid of a reference set with which it is compared.
 
     Pairing is by ``name`` or ``order``. ``auto``: a single reference serves all grids. Several references are
-    paired by name if the first two have different names, one of which is that of the first grid; otherwise by
-    order. References are read only as far as needed.
+    paired by name if the first two references have different names, and one of them is the name of the first
+    grid; otherwise by order. References are read only as far as needed.
     """
 
     def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:

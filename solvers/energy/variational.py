@@ -148,7 +148,7 @@ def _coarsest(
 
 
 def winslow_start(boundary: Boundary) -> Floats:
-    """Return approximately Winslow's solution inside `boundary`, (ni, nj, 2) in planar layout.
+    """Return nodes (ni, nj, 2) that are approximately Winslow's solution inside `boundary`.
 
     If the discrete equations have no solution, return the transfinite interpolation, which may be folded.
     """

@@ -37,10 +37,11 @@ class ChannelLines:
         return cls(upper, upper, squares)
 
     def links(self, u: Floats, start: Floats, pairs: Indices, weight: float) -> PlaceLinks:
-        """Return how much more lines lean with nodes at `u` (k,), 0 to 1 around a blade, than at `start`.
+        """Return by how much the lean of lines increases as nodes move from `start` to `u` (k,).
 
-        Lean is the tangent of a line's angle to the normal. The increase is linearised at `u` and multiplied
-        by `weight`. Each line joins two nodes, with indices `pairs` (p, 2).
+        `start` and `u` run from 0 to 1 around a blade. Lean is the tangent of a line's angle to the normal.
+        The increase is linearised at `u` and multiplied by `weight`. Each line joins two nodes, with indices
+        `pairs` (p, 2).
         """
         one = u[pairs[:, 0]]
         slope = np.interp(one, self.upper, np.gradient(self.lower, self.upper))

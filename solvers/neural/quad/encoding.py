@@ -27,11 +27,11 @@ STRETCH = 30.0  # factor of small Picard steps in the inverse hyperbolic sine
 
 
 def frame(z: Any, xp: Any) -> tuple[Any, Any]:
-    """Return the centres (batch,) and the factors (batch,) to unit size of complex grids `z` (batch, n, n).
+    """Return for each complex grid of `z` (batch, n, n) its centre (batch,) and a complex factor (batch,).
 
     The grid ``(z - centre) * factor`` has area 1. Its x axis is along the sum of two vectors: the mean vector
     from west to east, and the mean vector from south to north rotated by a quarter turn. Only boundary nodes
-    are used; relabelled domains have rotated or mirrored frames.
+    are used. Sides that are named in another order turn or mirror the grid accordingly.
     """
     south, north, west, east = z[:, :, 0], z[:, :, -1], z[:, 0], z[:, -1]
     outline = xp.concatenate(

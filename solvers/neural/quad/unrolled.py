@@ -61,7 +61,7 @@ def even(strips: Any, n: int, xp: Any = np) -> Any:
 
 
 def factors(strips: Any, xp: Any = np) -> Any:
-    """Return factors (batch,) of length that give half a period of each strip (batch, m + 1, n) area 1."""
+    """Return factors (batch,) for the lengths of strips (batch, m + 1, n): half a period then has area 1."""
     heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
     return 1.0 / xp.sqrt(0.5 * TURN * heights)
 
