@@ -45,11 +45,11 @@ processes, Dask and MPI. [Many grids on many machines](../guide/many-machines.md
 SPEED = """
 ## Speed and memory
 
-The command is `meshonet infer sections --res 200x100 --part-size {size} -q -o grids.h5`. `sections` is a folder
-of {count} airfoil files. Elapsed time is the wall-clock time of the whole command. CPU time is summed over all
-processes of the command. *Peak memory* is that of the main process and, in brackets, of each worker. Of the
-three MPI processes, one is the main process. The last column says whether the nodes of all grids are bitwise
-identical to the nodes that one process computes.
+The command is `meshonet infer sections --res 200x100 --part-size {size} -q -o grids.h5`. `sections` is a
+folder of {count} airfoil files. Elapsed time is the wall-clock time of the whole command. CPU time is summed
+over all processes of the command. *Peak memory* is that of the main process and, in brackets, of each worker.
+Of the three MPI processes, one is the main process. The last column says whether the nodes of all grids are
+bitwise identical to the nodes that one process computes.
 
 | engine | elapsed time, s | grids per second | speed-up | CPU time, s | peak memory, MB | identical nodes |
 | --- | ---: | ---: | ---: | ---: | ---: | --- |
@@ -57,10 +57,10 @@ identical to the nodes that one process computes.
 DEATHS = """
 ## Killed processes
 
-Here the same command generates grids for {count} airfoils. The output is divided into part files of {size} grids.
-When a third of the part files are written, one process is killed (SIGKILL). The column *parts written* gives
-the number of part files after the command has ended; all of them are complete. Then the command is repeated
-with `--skip-existing`; *generated later* is the number of parts that this second run adds.
+Here the same command generates grids for {count} airfoils. The output is divided into part files of {size}
+grids. When a third of the part files are written, one process is killed (SIGKILL). The column *parts written*
+gives the number of part files after the command has ended; all of them are complete. Then the command is
+repeated with `--skip-existing`; *generated later* is the number of parts that this second run adds.
 
 | killed process | message of the command | exit code | parts written | generated later | identical nodes |
 | --- | --- | ---: | ---: | ---: | --- |
