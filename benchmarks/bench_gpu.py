@@ -87,7 +87,7 @@ class Extent:
     limit: float = 420.0  # seconds after which nothing more is begun
 
 
-QUICK = Extent((2, 4), 17, (33, 65), (33,), 4, Trainings(8, 33, 4, 1, ("meshonet",)), float("inf"))
+QUICK = Extent((2, 4), 17, (17, 33), (33,), 4, Trainings(8, 33, 4, 1, ("meshonet",)), float("inf"))
 
 
 def shapes_for(name: str, count: int, n: int) -> list[Boundary]:

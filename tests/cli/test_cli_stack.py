@@ -176,6 +176,7 @@ def test_values_that_do_not_fit_get_a_line(
     assert not Path("wing.h5").exists()
 
 
+FEW_LAYERS = ("--around", "33", "--span", "9", "--first-cell", "0.02", "--growth", "1.5", "--far-field", "6")
 AIRCRAFT = """kind = "aircraft"
 [[bodies]]
 meridian = [[0, 0], [0.1, 0.3], [0.5, 0.55], [2, 0.6], [5, 0.6], [8, 0.4], [9.6, 0.1], [10, 0]]
@@ -186,7 +187,7 @@ on = "fuselage"
 
 def test_a_body_with_a_wing_is_made_with_its_names(meshonet: Meshonet, tmp_path: Path) -> None:
     (tmp_path / "jet.toml").write_text(AIRCRAFT)
-    done = meshonet("stack", "jet.toml", *SMALL, "--far-field", "6", "-o", "jet.cgns", "--json")
+    done = meshonet("stack", "jet.toml", *FEW_LAYERS, "-o", "jet.cgns", "--json")
     assert done.code == 0, done.err
     assert (done.only["folded"], done.only["method"]) == (0, "aircraft")
     assert "the tip of the wing is flat" in str(done.only["notes"])
@@ -200,14 +201,13 @@ def test_a_whole_aircraft_has_no_plane_of_symmetry_and_a_closed_surface(
     meshonet: Meshonet, tmp_path: Path
 ) -> None:
     (tmp_path / "jet.toml").write_text("half = false\n" + AIRCRAFT)
-    words = (*SMALL, "--growth", "1.5", "--far-field", "6")
-    done = meshonet("stack", "jet.toml", *words, "-o", "jet.cgns", "--json")
+    done = meshonet("stack", "jet.toml", *FEW_LAYERS, "-o", "jet.cgns", "--json")
     assert (done.code, done.only["folded"]) == (0, 0), done.err
     (grid,) = read_grids("jet.cgns")
     assert {patch.name for patch in grid.patches} == {"fuselage", "wing", "tip", "farfield"}
     low, high = grid.box
     assert low[2] == -high[2]
-    assert meshonet("stack", "jet.toml", *words, "--surface", "-o", "surface.cgns", "-q").code == 0
+    assert meshonet("stack", "jet.toml", *FEW_LAYERS, "--surface", "-o", "surface.cgns", "-q").code == 0
     (surface,) = read_grids("surface.cgns")
     sides = [len(ranges) for ranges in surface.joined_ranges()]
     assert (min(sides), surface.outer_patches()) == (4, [])
@@ -309,7 +309,7 @@ def test_lines_left_out_of_a_section_file_are_noted_with_its_name(
     name = "root.csv" if kind == "duct" else "root.dat"
     (tmp_path / name).write_text("\n".join(["# a root", *lines[:20], "0.8000 .......", *lines[20:]]))
     text = (AIRCRAFT if kind == "aircraft" else SECTIONS).replace("naca:2412", name)
-    words = [*SMALL, "--far-field", "6"]
+    words = FEW_LAYERS
     if kind == "surface":
         words = [*SMALL[:4], "--surface"]
     elif kind == "duct":

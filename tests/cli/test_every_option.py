@@ -134,7 +134,7 @@ SIDES = {
     for side in ("south", "north", "west", "east")
 }
 DOMAINS = {
-    "--assemble": ("naca:0012 tail.csv --res 31 -o {name}.h5 -q", "OPTION", "files"),
+    "--assemble": ("square.csv bolt.csv --res 9 -o {stem}.h5 -q", "OPTION", "files"),
     "--cells": (f"step.wkt {MADE}", "OPTION 400", "nodes"),
     "--cell-size": (f"step.wkt {MADE}", "OPTION .2", "nodes"),
     "--layout": (f"step.wkt --cells 400 {MADE}", "OPTION tall.json", "nodes"),
@@ -249,7 +249,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--far-field": ("naca:0012 -o made.json -q", "OPTION 7", "bytes"),
         "--first-cell": ("hole.wkt -o made.json -q", "OPTION .002", "bytes"),
         "--walls": ("hole.wkt --first-cell .002 -o made.json -q", "OPTION bolt", "error"),
-        "--assemble": ("naca:0012 tail.csv -o {name}.json -q", "OPTION", "files"),
+        "--assemble": ("square.csv bolt.csv -o {stem}.json -q", "OPTION", "files"),
         **{
             name: (base.replace(MADE, "-o made.json -q"), more, differs.replace("nodes", "bytes"))
             for name, (base, more, differs) in DOMAINS.items()
@@ -392,7 +392,8 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     edges = duct()
     edges["south"][1] = [-0.05, -0.05]
     dataset(folder / "open.h5", "quad", edges)
-    (folder / "tail.csv").write_text("2,0\n2.2,.1\n2.4,0\n2.2,-.1\n2.05,-.08\n")
+    (folder / "square.csv").write_text("0,0\n3,0\n3,3\n0,3\n")
+    (folder / "bolt.csv").write_text("1,1\n1,2\n2,2\n2,1\n")
     (folder / "step.wkt").write_text("POLYGON ((0 1, 2 1, 2 0, 6 0, 6 2, 0 2, 0 1))")
     (folder / "tall.wkt").write_text("POLYGON ((0 1, 2 1, 2 0, 6 0, 6 3, 0 3, 0 1))")
     (folder / "named.geojson").write_text(

@@ -22,7 +22,7 @@ def pixels(path: Path) -> np.ndarray:
     return np.asarray(matplotlib.image.imread(path))[..., :3]
 
 
-def wide_ring(ni: int = 161, nj: int = 81) -> Grid:
+def wide_ring(ni: int = 81, nj: int = 41) -> Grid:
     """An O grid whose body is small in its far field, as an airfoil's is."""
     grid = ring(ni, nj)
     angle = np.arctan2(grid.y, grid.x)

@@ -2,7 +2,9 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
@@ -34,12 +36,18 @@ def through(name: str, grid: Grid, folder: Path) -> Path:
     return path
 
 
+@cache
+def from_file(name: str, make: Callable[[], Grid]) -> Grid:
+    """A grid that a file of a format holds, the same for all tests that write it again."""
+    with TemporaryDirectory() as folder:
+        (grid,) = read_grids(str(through(name, make(), Path(folder))), name)
+    return grid
+
+
 @pytest.mark.parametrize("make", [channel, ring, c_grid])
 @pytest.mark.parametrize("first", BOTH_WAYS)
 def test_a_grid_goes_through_two_formats_bit_for_bit(first: str, make: type[Grid], tmp_path: Path) -> None:
-    grid = make()
-    (tmp_path / "one").mkdir()
-    (between,) = read_grids(str(through(first, grid, tmp_path / "one")), first)
+    grid, between = make(), from_file(first, make)
     for second in BOTH_WAYS:
         folder = tmp_path / second
         folder.mkdir()
@@ -60,9 +68,7 @@ def joints(grid: Grid) -> tuple[Connection, ...]:
 def test_a_grid_of_many_blocks_goes_through_two_formats(
     first: str, make: Callable[[], Grid], tmp_path: Path
 ) -> None:
-    grid = make()
-    (tmp_path / "one").mkdir()
-    (between,) = read_grids(str(through(first, grid, tmp_path / "one")), first)
+    grid, between = make(), from_file(first, make)
     for second in KEPT:
         folder = tmp_path / second
         folder.mkdir()
@@ -88,13 +94,9 @@ def test_a_grid_of_many_blocks_goes_through_two_formats(
 def test_many_blocks_of_any_format_become_the_same_mesh(
     second: str, make: Callable[[], Grid], tmp_path: Path
 ) -> None:
-    grid = make()
     written = {}
     for first in KEPT:
-        folder = tmp_path / first
-        folder.mkdir()
-        (between,) = read_grids(str(through(first, grid, folder)), first)
-        path = through(second, between, folder / "out")
+        path = through(second, from_file(first, make), tmp_path / first)
         whole = path.parent / "constant" / "polyMesh" / "points" if second == "openfoam" else path
         written[first] = whole.read_bytes()
     plain = {name: len(data) for name, data in written.items()}
@@ -110,7 +112,6 @@ def test_a_mesh_gives_the_boundary_of_its_grid_from_any_format(
     grid = Grid.from_nodes(make().nodes, make().topology, tuple(plain), "plain")
     for first in BOTH_WAYS:
         folder = tmp_path / first
-        folder.mkdir()
         (between,) = read_grids(str(through(first, grid, folder)), first)
         (back,) = read_shapes(str(through(second, between, folder)))
         assert isinstance(back, Boundary)

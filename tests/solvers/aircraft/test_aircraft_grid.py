@@ -210,7 +210,7 @@ def test_cells_grow_more_where_there_would_be_too_many_of_them() -> None:
 
 
 def test_a_growth_that_is_given_is_kept() -> None:
-    request = AircraftRequest.of(cells=500_000, first_cell=2e-4, far_field=8.0, growth=1.2)
+    request = AircraftRequest.of(cells=20_000, span=9, first_cell=1e-2, far_field=8.0, growth=1.2)
     _, growth, notes = aircraft_grid(aircraft(), request)
     assert growth == 1.2
     assert not any("in place of" in note for note in notes)

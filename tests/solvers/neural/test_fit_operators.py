@@ -60,10 +60,11 @@ def losses(message: list[Progress]) -> list[float]:
 @pytest.mark.parametrize("kind", [kind for kind in ARCHITECTURES if not architecture(kind, "quad").physics])
 @pytest.mark.parametrize("samples", [arches(), rings()], ids=["quad", "o"])
 def test_the_loss_falls(tmp_path: Path, kind: str, samples: Samples) -> None:
-    report = fit(tmp_path / "m.safetensors", replace(SMALL, epochs=60), samples, kind=kind)
+    epochs = 20 if kind in SMALLER else 60  # these take longer for an epoch and learn more in it
+    report = fit(tmp_path / "m.safetensors", replace(SMALL, epochs=epochs), samples, kind=kind)
     assert report[-1].loss < 0.6 * report[0].loss
     assert report[-1].loss == pytest.approx(sum(report[-1].parts.values()))
-    assert report[-1].seen == 60 * len(samples.where("train"))
+    assert report[-1].seen == epochs * len(samples.where("train"))
 
 
 @pytest.mark.parametrize("samples", [arches(), rings()], ids=["quad", "o"])

@@ -15,6 +15,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.checkmesh import faces
 from meshonet.geometry.rows.row import Row
+from meshonet.solvers.pipeline.result import Result
 from meshonet.solvers.pipeline.rows import make_row
 from meshonet.solvers.rows.request import RowRequest
 
@@ -42,8 +43,12 @@ def row_of(name: str) -> Row:
 
 
 @cache
+def result_of(name: str) -> Result:
+    return make_row(row_of(name), RowRequest(first_cell=FIRST, cells=100_000, threads=1))
+
+
 def made(name: str) -> Grid:
-    return make_row(row_of(name), RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
+    return result_of(name).grid
 
 
 def nodes_of(grid: Grid, patch: str) -> np.ndarray:
@@ -60,9 +65,9 @@ def from_curve(points: np.ndarray, curve: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("name", ROWS)
 def test_cells_are_valid(name: str) -> None:
-    quality = made(name).quality()
+    quality = result_of(name).quality
     assert quality.folded == 0
-    assert quality.metrics["scaled_jacobian"].min > 0.2
+    assert quality["scaled_jacobian"].min > 0.2
 
 
 @pytest.mark.parametrize("name", ROWS)
@@ -115,7 +120,8 @@ def test_lines_along_the_span_lean_little_behind_the_blade() -> None:
 
 
 def test_cells_behind_narrow_edges_in_a_gap_grow_little_across_the_outline_of_the_blade() -> None:
-    grid = made("with a narrow edge cut at a slant")
+    result = result_of("with a narrow edge cut at a slant")
+    grid = result.grid
     tips = {patch.block for patch in grid.patches if patch.name == "tip"}
     outline = [
         each for each in grid.connections
@@ -133,7 +139,7 @@ def test_cells_behind_narrow_edges_in_a_gap_grow_little_across_the_outline_of_th
             np.linalg.norm(a - b, axis=-1) for a, b in zip(each.nodes(second), on, strict=True)
         )
         growth.append(np.maximum(inside / outside, outside / inside).ravel())
-    assert grid.quality().folded == 0
+    assert result.quality.folded == 0
     assert np.concatenate(growth).max() < 2.5
 
 
@@ -142,7 +148,7 @@ def test_cells_behind_narrow_edges_in_a_gap_grow_little_across_the_outline_of_th
     [("impeller with a thin flat edge and a gap", 0.3), ("impeller of a long channel", 0.5)],
 )
 def test_lines_across_a_channel_that_is_longer_at_the_hub_lean_little_there(name: str, least: float) -> None:
-    assert made(name).quality().metrics["scaled_jacobian"].min > least
+    assert result_of(name).quality["scaled_jacobian"].min > least
 
 
 def test_checkmesh_takes_the_faces_at_a_narrow_edge_cut_at_a_slant() -> None:
@@ -155,19 +161,19 @@ def test_checkmesh_takes_the_faces_at_a_narrow_edge_cut_at_a_slant() -> None:
 @pytest.mark.parametrize("seed", [64, 72, 100])
 def test_checkmesh_takes_first_cells_next_to_a_narrow_gap_off_blades_that_lean_far(seed: int) -> None:
     row = radial_rows.radial_row(seed)
-    grid = make_row(row, RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
-    skewness = faces(grid).face_skewness
+    result = make_row(row, RowRequest(first_cell=FIRST, cells=100_000, threads=1))
+    skewness = faces(result.grid).face_skewness
     assert skewness
     assert skewness.max < 4.0
-    assert grid.quality().folded == 0
-    assert blade_row.off_walls(grid, "blade") == pytest.approx(FIRST * row.chord, rel=1e-9)
+    assert result.quality.folded == 0
+    assert blade_row.off_walls(result.grid, "blade") == pytest.approx(FIRST * row.chord, rel=1e-9)
 
 
 @pytest.mark.parametrize("seed", [2, 410])
 def test_layers_that_would_fold_in_some_sections_get_thinner_gradually_along_the_span(seed: int) -> None:
     row = radial_rows.radial_row(seed)
-    grid = make_row(row, RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
-    assert grid.quality().folded == 0
+    result = make_row(row, RowRequest(first_cell=FIRST, cells=100_000, threads=1))
+    assert result.quality.folded == 0
 
 
 def test_first_cells_at_the_shroud_are_exact_where_the_channel_narrows() -> None:
