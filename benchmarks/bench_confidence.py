@@ -178,8 +178,8 @@ and `hole-o`, one fixed-point (Picard) step for Winslow's equations for `airfoil
 for `quad-winslow` and the networks of [the paper](../theory/paper-models.md). The expected error is the
 relative L2 distance by which these steps move the nodes: the RMS distance divided by the RMS distance of the
 nodes from their centroid. The true error is the relative L2 distance of the answer from the converged
-solution. An answer is accepted if its expected error is at most {threshold:g} and none of its cells is folded.
-With `--fallback`, `infer` replaces every answer that is not accepted by a grid of the solver.
+solution. An answer is accepted if its expected error is at most {threshold:g} and none of its cells is
+folded. With `--fallback`, `infer` replaces every answer that is not accepted by a grid of the solver.
 
 The shapes are of the nine kinds in `benchmarks/yardstick`, on which no network was trained; there are {count}
 shapes of each kind. Six kinds are four-sided domains with 65 x 65 nodes, three kinds are bodies with 65 x 33
