@@ -43,41 +43,40 @@ HEAD = """# Datasets of a million grids
 
 <!-- made by python benchmarks/bench_datasets.py --page docs/benchmarks/datasets.md -->
 
-Read this page before you generate a dataset of very many grids. It gives the memory and time of such a batch,
-and the time to read a sample. A large dataset is divided into files called *parts*; the index file `out.h5`
-presents them as one HDF5 file ([large datasets](../guide/datasets.md)). The grids here are tiny, so that a
-million of them take only minutes; memory and the times for the index file do not depend on the size of a
-grid. Times are wall-clock times of one process.
+Read this page before you generate a dataset of very many grids: it gives the memory and time of such a batch,
+and the time to read a sample. The grids are tiny, 5 x 4 nodes, so that the times do not contain the time of a
+solver. Times are wall-clock times of one process; other programs also used the machine.
+
+A large dataset consists of files called *parts* and an *index file* `out.h5`, which presents all parts as one
+HDF5 file ([large datasets](../guide/datasets.md)).
 """
 READING = """
 ## Reading
 
-A new process opens `out.h5` with h5py, opens the HDF5 dataset `nodes` and reads one sample from it, then
-reads the name of that sample. Times are medians over {repeats} processes, with the maximum in brackets.
+A new process opens the index file with h5py, reads the nodes of one sample, then its name. Times are medians
+of {repeats} processes, with the maximum in brackets.
 """
 PARTS = """
 ## Number of parts
 
-Here each part has only ten grids. The table gives the time to write the index file, the size of this file,
-and the times to open it and to read the last sample in a new process. Each dataset was written and read once,
-so the times also show disturbances by other programs.
+Each part has ten grids. *Open* and *read* are medians of five new processes, which read the nodes of the last
+sample.
 """
 ZARR = """
 ## Comparison with Zarr
 
 The nodes of 200,000 grids are stored in 200 files: as HDF5 parts with an index file, and as shards of Zarr.
-Times are medians over five new processes, each of which imports the package, opens the dataset and reads the
-last grid. The script omits this table if Zarr is not installed (`pip install zarr`).
+*Import*, *open* and *read* are medians of five new processes, which read the last grid.
 """
 TAIL = """
-When a program opens `nodes` in an index file, HDF5 reads the list of all parts; at each read it searches this
-list. The time for both is about ten milliseconds for a thousand parts and grows with the number of parts.
-Parts are therefore large: up to 1,000 grids or 256 MiB. If grids have 200 x 100 nodes, a part holds 500 of
-them, so a million such grids are 2,000 parts.
+## Conclusions
 
-Once the package is imported, a program opens and reads a file of either format within milliseconds. meshonet
-uses HDF5 for two reasons. The same ten lines of h5py, MATLAB or Julia read an index file, a single part, or a
-dataset without parts. And meshonet needs no further package.
+- Memory does not grow with the number of grids: 63 MB after 100,000 grids, 64 MB after a million.
+- A batch spends 0.3 ms per grid besides the solver. The index file of 1,000 parts takes 6 to 91 s.
+- Reading a sample takes about ten milliseconds for a thousand parts, and longer for more parts. Parts are
+  therefore large: up to 1,000 grids or 256 MiB. A million grids of 200 x 100 nodes are 2,000 parts.
+- HDF5 reads a sample in 0.6 ms, Zarr in 1.6 ms. meshonet uses HDF5, which needs no further package, and which
+  h5py, MATLAB and Julia can read.
 """
 READER = """
 import json, sys, time, h5py
@@ -185,7 +184,7 @@ def parts_row(folder: Path, parts: int) -> str:
     figures = make(index, 10 * parts, 10, [])
     times = np.median(read(index, 10 * parts - 1, 5), axis=0)
     return (
-        f"| {parts:,} | {figures['index_seconds']:.2f} | {figures['index']:.2f} MB | {times[0]:.1f} | "
+        f"| {parts:,} | {figures['index_seconds']:.2f} | {figures['index']:.2f} | {times[0]:.1f} | "
         f"{times[1]:.1f} |"
     )
 
@@ -250,21 +249,22 @@ def page(members: int, size: int, repeats: int, parts: Iterable[int]) -> str:
         figures = make(index, members, size, watched)
         numbers = (0, members // 2, members - 1)
         lines = [
-            "", "| | |", "| --- | --- |",
-            f"| number of grids; number of parts with {size:,} grids each | {members:,}; "
-            f"{figures['parts']:,} |",
-            f"| time in total; time per grid | {figures['seconds']:.0f} s; "
-            f"{1e6 * figures['seconds'] / members:.0f} µs |",
-            f"| memory of the process after a tenth of the grids; at the end | {watched[0]:.0f} MB; "
-            f"{watched[-1]:.0f} MB |",
-            f"| size of the largest part; of all parts together | {figures['largest']:.2f} MB; "
-            f"{figures['all']:.0f} MB |",
-            f"| index file: time to write it; its size | {figures['index_seconds']:.1f} s; "
-            f"{figures['index']:.2f} MB |",
+            "", "| quantity | value |", "| --- | --- |",
+            f"| grids | {members:,} |",
+            f"| parts, with {size:,} grids each | {figures['parts']:,} |",
+            f"| time in total | {figures['seconds']:.0f} s |",
+            f"| time per grid | {1e6 * figures['seconds'] / members:.0f} µs |",
+            f"| memory of the process after a tenth of the grids | {watched[0]:.0f} MB |",
+            f"| memory of the process at the end | {watched[-1]:.0f} MB |",
+            f"| size of the largest part | {figures['largest']:.2f} MB |",
+            f"| size of all parts together | {figures['all']:.0f} MB |",
+            f"| time to write the index file | {figures['index_seconds']:.1f} s |",
+            f"| size of the index file | {figures['index']:.2f} MB |",
             READING.format(repeats=repeats),
-            "| sample | open file, ms | read nodes, ms | read name, ms |", "| --- | --- | --- | --- |",
+            "| sample number | open file, ms | read nodes, ms | read name, ms |", "| --- | --- | --- | --- |",
             *reading_rows(index, numbers, repeats), PARTS,
-            "| parts | write the index, s | size | open, ms | read, ms |", "| --- | --- | --- | --- | --- |",
+            "| parts | write index file, s | size of index file, MB | open, ms | read, ms |",
+            "| --- | --- | --- | --- | --- |",
             *(parts_row(Path(name), count) for count in parts), *beside_zarr(),
         ]  # fmt: skip
     return HEAD + "\n".join(lines) + "\n" + TAIL

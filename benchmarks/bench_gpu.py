@@ -37,27 +37,27 @@ TITLE = """# GPU
 <!-- made by python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md -->
 """
 HEAD = """
-Use this page to find the speed of training and of batches of grids on a GPU. [Threads and
-GPUs](../guide/threads-and-gpu.md) explains how to use a GPU.
+Use this page to find the speed of batches of grids and of training on a GPU, and the differences from the
+grids of the CPU. [Threads and GPUs](../guide/threads-and-gpu.md) explains how to use a GPU.
 
 `python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md` measures for at most eight minutes and writes
 this page. Rows that were not measured for lack of time are marked.
 
-- **Layers**: the functions of `meshonet.layer` (exact solvers) and, for comparison, the network
-  `quad-general`. The sides of the domains are already in the memory of the GPU. The table gives the grids per
-  second without and with gradients, the peak memory, whether two runs give bitwise equal nodes, and the
-  largest distance from the nodes that the CPU computes. Grids of 65 x 65 nodes are made in batches, larger
-  grids singly. In rows with `coarse=65`, the equations are solved on 65 x 65 nodes and the grid is
-  interpolated. The aims are 100,000 grids of 65 x 65 nodes per second, one grid of 800 x 800 nodes in 3 ms,
-  and one of 3200 x 3200 nodes in 40 ms. For the last size [the MeshONet paper](paper/index.md) reports 278 ms
-  on an RTX 4090.
-- **Operators**: grids per second and peak memory of `infer --device cuda` with the networks `airfoil-o`,
-  `quad-general` and `hole-o`, for 256 grids of 65 x 65 and of 200 x 200 nodes.
-- **Training**: shapes per second and peak memory of the networks `meshonet` (of the paper), `fno2d` and
-  `quad`, for two batch sizes, with `--amp`, and with `--compile` for the smaller batch. Speed and final loss
-  are also given relative to training without these options. The time of compiling is not included.
-- **Equality**: nodes may differ from the nodes computed on the CPU by at most 1e-10 of the size of the
-  domain. A larger difference is marked TOO FAR.
+- **Layers**: functions of `meshonet.layer`, which are solvers, and the network `quad-general`. The boundaries
+  are already in the memory of the GPU. *coarse=65*: the solver runs on 65 x 65 nodes, and its grid is
+  interpolated. *with gradients*: grids per second if gradients are computed too. *same bits*: whether two
+  runs give bitwise equal nodes.
+- **Operators**: `infer --device cuda` with three networks.
+- **Training**: shapes per second of three networks, for two batch sizes and with the options `--amp` and
+  `--compile`. Relative values compare training with and without these options. The time of compiling does not
+  count.
+- *MB*: peak memory of the GPU.
+- *distance*: largest distance of a node from the node that the CPU computes, relative to the size of the
+  domain. A distance above 1e-10 is marked TOO FAR.
+
+The aims are 100,000 grids of 65 x 65 nodes per second, one grid of 800 x 800 nodes in 3 ms, and one of
+3200 x 3200 nodes in 40 ms. For 3200 x 3200 nodes [the MeshONet paper](paper/index.md) reports 278 ms on an
+RTX 4090.
 """
 
 NONE = "This page has no figures yet: no GPU was available when it was made."
@@ -97,7 +97,7 @@ def shapes_for(name: str, count: int, n: int) -> list[Boundary]:
 
 def operator_rows(device: Device, extent: Extent, left: Time) -> Iterator[str]:
     """Yield the rows of batched operators."""
-    yield "| operator | nodes | grids | grids a second | MB | farthest node from the CPU's |"
+    yield "| operator | nodes | grids | grids per second | MB | distance |"
     yield "| --- | --- | --- | --- | --- | --- |"
     count = extent.count
     for name, n in ((name, n) for name in FAMILIES for n in extent.operators):
@@ -129,7 +129,7 @@ def layer_rows(device: Device, extent: Extent, left: Time) -> Iterator[str]:
     A batch is measured if the time for the one before, by the ratio of their sizes, is left. There are no
     4096 variational grids, since the compiled solver makes their starts one by one.
     """
-    yield "| function | nodes | grids | a second | with gradients | MB | same bits | distance |"
+    yield "| function | nodes | grids | grids per second | with gradients | MB | same bits | distance |"
     yield "| --- | --- | --- | --- | --- | --- | --- | --- |"
     for name in (NETWORK, "winslow", "variational"):
         before, spent = 1, 0.0

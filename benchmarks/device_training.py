@@ -57,7 +57,7 @@ def datasets(folder: Path, count: int, n: int) -> dict[str, list[str]]:
 def training_rows(device: Device, folder: Path, extent: Trainings, left: Time) -> Iterator[str]:
     """Yield the rows of training."""
     files = datasets(folder, extent.shapes, extent.nodes)
-    yield "| model | batch | amp | compile | shapes a second | relative | last loss, relative | MB |"
+    yield "| model | batch | amp | compile | shapes per second | relative speed | relative last loss | MB |"
     yield "| --- | --- | --- | --- | --- | --- | --- | --- |"
     for model, batches in TRAINED.items():
         for batch in batches[: extent.sizes]:

@@ -53,9 +53,8 @@ ERRORS_HEAD = """# Held-out errors of the shipped models
 
 Look here for the accuracy of the neural networks (models) that are part of meshonet: the distance between
 grids of a model and grids of the solver, on *held-out* shapes, which were not used in training. The training
-parameters are in [shipped models](../reference/models.md); `meshonet models` prints errors and parameters.
-The loss after each epoch is in `docs/benchmarks/curves`. `quad-general` was trained in two runs;
-`quad-first` is the first of them.
+parameters are in [shipped models](../reference/models.md); `meshonet models NAME` prints errors and
+parameters.
 """
 C_GRIDS = """## C grids: no model
 
@@ -215,19 +214,21 @@ def curve(name: str) -> list[str]:
     some = [rows[k] for k in sorted({0, len(rows) // 4, len(rows) // 2, len(rows) - 1})]
     losses = ", ".join(f"{float(row['held_out_loss']):.3g} after {row['epoch']}" for row in some)
     what = "[loss](../theory/operators.md#training) on the held-out samples"
-    return [f"\nThe {what} is {losses} epochs ([every epoch](curves/{name}.csv))."]
+    text = f"\nThe {what} is {losses} epochs ([every epoch](curves/{name}.csv))."
+    initial = described(name)["recipe"]["initial"]
+    if initial not in shipped():
+        text += f" The training continues an earlier one ([every epoch](curves/{initial}.csv))."
+    return [text]
 
 
 def strip_figures(figures: dict[str, Any], _: str) -> list[str]:
     """Return the held-out errors of the airfoil operator."""
     lines = [
         f"The held-out samples are {figures['strips']} random airfoils. A",
-        "[conformal map](../theory/o-grids.md) takes each domain to a strip. The error is the root mean",
-        "square distance from Winslow's solution in the strip, whose coordinates are in radians. *base* is",
-        "the initial grid (the harmonic extension of the boundary), which the network corrects.",
-        "*+ n Picard* means that n Picard steps towards Winslow's solution follow. Median, percentile and",
-        "maximum are over the airfoils. The weights are stored in float16.\n",
-        "| method | median | 90th percentile | maximum |",
+        "[conformal map](../theory/o-grids.md) takes each domain to a strip. Errors are root mean square",
+        "distances from Winslow's solution in the strip, in radians. *base* is the initial grid, which the",
+        "network corrects. *+ n Picard* adds n fixed-point iterations for Winslow's equations.\n",
+        "| method | error, median | error, 90th percentile | error, maximum |",
         "| --- | --- | --- | --- |",
     ]
     for way, q in figures.items():
@@ -243,12 +244,11 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     middle = "the middle of the body" if bodies else "the mean of the boundary nodes"
     lines = [
         f"The held-out samples are {figures['domains']} random {domains}. One network predicts both the",
-        f"variational grid and Winslow's grid, here on {counts} nodes and without solver iterations after",
-        "the network. An error is the root mean square distance of the nodes from the solver's grid, divided",
-        f"by the root mean square distance of the nodes of the solver's grid from {middle}.",
-        "*initial* is the median error of the initial grid, which the network corrects; *valid* is the share",
-        "of predicted grids without folded cells.\n",
-        "| predicted grid | median error | 90th percentile | initial | valid |",
+        f"variational grid and Winslow's grid, on {counts} nodes and without solver iterations. The *error*",
+        "is the RMS distance of the nodes from the solver's grid, divided by the RMS distance of the nodes of",
+        f"the solver's grid from {middle}. The *initial grid* is the grid that",
+        "the network corrects. *Valid* grids have no folded cells.\n",
+        "| predicted grid | error, median | error, 90th percentile | initial grid: error, median | valid |",
         "| --- | --- | --- | --- | --- |",
     ]
     for answer, q in figures.items():
@@ -261,9 +261,10 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "The largest angles of cells are smaller in the variational grid than in Winslow's grid. The\n"
-        f"predicted variational grid reaches {100 * gain['mean_gain']:.0f} % of this reduction of the mean\n"
-        f"over the cells, and {100 * gain['max_gain']:.0f} % of the reduction of the maximum.",
+        "Each cell has a largest angle. The mean and the maximum of these angles are smaller in the\n"
+        "variational grid than in Winslow's grid. The predicted variational grid reaches "
+        f"{100 * gain['mean_gain']:.0f} % of\n"
+        f"the decrease of the mean, and {100 * gain['max_gain']:.0f} % of the decrease of the maximum.",
     ]
     return lines
 
