@@ -245,8 +245,8 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     lines = [
         f"The held-out samples are {figures['domains']} random {domains}. One network predicts both the",
         f"variational grid and Winslow's grid, on {counts} nodes and without solver iterations. The *error*",
-        "is the RMS distance of the nodes from the solver's grid, divided by the RMS distance of the solver's",
-        f"nodes from {middle}. The *initial grid* is the grid that the network",
+        "is the RMS distance of the nodes from the solver's grid, divided by the RMS distance of its nodes",
+        f"from {middle}. The *initial grid* is the grid that the network",
         "corrects. *Valid* grids have no folded cells.\n",
         "| predicted grid | error, median | error, 90th percentile | initial grid: error, median | valid |",
         "| --- | --- | --- | --- | --- |",
