@@ -28,32 +28,37 @@ HEAD = """# Kershaw's cube
 
 <!-- made by python benchmarks/bench_kershaw.py --page docs/benchmarks/kershaw.md -->
 
-Use this page to compare the grid quality and the CPU time of `solve-pde --energy shape` with those of
-TMOP, the mesh optimiser of [MFEM](https://mfem.org). The test case is Kershaw's map of the unit cube,
-which shears and compresses the cells in six layers. A parameter ε, here the same for y and z, prescribes
-the compression: ε = 1 gives the uniform grid, and the smaller ε, the stronger the compression.
+Use this page to compare `solve-pde --energy shape` with TMOP, the mesh optimiser of [MFEM](https://mfem.org),
+in grid quality and in CPU time of one thread. The case is Kershaw's map of the unit cube, which shears and
+compresses the cells in six layers. A parameter ε prescribes the compression: ε = 1 gives the uniform grid,
+and a smaller ε a stronger compression.
 
-The objective is metric 303 of TMOP with ideal targets. For one cell, it is the integral of f = |**T**|² /
-(3 det(**T**)^⅔) − 1, where **T** is the Jacobian matrix of the map from a reference cube to the cell and
-|**T**| its Frobenius norm. The objective of a grid is the mean over its cells; it is 0 if all cells are
-cubes. For all grids the integral is evaluated with TMOP's default quadrature, Gauss-Lobatto with six
-points per direction.
-
-*Deviation*: for each cell corner, the largest deviation of its three angles from 90 degrees; the table gives
-the mean and the 99th percentile over all corners. *SJ*: scaled Jacobian at the corners. Times are CPU times
-of one thread.
+- *Kershaw's grid*: the grid of the cube by this map. Its six faces are the input of meshonet, whose three
+  rows have these faces.
+- *TMOP*: MFEM's mini-app `mesh-optimizer` with `-mid 303 -tid 1`, started from Kershaw's grid. Its Newton
+  method takes at most 100 MINRES iterations per step.
+- *objective*: mean over the cells of the integral of |**T**|² / (3 det(**T**)^⅔) − 1, which is 0 for cubes.
+  `--energy shape` and TMOP minimise it. **T** is the Jacobian matrix of the map from a reference cube to the
+  cell, |**T**| its Frobenius norm. TMOP calls the integrand metric 303.
+- *deviation*: largest deviation from 90 degrees of the three angles at a cell corner; mean and 99th
+  percentile over all corners.
+- *scaled Jacobian*: minimum over the cell corners.
 """
 TAIL = """
-TMOP is set up as in MFEM's mini-app `mesh-optimizer` with `-mid 303 -tid 1`: Newton's method with at most
-100 MINRES iterations per step, started from Kershaw's grid. With the mini-app's option `-fix-bnd` the
-boundary nodes are fixed. meshonet solves the same problem, but starts from its own initial grid: its input
-is only the six boundary faces. Without `-fix-bnd`, TMOP lets boundary nodes slide in the faces of the
-cube. The minimum of the objective is then 0, at the uniform grid, and the test is trivial. meshonet never
-moves the nodes on the faces of a volume.
+## Conclusions
 
-The default functional (`--energy angles`) has another aim: angles near 90 degrees and gradual changes of
-edge length. It keeps the cell sizes of the compressed faces and does not penalise large aspect ratios.
+- **Same minimum**: with fixed boundary nodes `--energy shape` reaches the objective 0.48074 in 0.19 s, TMOP
+  reaches 0.48073 in 62.51 s.
+- **Sliding boundary nodes**: if TMOP lets them slide in the faces, it reaches the uniform grid. meshonet
+  never moves the nodes on the faces of a volume.
+- **Default**: use `--energy angles` for angles near 90 degrees and gradual changes of edge length. Its mean
+  deviation is 19.1 degrees, that of `--energy shape` 29.7 degrees. `--energy angles` does not penalise large
+  aspect ratios.
 """
+HEADS = (
+    "| grid | objective | folded cells | minimum scaled Jacobian "
+    "| deviation, degrees: mean / 99th percentile | CPU time, s |"
+)
 FIXED, SLIDING = "TMOP, boundary nodes fixed", "TMOP, boundary nodes slide in the faces"
 
 
@@ -179,7 +184,7 @@ def rows(cells: int, epsilon: float) -> dict[str, tuple[Floats, float]]:
 
 def table(cells: int, epsilon: float) -> str:
     """Return the table of all grids."""
-    lines = ["| grid | objective | folded cells | minimum SJ | deviation: mean / 99th percentile | CPU s |"]
+    lines = [HEADS]
     lines += ["| --- | --- | --- | --- | --- | --- |"]
     for name, (nodes, spent) in rows(cells, epsilon).items():
         folds, scaled, mean, high = quality(nodes)

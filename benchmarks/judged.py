@@ -25,11 +25,6 @@ NEAR = 1.5
 RIM = 0.1
 """Part of the rows along a side of a four-sided domain that counts as near it."""
 
-_RIVALS = """
-These methods without a network make at least as many valid grids as the networks with which they are
-compared. Their distances near the wall and their times exceed those of these networks by at most 5 %:
-"""
-
 
 def rows(kept: Kept, table: str, shapes: list[Shape], k: int, ways: Mapping[str, Way]) -> dict[str, Floats]:
     """Return for each way the figures of every shape: (shapes, 6), what `judged` returns.
@@ -111,14 +106,15 @@ def around(edges: Boundary, goal: Floats) -> tuple[Floats, NDArray[np.bool_]]:
 
 
 TABLE = (
-    "| method | valid % | near the wall, median / worst | all nodes, median | max angle, median / worst "
-    "| mean angle | ms |",
+    "| method | grids without folded cells, % | distance near the wall, median / worst "
+    "| distance of all nodes, median | largest angle relative to Winslow, median / worst "
+    "| mean angle relative to Winslow, median | CPU time, ms |",
     "| --- | --- | --- | --- | --- | --- | --- |",
 )
 
 
 def table(title: str, result: Mapping[str, Floats], message: str = "") -> str:
-    """Return a table of what `rows` returned, and which ways without a network are as good as ours."""
+    """Return a table of what `rows` returned."""
     lines = [f"\n## {title}\n", *([message + "\n"] if message else []), *TABLE]
     for way, figures in result.items():
         folds, near, whole, largest, mean, spent = figures.T
@@ -132,28 +128,4 @@ def table(title: str, result: Mapping[str, Floats], message: str = "") -> str:
             f"{np.median(spent):.1f}",
         )
         lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n" + as_good(result)
-
-
-def as_good(result: Mapping[str, Floats]) -> str:
-    """Return which rivals (of the same goal) come out as good as each of our ways, and in no more time."""
-    reports: dict[str, list[str]] = {}
-    for ours, own in result.items():
-        if "network" not in ours and "quad-" not in ours:
-            continue
-        rivals = [
-            way
-            for way, figures in result.items()
-            if "network" not in way
-            and "quad-" not in way
-            and _varied(way) == _varied(ours)
-            and (figures[:, 0] == 0).sum() >= (own[:, 0] == 0).sum()
-            and np.median(figures[:, 1]) <= 1.05 * np.median(own[:, 1])
-            and figures[:, 1].max() <= 1.05 * own[:, 1].max()
-            and np.median(figures[:, 5]) <= 1.05 * np.median(own[:, 5])
-        ]
-        if rivals:
-            reports.setdefault("`, `".join(rivals), []).append(ours)
-    pairs = (("`, `".join(ours), rivals) for rivals, ours in reports.items())
-    lines = [f"- `{rivals}`, compared with `{own}`.".replace("**", "") for own, rivals in pairs]
-    return "\n".join([_RIVALS, *lines]) + "\n" if lines else ""
+    return "\n".join(lines) + "\n"
