@@ -36,10 +36,11 @@ HEAD = """# Bodies with a wing
 
 <!-- made by python benchmarks/bench_aircraft.py --airfoils FOLDER --page docs/benchmarks/aircraft.md -->
 
-Use this page to see for how many random aircraft `stack` makes a valid grid, and the quality and CPU time of
-these grids. [A body with wings](../guide/aircraft.md) explains how to make such grids.
+Use this page to find the quality and the CPU time of the grids that `stack` makes for [bodies with
+wings](../guide/aircraft.md). The {count} bodies and wings are random. The processor is {machine}; one thread
+is used, while other programs run.
 
-Each of {count} aircraft has a fuselage with a round nose and a slender tail, and a wing. Random properties:
+Each body has a round nose and a slender tail. These properties are random:
 
 | property | range |
 | --- | --- |
@@ -51,21 +52,22 @@ Each of {count} aircraft has a fuselage with a round nose and a slender tail, an
 
 Grids have {around} nodes around the wing and {span} along the span, and a far field at {far:g} chords.
 
-- *folded*: grids with a cell in which the Jacobian at a corner, or a Bezier coefficient of the Jacobian, is
-  not positive. (If all Bezier coefficients are positive, the Jacobian is positive in the whole cell.)
-- *least scaled Jacobian*: the smallest [scaled Jacobian](../reference/metrics.md#cells-of-volumes) of a cell
-  of the grid. *relative error of first cells*: the largest relative error of a first-cell height.
-- *growth*: share of the pairs of consecutive edges along grid lines, also from block to block, whose lengths
-  differ by a factor of at most 1.3.
-- *normals*: 95th percentile of the angle between a grid line that leaves a wall and the normal of the wall.
-- *best*, *median* and *worst* are over the grids. For nodes and CPU times, *best* means the smallest.
-- *CPU s*: one thread of {machine}, while other programs used the machine.
+- *scaled Jacobian*: smallest [scaled Jacobian](../reference/metrics.md#cells-of-volumes) of the cells of a
+  grid.
+- *first-cell error*: largest relative error of a first-cell height.
+- *even growth*: share of the pairs of consecutive edges of grid lines, also across block interfaces, whose
+  lengths differ by a factor of at most 1.3.
+- *angle to the wall normal*: 95th percentile of the angle between the normal of a wall and the grid line
+  that leaves it.
 
-A grid was made for {made} of the {count} aircraft; {folded} of these grids have folded cells.
-The largest distance between the two copies of a node that two blocks share is {seams:g}.
-
-| metric | best | median | worst |
+| quantity | best | median | worst |
 | --- | --- | --- | --- |
+"""
+TAIL = """
+- {made} of the {count} aircraft have a grid, with {fewest:,} to {most:,} nodes.
+- {valid} of the {made} grids have no folded cells: the Jacobian is positive everywhere, because all its
+  Bezier coefficients are positive.
+- Nodes that two blocks share are equal: their largest distance is {seams:g}.
 """
 
 
@@ -128,19 +130,22 @@ def line(
 def page(made: list[Figures], count: int, files: int) -> str:
     """Return the page of the grids that were made."""
     head = HEAD.format(
-        count=count, files=files, around=AROUND, span=SPAN, far=FAR, machine=processor(), made=len(made),
-        folded=sum(each.folded > 0 for each in made), seams=max(each.seams for each in made),
+        count=count, files=files, around=AROUND, span=SPAN, far=FAR, machine=processor()
     )  # fmt: skip
     row = partial(line, made=made)
     rows = (
-        row("least scaled Jacobian", value=lambda each: each.scaled, form=".3f", high=True),
-        row("relative error of first cells", value=lambda each: each.first, form=".0e"),
-        row("growth of at most 1.3, %", value=lambda each: 100.0 * each.growth, form=".2f", high=True),
-        row("normals, degrees", value=lambda each: each.normals, form=".1f"),
-        row("nodes", value=lambda each: each.nodes, form=".0f"),
-        row("CPU s", value=lambda each: each.seconds, form=".1f"),
+        row("scaled Jacobian", value=lambda each: each.scaled, form=".3f", high=True),
+        row("first-cell error", value=lambda each: each.first, form=".0e"),
+        row("even growth, %", value=lambda each: 100.0 * each.growth, form=".2f", high=True),
+        row("angle to the wall normal, degrees", value=lambda each: each.normals, form=".1f"),
+        row("CPU time, s", value=lambda each: each.seconds, form=".1f"),
     )
-    return head + "\n".join(rows) + "\n"
+    tail = TAIL.format(
+        made=len(made), count=count, valid=sum(each.folded == 0 for each in made),
+        seams=max(each.seams for each in made),
+        fewest=min(each.nodes for each in made), most=max(each.nodes for each in made),
+    )  # fmt: skip
+    return head + "\n".join(rows) + "\n" + tail
 
 
 def main() -> None:

@@ -26,7 +26,7 @@ from yardstick.files import read_boundaries, read_grids, write_boundaries
 from yardstick.judge import summary
 from yardstick.networks import OPERATORS, PHYSICS, trained
 from yardstick.shapes import BODIES, KINDS, shapes
-from yardstick.words import HEAD, TAIL
+from yardstick.words import COLUMNS, HEAD, NETWORKS, TAIL
 
 NODES = {"quad": (65, 65), "o": (65, 33)}
 HERE = Path(__file__).parent
@@ -76,9 +76,14 @@ def main() -> None:
             for name, program, kinds in entries(folder):
                 print(f"{name}: {', '.join(kinds)}", file=sys.stderr)
                 run(folder, name, program, kinds)
-        table = "\n".join(judged(folder))
-        head = HEAD.format(count=options.count, seed=options.seed)
-        publish(f"{head}\n{table}\n{TAIL}" if options.page else table, options.page)
+        rows = list(judged(folder))
+        text = "\n".join(rows)
+        if options.page:
+            head = HEAD.format(count=options.count, seed=options.seed)
+            trained_here = [row for row in rows if "| meshonet train " in row]
+            others = [row for row in rows if row not in trained_here]
+            text = "\n".join([head + COLUMNS, *others, NETWORKS + COLUMNS, *trained_here, TAIL])
+        publish(text, options.page)
 
 
 def entries(folder: Path) -> Iterator[tuple[str, str, list[str]]]:

@@ -1,72 +1,97 @@
-"""What the page of the comparison says around its table."""
+"""What the page of the comparison says around its tables."""
 
 HEAD = """# A comparison that is open to other programs
 
 <!-- made by python benchmarks/yardstick entries build/yardstick --page docs/benchmarks/yardstick.md -->
 
-Use this page to compare your program for structured grids with the programs below, on random shapes to which
-no program was adapted. The scripts in `benchmarks/yardstick` draw the shapes, read and write the files and
-judge the grids. The scripts need NumPy and h5py, and do not use meshonet.
+Use this page to compare your program for structured grids with Gmsh and meshonet, on random shapes to which
+no program was adapted. The scripts in `benchmarks/yardstick` draw the shapes and judge the grids; for this
+they need NumPy and h5py only.
 
-There are nine kinds of random shapes, here {count} of each, drawn with seed {seed}. Six kinds are four-sided domains with
-65 x 65 nodes: `wavy`, `sector`, `duct`, `bumps`, `kinked` and `lens`. Three are bodies with 65 x 33 nodes: `star`, `slab`
-and `section`. The boundary nodes are given.
+There are {count} shapes of each kind, drawn with seed {seed}. All boundary nodes are given.
 
-- *Grids*: the number of shapes for which the program made a grid.
-- *Folded*: number of grids with folded cells and, in brackets, number of folded cells. A cell is folded if
-  the Jacobian at one of its corners is not positive.
-- *Largest angle*: largest corner angle in a grid, in degrees; mean and worst value over the grids. *Least
-  angle*: smallest corner angle in all grids, in degrees.
-- *Skew*: largest deviation of the angles of a cell from 90 degrees, in degrees; mean over the cells of all
-  grids.
-- *Boundary error*: the largest distance of a boundary node from the given node, relative to the size of the
+| kind | nodes | shape |
+| --- | --- | --- |
+| `wavy` | 65 x 65 | four-sided domain with wavy sides |
+| `sector` | 65 x 65 | piece of a ring of 40 to 270 degrees with varying radii |
+| `duct` | 65 x 65 | S-shaped duct with a contraction or an expansion |
+| `bumps` | 65 x 65 | channel with bumps on both walls |
+| `kinked` | 65 x 65 | four-sided domain whose sides are polylines |
+| `lens` | 65 x 65 | domain between two arcs, cut off at its ends |
+| `star` | 65 x 33 | smooth body with two to seven lobes inside a circle |
+| `slab` | 65 x 33 | rectangle with rounded corners inside a circle |
+| `section` | 65 x 33 | NACA four-digit airfoil inside a circle |
+
+In the tables, the first six kinds are *four-sided*; the last three are *body*.
+
+- `infer --model NAME`: a [model shipped with meshonet](models.md).
+- *grids*: shapes for which the program makes a grid.
+- *folded*: number of grids with folded cells and, in brackets, number of folded cells. In a folded cell, the
+  Jacobian at a corner is not positive.
+- *largest angle*: largest cell corner angle of a grid, mean / maximum over the grids.
+- *smallest angle*: smallest cell corner angle of all grids.
+- *skew*: largest deviation of the corner angles of a cell from 90 degrees, mean over all cells.
+- *boundary error*: largest distance of a boundary node from its given position, relative to the size of the
   shape.
-- *ms*: milliseconds of processor time of the whole command, start included, divided by the number of grids.
+- *CPU ms*: CPU time of the whole command in milliseconds, divided by the number of grids.
+"""
 
-| shapes | program | grids | folded | largest angle, mean / worst | least angle | skew | boundary error | ms |
+COLUMNS = """
+| shapes | program | grids | folded | largest angle, degrees | smallest angle, degrees | skew, degrees \
+| boundary error | CPU ms |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
 
+NETWORKS = """
+- meshonet repairs folded cells, except with `--no-repair`. Here all grids are written, also those with
+  folded cells (`--allow-invalid`).
+- One four-sided domain, `wavy-15`, has a corner of 182 degrees, at which every grid has a folded cell.
+  `infer` and `solve-pde --method variational` fold no other cells.
+- On the four-sided domains the skew of `meshonet infer` is 4.4 degrees, and the skew of Gmsh with smoothing
+  10.2 degrees. On the bodies `infer --model hole-o` has 3.8 degrees, and Gmsh with smoothing 8.5 degrees.
+
+## Networks trained for a short time
+
+The names after `train --model` are the [networks of the MeshONet paper](../theory/paper-models.md) and the
+networks with which the paper compares them. Here the training is short:
+
+- A network other than `mgnet` and `meshnet` is trained with 15 epochs (300 steps), once on 600 four-sided
+  domains with 33 x 33 nodes, and once on 576 bodies with 65 x 33 nodes. These shapes come from
+  `sample-boundary --family four-sided` and `--family bodies`; the training grids are solutions of Winslow's
+  equations.
+- A network `mgnet` or `meshnet` is trained with 500 steps for one geometry, here for the first shape of each
+  kind. The training is part of its CPU time.
+- The given boundary nodes replace the predicted boundary nodes (`infer --answer pasted`). Folded cells are
+  not repaired.
+"""
+
 TAIL = """
-`meshonet` repairs folded cells, except with `--no-repair` and in the rows `meshonet train`. All commands have
-the option `--allow-invalid`, so grids with folded cells are written too. One four-sided domain, `wavy-15`,
-has a corner of 182 degrees, at which every grid with the given boundary nodes has a folded cell.
-
-The rows `meshonet train` are the [networks of the MeshONet paper](../theory/paper-models.md) and the
-operators with which the paper compares them. Each operator is trained twice, with its default settings, seed
-0 and 15 epochs: on 600 four-sided domains with 33 x 33 nodes, and on 576 bodies with 65 x 33 nodes (the
-bodies, of 600 random ones, for which Winslow's iteration converges). Each training processes about 9,000
-shapes in 300 steps, as in [the table of every model on every case](paper/index.md#every-model-on-every-case).
-The grids for training are Winslow's grids of random shapes of `sample-boundary --family four-sided` and
-`--family bodies`; the nine kinds of shapes on this page are not used in training. As in the paper, the
-boundary nodes of a predicted grid are replaced by the given nodes (`infer --answer pasted`). Almost all grids
-of these operators have folded cells, for two reasons: 300 steps are few, and the shapes on this page differ
-in size and position from the shapes for training. [The page of the paper](paper/index.md) gives their errors
-on one family of shapes after longer training.
-
-A network `mgnet` or `meshnet` is trained for one geometry, here for the first
-shape of each kind only, with 500 steps; the column *ms* includes this training.
+Almost all grids have folded cells: 300 steps are few, and the shapes differ in size and position from the
+shapes for training. The [page of the MeshONet paper](paper/index.md) gives errors after longer training.
 
 ## How to enter
 
-1. Draw the shapes. Each kind is a file `build/yardstick/KIND.h5` with the arrays `south`, `north` (n, ni, 2),
-   `west`, `east` (n, nj, 2) and `names`. With `--plot3d` each kind is also a folder `KIND` with a 2D ASCII
-   Plot3D file for each shape; the four blocks of the file are the sides. For a body, south is the body,
-   clockwise, and north is the far field. West and east are the two sides of one cut from the body to the far
-   field; your program may move the nodes of this cut.
+1. Draw the shapes.
 
        python benchmarks/yardstick shapes build/yardstick --seed 1
 
-2. Run your program. It gets two paths: the file of boundaries to read, and the file of grids to write. Grids
-   are a `.h5` file with `nodes` (n, ni, nj, 2) and `names`, or with `--plot3d` a folder of Plot3D files with
-   the names of the shapes. Leave out shapes for which your program makes no grid.
+   Each kind is a file `build/yardstick/KIND.h5` with the arrays `south`, `north` (n, ni, 2), `west`, `east`
+   (n, nj, 2) and `names`. With `--plot3d` each kind is also a folder `KIND` with a 2D ASCII Plot3D file for
+   each shape; the four blocks of the file are the sides. For a body, south is the body, clockwise, and north
+   is the circle. West and east are the two sides of one cut from the body to the circle; your program may
+   move the nodes of this cut.
+
+2. Run your program. It gets two paths: the boundaries to read, and the grids to write.
 
        python benchmarks/yardstick run build/yardstick 'My program 1.0' 'myprogram --in {boundaries} --out {grids}'
 
-3. Judge all grids in the folder.
+   Grids are a `.h5` file with `nodes` (n, ni, nj, 2) and `names`, or with `--plot3d` a folder of Plot3D
+   files with the names of the shapes. Leave out shapes for which your program makes no grid. The script
+   `benchmarks/yardstick/gmsh_transfinite.py` is an example.
+
+3. Judge all grids in the folder. The printed rows have the columns of the tables above.
 
        python benchmarks/yardstick judge build/yardstick
 
-Draw other shapes with another `--seed` to see whether a result depends on the shapes. You can start from the
-entry `gmsh_transfinite.py`, which has 80 lines. `python benchmarks/yardstick entries build/yardstick` makes
-the table above.
+Use another `--seed` to see whether a result depends on the shapes. `python benchmarks/yardstick entries
+build/yardstick` makes the tables above.
 """
