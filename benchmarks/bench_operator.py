@@ -243,8 +243,8 @@ Rows of the tables; bold rows are `infer` and the networks:
 | Winslow or variational, coarse N | solution on N x N nodes, interpolated to all nodes and smoothed |
 | **airfoil-o** | the network `airfoil-o` alone, which predicts Winslow's O grid |
 | **airfoil-o, polished** | `airfoil-o`, then iterations for Winslow's equations until nodes hardly move |
-| **quad-winslow** | network for Winslow's grid in four sides; *2 cycles*: then 2 multigrid cycles |
-| **quad-general** | network for the variational grid in four sides; *5 steps*: then 5 iterations |
+| **quad-winslow** | network for Winslow's grid of a four-sided domain; *2 cycles*: then 2 multigrid cycles |
+| **quad-general** | network for the variational grid of a four-sided domain; *5 steps*: then 5 iterations |
 
 Terms and columns:
 

@@ -3,6 +3,7 @@
 import hashlib
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,6 @@ from shapes import Shape
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.transform import coarser_boundary
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.quality.measure import count_folded, per_cell
 from meshonet.solvers.elliptic.solve import solve as winslow
@@ -42,7 +42,7 @@ def rows(kept: Kept, table: str, shapes: list[Shape], k: int, ways: Mapping[str,
 
 def _row(kept: Kept, shape: Shape, k: int, ways: Mapping[str, Way]) -> dict[str, list[float]] | None:
     fine = shape.make(k)
-    edges = coarser_boundary(fine, k)
+    edges = every(fine, k)
     given = hashlib.sha256(np.concatenate([fine.south, fine.north, fine.west, fine.east]).tobytes())
     goals = kept.arrays((given.hexdigest(), str(k)), lambda: converged(fine, k))
     if goals is None:
@@ -52,6 +52,12 @@ def _row(kept: Kept, shape: Shape, k: int, ways: Mapping[str, Way]) -> dict[str,
     if any(way.startswith("variational") or way.startswith("**quad-general") for way in ways):
         best = variational(edges).grid.nodes
     return {way: judged(way, make, edges, best if _varied(way) else goal, pde) for way, make in ways.items()}
+
+
+def every(boundary: Boundary, k: int) -> Boundary:
+    """Return every k-th node of a boundary, which may cut its corners."""
+    sides = {side: getattr(boundary, side)[::k] for side in ("south", "north", "west", "east")}
+    return replace(boundary, **sides, patches=(), sensors=None)
 
 
 def _varied(way: str) -> bool:
@@ -65,8 +71,8 @@ def converged(fine: Boundary, k: int) -> tuple[Floats, Floats] | None:
     """
     try:
         one = winslow(fine, tol=1e-8).grid.nodes
-        half = winslow(coarser_boundary(fine, 2), tol=1e-8).grid
-        same = half if k == 2 else winslow(coarser_boundary(fine, k), tol=1e-8).grid
+        half = winslow(every(fine, 2), tol=1e-8).grid
+        same = half if k == 2 else winslow(every(fine, k), tol=1e-8).grid
     except MeshonetError:
         return None
     goal = (4.0 * one[::k, ::k] - half.nodes[:: k // 2, :: k // 2]) / 3.0
