@@ -53,8 +53,8 @@ def check_space(record: Format, kind: Space, output: str = "") -> None:
     """Raise InputError if a format cannot store a `kind` of blocks in space in the file `output`."""
     if kind not in record.space:
         able = ", ".join(other.name for other in _FORMATS if kind in other.space and other.write_grids)
-        held = ", ".join(("grids in the plane", *record.space))
-        problem = f"{record.name} files hold {held} and this grid has {kind} in space"
+        held = " and ".join(("grids in the plane", *record.space))
+        problem = f"{record.name} files hold {held}, but this grid has {kind} in space"
         raise InputError(problem, f"write one of {able}", source=output)
 
 

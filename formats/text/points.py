@@ -62,8 +62,10 @@ def parse(text: str, source: str, stem: str = "") -> list[Shape]:
             return [noted(shape, notes) for shape in shapes_of(joined(drawn), name)]
         if not rings:
             raise InputError("0 blocks of points", "give closed curves, or four edges divided by blank lines")
+        few = next((ring for ring in rings if len(ring) < 3), None)
+        if few is not None:
+            _check_words(few, lines)
         if len(rings) == 1:
-            _check_count(rings[0], lines)
             return [domain_or_body(_with_notes(_closed_curve(rings[0], name), notes))]
         names = [""] * len(rings)
         if len(rings) == len(blocks):
@@ -122,15 +124,15 @@ def _rings(rows: list[Line]) -> list[list[Line]]:
     return rings
 
 
-def _check_count(rows: list[Line], lines: list[Line]) -> None:
-    """Raise InputError if a curve has fewer than 3 points and words follow its first."""
-    beside = (each for each in lines[rows[0].number :] if each.kind not in ("blank", "row", "noted"))
-    words = next((each for each in beside if not each.text.lstrip().startswith("#")), None)
-    if len(rows) < 3 and words is not None:
-        called = f"{words.text.strip()[:40]!r} is no pair of numbers"
-        problem = f"{called}, and there are {len(rows)} points without it"
-        remedy = "correct the line; a closed curve needs at least 3"
-        raise InputError(problem, remedy, place=f"line {words.number}")
+def _check_words(rows: list[Line], lines: list[Line]) -> None:
+    """Raise InputError if words that are no heading stand before or after a curve of too few points."""
+    words = [each for each in lines[1:] if each.kind not in ("blank", "row", "noted")]
+    words = [each for each in words if not each.text.lstrip().startswith("#")]
+    if words:
+        near = min(words, key=lambda each: min(abs(each.number - row.number) for row in rows))
+        problem = f"{near.text.strip()[:40]!r} is no pair of numbers, and too few points are beside it"
+        remedy = "correct the line, or give at least 3 points of a closed curve"
+        raise InputError(problem, remedy, place=f"line {near.number}")
 
 
 def _domains(rings: list[list[Line]], names: list[str], name: str, notes: tuple[str, ...]) -> list[Shape]:

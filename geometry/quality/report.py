@@ -288,7 +288,12 @@ def with_checkmesh_notes(notes: tuple[str, ...], grid: object) -> tuple[str, ...
 
 
 def checkmesh_notes(grid: Grid, coarsened: int = 1) -> tuple[str, ...]:
-    """Return a note on limits of checkMesh that a grid, coarsened by the factor `coarsened`, exceeds."""
+    """Return a note on limits of checkMesh that a grid, coarsened by the factor `coarsened`, exceeds.
+
+    checkMesh judges no surfaces, so there are no notes on them.
+    """
+    if grid.form == "surface":
+        return ()
     judged = quality_report(grid, "openfoam").profile
     exceeded = judged.beyond() if judged else []
     if not exceeded:

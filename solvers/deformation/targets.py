@@ -108,10 +108,11 @@ def _placed(
     if isinstance(new, Motion):
         dimension = table.nodes.shape[1]
         if len(new.shift) not in (0, dimension) or len(new.turn) not in (0, dimension):
-            problem = (
-                f"the motion of {name!r} is not in the {'plane' if dimension == 2 else 'space'} of the grid"
-            )
-            raise InputError(problem, f"give {dimension} coordinates")
+            where, remedy = "plane", "give 2 coordinates"
+            if dimension == 3:
+                where, remedy = "space", "translate it by 3 coordinates, or give a grid with its new nodes"
+            problem = f"the motion of {name!r} is not in the {where} of the grid"
+            raise InputError(problem, remedy, parameter="wall")
         for piece in pieces:
             yield piece.numbers, new(table.nodes[piece.numbers])
         return

@@ -14,6 +14,7 @@ from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.blocking.request import BlockRequest
 from meshonet.solvers.pipeline.first_cells import has_walls_on_sides
+from meshonet.solvers.pipeline.methods import METHODS as TABLE
 from meshonet.solvers.pipeline.uses import MANY, SMOOTHED, refuse
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import stage
@@ -140,6 +141,9 @@ def _check_single(request: GridRequest, asks: tuple[str, ...]) -> bool:
 def _check_use(request: GridRequest, way: str = MANY) -> None:
     """Raise InputError for the first option that does not apply to multi-block grids or their smoothing."""
     if request.method not in METHODS:
-        problem = f"method {request.method} makes single blocks"
-        raise InputError(problem, "drop {method}, or ask for {blocks} single")
+        of_one = TABLE.get(request.method)
+        remedy = "drop {method}, or ask for {blocks} single"
+        if of_one is not None and of_one.algebraic:  # whose command makes no blocks
+            remedy = "let infer or solve-pde make the grid"
+        raise InputError(f"method {request.method} makes single blocks", remedy)
     refuse(request.chosen, way)

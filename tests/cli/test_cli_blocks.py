@@ -82,6 +82,7 @@ def test_smoothed_blocks_are_refined(meshonet: Meshonet, disc: Path, tmp_path: P
     ("command", "options", "message"),
     [
         ("solve-pde", ("--method", "winslow"), "method winslow makes single blocks"),
+        ("tfi", (), "method tfi makes single blocks; let infer or solve-pde make the grid"),
         ("solve-pde", ("--initial", "{disc}"), "--initial is of no use"),
         ("sample-boundary", (), "is not one block"),
         ("convert", ("--coarsen", "5"), "block 0: 9x9 nodes are 8x8 cells, which 5 does not divide"),

@@ -8,6 +8,7 @@ import pytest
 from command_line import Meshonet, Process
 
 from meshonet.formats.registry import TABLE, format_for_output, read_grids, read_shapes
+from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 
 
@@ -149,6 +150,16 @@ def test_coarsening_a_volume_that_does_not_divide_names_no_option_of_planar_grid
     done = meshonet("convert", "pipe.h5", "half.h5", "--coarsen", "2")
     assert done.code == 2
     assert "make the grid with a multiple of 2 cells along every direction of its blocks" in done.err
+
+
+def test_a_surface_is_coarsened_and_is_no_case_of_openfoam(meshonet: Meshonet) -> None:
+    x, y = np.meshgrid(np.linspace(0, 1, 5), np.linspace(0, 1, 3), indexing="ij")
+    write("sheet.cgns", [Grid((Block(np.stack([x, y, x * y], axis=-1)),))])
+    assert meshonet("convert", "sheet.cgns", "half.cgns", "--coarsen", "2").code == 0
+    assert [block.counts for block in next(read_grids("half.cgns")).blocks] == [(3, 2)]
+    done = meshonet("convert", "sheet.cgns", "case.foam")
+    assert (done.code, done.err.count("\n")) == (2, 1)
+    assert "openfoam files hold grids in the plane and volumes, but this grid has surfaces" in done.err
 
 
 def test_iblank_is_told_of(meshonet: Meshonet, grid_vts: Path) -> None:

@@ -114,6 +114,8 @@ def test_a_volume_is_coarsened_and_brought_to_unit_size(meshonet: Meshonet, duct
         "block 0: 5x5x5 nodes are 4x4x4 cells, which 3 does not divide; use a number that divides 4"
         in done.err
     )
+    done = meshonet("deform", duct_vtm, "--rotate", "wall=5@0,0", "-o", "odd.vtm")
+    assert "--rotate: the motion of 'wall' is not in the space of the grid; translate it by 3" in done.err
     done = meshonet("convert", duct_vtm, "odd.vtm", "--swap")
     assert "a volume has three directions to swap; swap grids of two directions only" in done.err
 

@@ -180,7 +180,10 @@ def test_one_block_stays_one_and_single_asks_for_it(meshonet: Meshonet) -> None:
         ("--spacing cosine", "--spacing is of no use to a domain of many blocks; drop --spacing"),
         ("--far-field 9", "a domain with a boundary of its own has no far field; leave --far-field out"),
         ("--layout missing.json", "missing.json: no such file"),
-        ("--first-cell .01", "a first cell in a domain without holes; name the walls with --walls"),
+        (
+            "--first-cell .01",
+            "in a domain without holes; name the walls with --walls (of outer)",
+        ),
     ],
 )
 def test_options_that_do_not_go_together_are_refused(meshonet: Meshonet, words: str, message: str) -> None:

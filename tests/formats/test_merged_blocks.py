@@ -233,7 +233,7 @@ def test_a_format_of_one_block_names_those_of_many(name: str, tmp_path: Path) ->
         record.write_grids(path, [space])
     else:
         message = (
-            f"{name} files hold grids in the plane and this grid has volumes in space; write one of hdf5"
+            f"{name} files hold grids in the plane, but this grid has volumes in space; write one of hdf5"
         )
         with pytest.raises(InputError, match=message):
             record.write_grids(path, [space])

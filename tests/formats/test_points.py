@@ -213,6 +213,14 @@ def test_four_edges_are_called_as_lines_above_them_say(step):
     )
 
 
-def test_words_beside_too_few_points_are_named():
-    with pytest.raises(InputError, match="line 3: 'foo' is no pair of numbers, and there are 2 points"):
-        parse("0,0\n1,0\nfoo\n", "bad.csv")
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("x,y\n0,0\n1,0\nfoo\n", "line 4: 'foo' is no pair of numbers, and too few points"),
+        ("0,0\n1,0\n1,1\nfoo\n0,1\n", "line 4: 'foo' is no pair of numbers, and too few points"),
+        ("x,y\n0,0\n1,0\n", "2 points; a closed curve needs at least 3"),
+    ],
+)
+def test_words_beside_too_few_points_are_named(text, message):
+    with pytest.raises(InputError, match=message):
+        parse(text, "bad.csv")

@@ -8,6 +8,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 
+_SHOWN = 8  # names in a message
 _LINES = ("symmetry", "other")
 """Kinds of parts that are no walls, along which layers go on; an axis is of another kind."""
 
@@ -57,7 +58,9 @@ def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int
         elif any(on):
             stretches += _stretches(loop, number, on)
     if not whole and not stretches:
-        remedy = "name the walls with {walls}, or another side inlet, outlet, symmetry or axis"
+        sides = [*dict.fromkeys(name for loop in domain.loops for name in loop.names if may_be_wall(name))]
+        known = f" (of {', '.join(sides[:_SHOWN])}{', ...' * (len(sides) > _SHOWN)})" if sides else ""
+        remedy = f"name the walls with {{walls}}{known}, or another side inlet, outlet, symmetry or axis"
         inside = [name for loop in domain.loops[1:] for name in loop.names]
         none = f"whose only holes are {', '.join(dict.fromkeys(inside))}" if inside else "without holes"
         raise InputError(f"a first cell in a domain {none}", remedy)
