@@ -56,7 +56,6 @@ def main() -> None:
     results = pages / "results"
     parts = [
         words.HEAD,
-        options.note,
         words.STANDS,
         lowest(results),
         quality_claims(results),
@@ -65,7 +64,7 @@ def main() -> None:
     parts += [words.QUALITY, *quality(results), words.RACE, race(results, pages)]
     parts += [shelf(results), words.PHYSICS, physics(results)]
     parts += [words.TIME.format(machine=options.machine), times(results), words.MAPS, maps(pages)]
-    parts += [words.SETTINGS, budgets(results)]
+    parts += [words.SETTINGS, options.note]
     text = "\n\n".join(part.strip() for part in parts if part)
     (pages / "index.md").write_text(text + "\n", encoding="utf-8")
 
@@ -83,12 +82,12 @@ def quality(results: Path) -> Iterable[str]:
             head = [
                 "split",
                 "method",
-                "relative L2, median / worst",
+                "relative L2, median / maximum",
                 "boundary error",
-                "max angle, mean / worst",
+                "largest angle, mean / maximum",
             ]
             head += ["mean angle", "folded cells (grids)"]
-            yield f"### {family}\n\n{words.PAPER[family]}\n\n{table(head, rows)}"
+            yield f"### {family}\n\n{table(head, rows)}"
 
 
 def figures(report: dict[str, Any]) -> list[str]:
@@ -105,8 +104,9 @@ def figures(report: dict[str, Any]) -> list[str]:
 
 def race(results: Path, pages: Path) -> str:
     """Return the table of losses on one budget, and draw them over the shapes seen."""
-    rows, curves, losses = [], {}, {}
+    rows, curves = [], {}
     for case in raced(results):
+        of_meshonet = 0.0
         for model in RACERS:
             runs = [read_log(path) for path in finished(results, case, model)]
             reports = [summary(path) for path in sorted(results.glob(f"{case}.{model}.race*.json"))]
@@ -115,21 +115,27 @@ def race(results: Path, pages: Path) -> str:
                 continue
             last = [run[-1]["mean_square"] for run in runs]
             curves[model] = runs
-            if model != "meshonet-hard":
-                losses[model] = mean(last)
-            seconds = mean(run[-1]["seconds"] for run in runs)
+            if model == "meshonet":
+                of_meshonet = mean(last)
+            compared = of_meshonet and model != "meshonet-hard"
+            ratio = f"{mean(last) / of_meshonet:.2g}" if compared else "-"
             spread = f"{mean(errors):.1e} ± {pstdev(errors):.0e}"
             seen = f"{runs[0][-1]['seen']:,.0f}"
             final = f"{mean(last):.1e} ± {pstdev(last):.0e}"
-            rows.append([case, model, seen, str(len(runs)), final, spread, f"{seconds:.0f}"])
+            rows.append([case, model, seen, str(len(runs)), final, ratio, spread])
     if not rows:
         return ""
     draw(curves, pages / "loss.png")
-    head = ["case", "model", "shapes seen", "seeds", "mean square error, end of training"]
-    head += ["relative L2 of test grids", "seconds"]
-    order = sorted(losses, key=losses.__getitem__)
-    ranked = f"In the order of their losses, the smallest first: {', '.join(order)}."
-    return f"{ranked}\n\n![loss](loss.png)\n\n{table(head, rows)}"
+    head = [
+        "case",
+        "network",
+        "shapes seen",
+        "seeds",
+        "loss",
+        "loss / MeshONet's loss",
+        "relative L2, median",
+    ]
+    return f"![loss](loss.png)\n\n{table(head, rows)}"
 
 
 def shelf(results: Path) -> str:
@@ -159,19 +165,18 @@ def shelf(results: Path) -> str:
         _compared(model, [own for own in values.values() if model in own and "meshonet" in own])
         for model in models
     ]
-    sentences = "\n".join(f"- {text}" for text in counts if text)
-    return f"{words.SHELF}\n{words.AGAINST}\n\n{sentences}\n\n{table(['case', 'split', *models], rows)}"
+    head = ["network", "cases with a smaller error of MeshONet", "error / MeshONet's error, range"]
+    compared = table(head, [row for row in counts if row])
+    return f"{words.SHELF}\n{compared}\n\n{table(['case', 'split', *models], rows)}"
 
 
-def _compared(model: str, cases: Sequence[dict[str, list[float]]]) -> str:
+def _compared(model: str, cases: Sequence[dict[str, list[float]]]) -> list[str]:
     """Return in how many cases MeshONet's error is below that of `model`; nothing for itself."""
     if model == "meshonet" or not cases:
-        return ""
+        return []
     ratios = [mean(own[model]) / mean(own["meshonet"]) for own in cases]
     below = sum(ratio > 1.0 for ratio in ratios)
-    times = f"{min(ratios):.2g} to {max(ratios):.2g} times"
-    smaller = f"`{model}`: MeshONet's error is smaller in {below} of {len(cases)} cases"
-    return f"{smaller}; the error of `{model}` is {times} MeshONet's."
+    return [f"`{model}`", f"{below} of {len(cases)}", f"{min(ratios):.2g} to {max(ratios):.2g}"]
 
 
 def physics(results: Path) -> str:
@@ -185,7 +190,15 @@ def physics(results: Path) -> str:
             error, away = report["relative_l2"]["median"], report["boundary"]["max"]
             folded, angle = report["folded"]["sum"], report["max_angle"]["max"]
             rows.append([learns, f"{error:.1e}", f"{away:.0e}", f"{angle:.1f}", f"{folded:.0f}", *spent])
-    head = ["learns from", "relative L2", "boundary error", "max angle", "folded cells", "steps", "seconds"]
+    head = [
+        "learns from",
+        "relative L2",
+        "boundary error",
+        "largest angle",
+        "folded cells",
+        "steps",
+        "time, s",
+    ]
     return table(head, rows) if rows else ""
 
 
@@ -220,7 +233,7 @@ def times(results: Path) -> str:
         rows.append([words.TIMED[way], *cells])
         if paper:
             rows.append([f"{paper}, the paper's", *(words.SECONDS[paper].get(n, "-") for n in sizes)])
-    return table(["method", *(f"{n}²" for n in sizes)], rows) if sizes else ""
+    return table(["method", *(f"{n}² nodes" for n in sizes)], rows) if sizes else ""
 
 
 def maps(pages: Path) -> str:
@@ -235,17 +248,6 @@ def maps(pages: Path) -> str:
         if any(cell != "-" for cell in pictures):
             rows.append([family, *pictures])
     return table(["", "TFI", "PDE", "MeshONet, boundary pasted", "MeshONet-hard"], rows) if rows else ""
-
-
-def budgets(results: Path) -> str:
-    """Return what each model was given: the last row of its log."""
-    rows = []
-    for path in sorted(results.glob("*.csv")):
-        log = read_log(path)
-        if log and ".race" not in path.name:
-            last = log[-1]
-            rows.append([path.stem, f"{last['epoch']:.0f}", f"{last['seen']:,.0f}", f"{last['seconds']:.0f}"])
-    return table(["run", "epochs", "shapes seen", "seconds (of the last process)"], rows) if rows else ""
 
 
 if __name__ == "__main__":
