@@ -1,5 +1,6 @@
 """Fixtures of all tests; the mark of those that run Debian's programs, from ``make test-clients``."""
 
+import compileall
 import contextlib
 import gc
 import os
@@ -7,10 +8,13 @@ import shutil
 import signal
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from meshonet.geometry import threads
+
+ROOT = Path(__file__).parents[1]
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -44,11 +48,22 @@ def eager_threads(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    if not hasattr(config, "workerinput"):
+        _compile()
     gc.disable()  # tests are collected in three quarters of the time without searches for cycles
     config.addinivalue_line("markers", "client(program): runs a program that is not from PyPI")
     config.addinivalue_line("markers", "solver(program): runs a program that Debian does not have either")
     config.addinivalue_line("markers", "slow: takes a second or more; make test-fast leaves it out")
     config.addinivalue_line("markers", "browser: opens pages in Chromium")
+
+
+def _compile() -> None:
+    """Compile once what hundreds of processes of tests import, where Python is told to keep nothing too.
+
+    What is compiled already is left as it is.
+    """
+    for room in ("geometry", "formats", "solvers", "kernels", "meshonet", "meshonet_cli"):
+        compileall.compile_dir(ROOT / room, quiet=2)
 
 
 @pytest.hookimpl(tryfirst=True)
