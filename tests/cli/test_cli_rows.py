@@ -21,7 +21,8 @@ def row(tmp_path: Path) -> Path:
 def test_a_row_becomes_a_file_with_its_names_and_periodic_sides(
     meshonet: Meshonet, row: Path, ending: str
 ) -> None:
-    done = meshonet("stack", str(row), *SMALL, "-o", f"row.{ending}")
+    words = ("--cells", "20000", "--first-cell", "0.01", "--growth", "1.5", "-q")  # 77,402 cells
+    done = meshonet("stack", str(row), *words, "-o", f"row.{ending}")
     assert done.code == 0, done.err
     (grid,) = read_grids(f"row.{ending}")
     named = {patch.name for patch in grid.patches}

@@ -1,5 +1,6 @@
 """Whatever bytes a reader meets, only InputError comes out, with a place or a remedy, and soon."""
 
+import functools
 import time
 import warnings
 from collections.abc import Callable
@@ -46,11 +47,13 @@ def refuse(record: Format, data: bytes) -> None:
     assert time.process_time() - start < SECONDS
 
 
+@functools.cache
 def mutations(name: str) -> st.SearchStrategy[bytes]:
     """Return a good file of format `name` cut, with bytes changed, put in, taken out or repeated."""
     return mutated(good(name))
 
 
+@functools.cache
 def mutated(data: bytes) -> st.SearchStrategy[bytes]:
     """Return `data` cut, with bytes changed, put in, taken out or repeated."""
     place = st.integers(0, len(data) - 1)

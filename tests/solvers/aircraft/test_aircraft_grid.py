@@ -192,8 +192,8 @@ def cells_of(grid: Grid) -> int:
 
 
 def test_there_are_about_as_many_cells_as_wanted() -> None:
-    request = AircraftRequest.of(cells=400_000, span=9, first_cell=1e-2, far_field=8.0)
-    assert cells_of(aircraft_grid(aircraft(), request)[0]) == pytest.approx(400_000, rel=0.1)
+    request = AircraftRequest.of(cells=200_000, span=9, first_cell=1e-2, growth=1.4, far_field=8.0)
+    assert cells_of(aircraft_grid(aircraft(), request)[0]) == pytest.approx(200_000, rel=0.1)
 
 
 def test_cells_grow_more_where_there_would_be_too_many_of_them() -> None:
