@@ -40,16 +40,17 @@ often ([losses](#loss-on-one-budget)).
 CLAIMS = """
 The paper shows the largest angle in colour maps without numbers, and states in words whether MeshONet's grids
 are better than the grids of TFI and of the PDE solver. The table compares MeshONet's largest angle, averaged
-over the test grids with pasted boundary, with the largest angles of TFI and of the PDE solver. *below*: smaller
-by more than 0.1 degrees. *above*: larger by more than 0.1 degrees. In the column *claimed*, *below* stands for
-"better", *equal* for "as good", and *above* for "slightly worse". Of the semicircle the paper says only that MeshONet's grids are not
-always better.
+over the test grids with pasted boundary, with the largest angles of TFI and of the PDE solver.
+
+- *below*: smaller by more than 0.1 degrees. *above*: larger by more than 0.1 degrees.
+- *claimed*: *below* stands for "better", *equal* for "as good", and *above* for "slightly worse". Of the
+  semicircle the paper says only that MeshONet's grids are not always better.
 """
 
 SPEED = """
-**Speed: not confirmed for a multigrid solver.** The paper claims that MeshONet is four orders of magnitude faster
-than a PDE solver, which takes 140 s for 100 x 100 nodes. Our solver `solve-pde` takes {times} times as long as
-MeshONet ([times](#mesh-refinement)).
+**Speed: not confirmed for a multigrid solver.** The paper claims that MeshONet is four orders of magnitude
+faster than a PDE solver, which takes 140 s for 100 x 100 nodes. Our solver `solve-pde` takes {times} times as long as
+MeshONet, depending on the number of nodes ([times](#mesh-refinement)).
 """
 
 QUALITY = """
@@ -77,9 +78,9 @@ SHELF = """
 ## Every model on every case
 
 All networks are trained on all cases with one budget: 300 epochs (9,000 shapes) on grids of 51 x 51 nodes, the
-same schedule and the same random points. The second table gives the relative L2 distance of the network output,
-as the median over the test grids; values are mean ± standard deviation of two random seeds. The least value of
-each row is bold.
+same schedule and the same random points. *Error* is the relative L2 distance of the network output, as the
+median over the test grids. The second table gives the errors as mean ± standard deviation of two random seeds.
+The smallest error of each row is bold.
 """
 
 PHYSICS = """
@@ -94,8 +95,8 @@ TIME = """
 ## Mesh refinement
 
 The table gives seconds from boundary nodes in memory to grid nodes in memory, for an arch that was not used in
-training. For more than 512² nodes, `solve-pde` solves on 257² nodes and interpolates. A dash means not measured.
-Our times are for one thread on {machine}; the paper's MeshONet ran on an RTX 4090.
+training. For more than 512² nodes, `solve-pde` solves on 257² nodes and interpolates. A dash means not
+measured. Our times are for one thread on {machine}; the paper's MeshONet ran on an RTX 4090.
 """
 
 MAPS = """
