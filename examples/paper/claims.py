@@ -98,7 +98,7 @@ def quality_claims(results: Path) -> str:
         f"**Quality: {verdict}.** MeshONet's largest angle is below TFI's in {below[0]} of {len(rows)} "
         f"cases, and below the PDE solver's in {below[1]}. The pasted boundary folds cells in {folded} of "
         f"{len(rows)} cases. If the network keeps its own boundary nodes, the largest angle is below TFI's "
-        f"and the PDE solver's in {raw} of {len(rows)} cases, but such grids do not end on the given boundary."
+        f"and the PDE solver's in {raw} of {len(rows)} cases, but such grids miss the given boundary."
     )
     return f"{words.CLAIMS}\n{text}\n\n{table(head, rows)}"
 
