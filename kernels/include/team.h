@@ -5,6 +5,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 
 #ifndef _WIN32
 #include <pthread.h>
@@ -24,17 +25,21 @@ typedef void (*TeamWork)(void *data, Member member);
 #ifdef _WIN32
 struct Team {
     int size;
+    double *rooms;
+    size_t each;
 };
 static inline void team_wait(Member member) { (void)member; }
-static inline void team_run(int threads, TeamWork work, void *data)
+static inline void team_start(int threads, TeamWork work, void *data, double *rooms, size_t each)
 {
-    Team team = {1};
+    Team team = {1, rooms, each};
     (void)threads;
     work(data, (Member){0, 1, &team});
 }
 #else
 struct Team {
     int size;
+    double *rooms;
+    size_t each;
     atomic_int come, round;
     TeamWork work;
     void *data;
@@ -71,11 +76,11 @@ static void *team_enter(void *entry)
 }
 
 /* Runs `work` on `threads` threads, this one among them; on fewer where no more can be started. */
-static inline void team_run(int threads, TeamWork work, void *data)
+static inline void team_start(int threads, TeamWork work, void *data, double *rooms, size_t each)
 {
     pthread_t others[TEAM_MOST];
     TeamEntry entries[TEAM_MOST];
-    Team team = {.work = work, .data = data};
+    Team team = {.work = work, .data = data, .rooms = rooms, .each = each};
     int started = 1;
     atomic_init(&team.come, 0);
     atomic_init(&team.round, -1);
@@ -92,6 +97,20 @@ static inline void team_run(int threads, TeamWork work, void *data)
         pthread_join(others[k], NULL);
 }
 #endif
+
+static inline void team_run(int threads, TeamWork work, void *data) { team_start(threads, work, data, NULL, 0); }
+
+/* As team_run, with room for `each` doubles of every thread, its team_room. Returns 0, or -1 without memory. */
+static inline int team_run_in_rooms(int threads, size_t each, TeamWork work, void *data)
+{
+    double *rooms = malloc(each * (size_t)(threads < TEAM_MOST ? threads : TEAM_MOST) * sizeof *rooms);
+    if (rooms != NULL)
+        team_start(threads, work, data, rooms, each);
+    free(rooms);
+    return rooms != NULL ? 0 : -1;
+}
+
+static inline double *team_room(Member member) { return member.team->rooms + (size_t)member.rank * member.team->each; }
 
 /* Add to a count that all threads have. */
 static inline void team_add(int64_t *total, int64_t count)

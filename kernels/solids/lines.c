@@ -1,4 +1,3 @@
-#include <stdlib.h>
 #include <string.h>
 
 #include "geometry/tally.h"
@@ -32,7 +31,6 @@ typedef struct {
     double *summary;
     int64_t *where;
     float *values; /* or none */
-    int failed;    /* by any thread */
 } Lines;
 
 /* Take `count` values from (i, j, k) on into measure `m` of a plane. */
@@ -60,15 +58,10 @@ static void take(const Lines *lines, ptrdiff_t m, const double *row, ptrdiff_t c
 
 static void of_planes(void *data, Member member)
 {
-    Lines *lines = data;
+    const Lines *lines = data;
     const SolidNodes *nodes = lines->nodes;
     const ptrdiff_t steps[3] = {nodes->nj * nodes->nk, nodes->nk, 1};
-    double *growth = malloc(2 * (size_t)nodes->nk * sizeof(double));
-    if (!growth) {
-        lines->failed = 1;
-        return;
-    }
-    double *bend = growth + nodes->nk;
+    double *growth = team_room(member), *bend = growth + nodes->nk;
     const Range mine = team_share(nodes->ni, member);
     for (ptrdiff_t i = mine.first; i < mine.last; i++)
         for (ptrdiff_t j = 0; j < nodes->nj; j++)
@@ -87,17 +80,15 @@ static void of_planes(void *data, Member member)
                 take(lines, 2 * axis, growth, count, from);
                 take(lines, 2 * axis + 1, bend, count, from);
             }
-    free(growth);
 }
 
 int solids_lines(const SolidNodes *nodes, int threads, double *summary, int64_t *where, float *values)
 {
-    Lines lines = {nodes, summary, where, values, 0};
+    Lines lines = {nodes, summary, where, values};
     for (ptrdiff_t k = 0; k < nodes->ni * 6; k++) {
         summary[2 * k] = -1;
         summary[2 * k + 1] = 0;
     }
     memset(where, 0, (size_t)nodes->ni * 18 * sizeof(int64_t));
-    team_run(threads, of_planes, &lines);
-    return !lines.failed;
+    return team_run_in_rooms(threads, 2 * (size_t)nodes->nk, of_planes, &lines) == 0;
 }

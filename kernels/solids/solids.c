@@ -1,4 +1,3 @@
-#include <stdlib.h>
 #include <string.h>
 
 #include "geometry/tally.h"
@@ -56,24 +55,20 @@ ptrdiff_t solids_chunks(const SolidNodes *nodes) { return (nodes->ni - 1) * chun
 
 /* Scratch of one thread: inverse lengths at the lines of both ends of a row in j, and its metrics. */
 typedef struct {
-    double *memory;
     SolidLengths lengths;
     double *metrics;
 } Scratch;
 
-static int scratch_made(Scratch *scratch, ptrdiff_t nk)
+static Scratch scratch_in(double *room, ptrdiff_t nk)
 {
-    double *at = scratch->memory = malloc((8 + SOLID_METRICS) * (size_t)nk * sizeof(double));
-    if (at == NULL)
-        return 0;
+    Scratch scratch = {.metrics = room + 8 * nk};
     for (int a = 0; a < 2; a++) {
-        scratch->lengths.u[a] = at + a * nk;
-        scratch->lengths.v[a] = at + (2 + a) * nk;
+        scratch.lengths.u[a] = room + a * nk;
+        scratch.lengths.v[a] = room + (2 + a) * nk;
         for (int b = 0; b < 2; b++)
-            scratch->lengths.w[a][b] = at + (4 + 2 * a + b) * nk;
+            scratch.lengths.w[a][b] = room + (4 + 2 * a + b) * nk;
     }
-    scratch->metrics = at + 8 * nk;
-    return 1;
+    return scratch;
 }
 
 /* Inverse lengths of the edges of a row at j + b that are along i and k. */
@@ -151,28 +146,16 @@ static void run_chunk(const SolidRun *run, ptrdiff_t chunk, Scratch *scratch)
     }
 }
 
-typedef struct {
-    const SolidRun *run;
-    int failed; /* by any thread */
-} Task;
-
 static void run_chunks(void *data, Member member)
 {
-    Task *task = data;
-    Scratch scratch;
-    if (!scratch_made(&scratch, task->run->nodes.nk)) {
-        task->failed = 1;
-        return;
-    }
-    const Range mine = team_share(solids_chunks(&task->run->nodes), member);
+    const SolidRun *run = data;
+    Scratch scratch = scratch_in(team_room(member), run->nodes.nk);
+    const Range mine = team_share(solids_chunks(&run->nodes), member);
     for (ptrdiff_t chunk = mine.first; chunk < mine.last; chunk++)
-        run_chunk(task->run, chunk, &scratch);
-    free(scratch.memory);
+        run_chunk(run, chunk, &scratch);
 }
 
 int solids_run(const SolidRun *run, int threads)
 {
-    Task task = {run, 0};
-    team_run(threads, run_chunks, &task);
-    return !task.failed;
+    return team_run_in_rooms(threads, (8 + SOLID_METRICS) * (size_t)run->nodes.nk, run_chunks, (void *)run) == 0;
 }

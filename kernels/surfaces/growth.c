@@ -24,14 +24,12 @@ typedef struct {
 
 typedef struct {
     const Growth *growth;
-    double *room;
-    size_t each;     /* doubles of a thread */
     ptrdiff_t *some; /* (nodes): lines to change */
 } Work;
 
 #define LANE for (int l = 0; l < WIDE; l++)
 
-static size_t rows_needed(ptrdiff_t levels) { return (size_t)(6 * levels); }
+#define ROWS 6 /* of a room, for each level */
 
 static Room room_of(double *start, ptrdiff_t levels)
 {
@@ -207,7 +205,7 @@ static void run(void *data, Member member)
 {
     const Work *work = data;
     const Growth *s = work->growth;
-    const Room room = room_of(work->room + (size_t)member.rank * work->each, s->levels);
+    const Room room = room_of(team_room(member), s->levels);
     ptrdiff_t found = 0;
     const Range mine = team_share(s->nodes, member);
     ptrdiff_t *some = work->some + mine.first;
@@ -219,14 +217,9 @@ static void run(void *data, Member member)
 
 int limit_line_growth(const Growth *growth, int threads)
 {
-    const int team = threads < TEAM_MOST ? threads : TEAM_MOST;
-    Work work = {growth, NULL, rows_needed(growth->levels) * WIDE, NULL};
-    work.room = malloc(work.each * (size_t)team * sizeof(double));
-    work.some = malloc((size_t)growth->nodes * sizeof(ptrdiff_t));
-    const int failed = work.room == NULL || work.some == NULL;
-    if (!failed)
-        team_run(threads, run, &work);
-    free(work.room);
+    Work work = {growth, malloc((size_t)growth->nodes * sizeof(ptrdiff_t))};
+    const size_t each = (size_t)(ROWS * growth->levels * WIDE);
+    const int failed = work.some == NULL ? -1 : team_run_in_rooms(threads, each, run, &work);
     free(work.some);
-    return failed ? -1 : 0;
+    return failed;
 }

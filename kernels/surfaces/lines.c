@@ -6,7 +6,6 @@
 #include "elementary.h"
 #include "team.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define WIDE 8 /* lines at a time */
@@ -22,13 +21,7 @@ typedef struct {
     Row *slope;  /* (3, levels): tangents */
 } Room;
 
-typedef struct {
-    const Lines *lines;
-    double *room;
-    size_t each; /* doubles of a thread */
-} Work;
-
-static size_t rows_needed(ptrdiff_t levels) { return (size_t)(11 * levels); }
+#define ROWS 11 /* of a room, for each level */
 
 static Room room_of(double *start, ptrdiff_t levels)
 {
@@ -152,20 +145,14 @@ static void eight_lines(const Lines *lines, const Room *room, ptrdiff_t first)
 
 static void run(void *data, Member member)
 {
-    const Work *work = data;
-    const Room room = room_of(work->room + (size_t)member.rank * work->each, work->lines->levels);
-    const Range mine = team_share((work->lines->nodes + WIDE - 1) / WIDE, member);
+    const Lines *lines = data;
+    const Room room = room_of(team_room(member), lines->levels);
+    const Range mine = team_share((lines->nodes + WIDE - 1) / WIDE, member);
     for (ptrdiff_t k = mine.first; k < mine.last; k++)
-        eight_lines(work->lines, &room, k * WIDE);
+        eight_lines(lines, &room, k * WIDE);
 }
 
 int respace_lines(const Lines *lines, int threads)
 {
-    Work work = {lines, NULL, rows_needed(lines->levels) * WIDE};
-    work.room = malloc(work.each * (size_t)(threads < TEAM_MOST ? threads : TEAM_MOST) * sizeof(double));
-    if (work.room == NULL)
-        return -1;
-    team_run(threads, run, &work);
-    free(work.room);
-    return 0;
+    return team_run_in_rooms(threads, (size_t)(ROWS * lines->levels * WIDE), run, (void *)lines);
 }

@@ -39,8 +39,7 @@ typedef struct {
 
 static void measure(const March *m, Runner *r)
 {
-    for (ptrdiff_t c = r->chunks.first; c < r->chunks.last; c++) {
-        const Range range = chunk_range(&r->solver, c);
+    EACH(&r->solver, c, r->chunks, range) {
         r->solver.sums[c] = step_sizes(&r->solver.step, range.first, range.last);
         if (m->settings->relaxing > 0.0)
             r->solver.sums[c] = nearest_reach(&r->solver.step, range.first, range.last);
@@ -72,8 +71,7 @@ static double smooth_volumes(const March *m, Runner *r, double part)
     const ptrdiff_t sweeps = part > 0.0 ? set->sweeps : 0, chunks = r->solver.chunks;
     for (ptrdiff_t k = 0; k <= sweeps; k++) {
         const double *from = k ? r->volume : r->solver.step.area;
-        for (ptrdiff_t c = r->chunks.first; c < r->chunks.last; c++) {
-            const Range range = chunk_range(&r->solver, c);
+        EACH(&r->solver, c, r->chunks, range) {
             double *values = (double *)from, *sums = r->solver.sums + chunks;
             fill_equal_ghosts(g, values, range.first, range.last);
             sums[c] = step_smooth(&r->solver.step, values, r->other, k ? set->weight : 0.0, range.first, range.last);
@@ -126,10 +124,8 @@ static void advance(Runner *r, double length)
 {
     double *sums = r->solver.sums;
     const ptrdiff_t chunks = r->solver.chunks;
-    for (ptrdiff_t c = r->chunks.first; c < r->chunks.last; c++) {
-        const Range range = chunk_range(&r->solver, c);
+    EACH(&r->solver, c, r->chunks, range)
         sums[2 * chunks + c] = advance_chunk(&r->solver.step, sums + 3 * chunks + c, range.first, range.last);
-    }
     team_wait(r->member);
     double swept = 0.0, area = 0.0;
     for (ptrdiff_t c = 0; c < chunks; c++)
@@ -154,8 +150,7 @@ static int solve_length(const March *m, Runner *r, double length, double again, 
     double *before = step->before;
     if (rule.first)
         step->before = step->along;
-    for (ptrdiff_t c = r->chunks.first; c < r->chunks.last; c++) {
-        const Range range = chunk_range(&r->solver, c);
+    EACH(&r->solver, c, r->chunks, range) {
         heights_chunk(step, r->volume, length, part, keep, mean, again, range.first, range.last);
         step_rows(step, &rule, range.first, range.last);
     }
@@ -197,12 +192,10 @@ static void keep_level(const March *m, const Runner *r, ptrdiff_t level)
 {
     const Graph *g = r->solver.step.graph;
     const ptrdiff_t n = g->nodes, rows = n + g->ghosts;
-    for (ptrdiff_t c = r->chunks.first; c < r->chunks.last; c++) {
-        const Range range = chunk_range(&r->solver, c);
+    EACH(&r->solver, c, r->chunks, range)
         for (int d = 0; d < 3; d++)
             memcpy(m->levels + (3 * level + d) * n + range.first, r->solver.step.x + d * rows + range.first,
                    (size_t)(range.last - range.first) * sizeof(double));
-    }
 }
 
 static void run(void *data, Member member)

@@ -64,17 +64,13 @@ void relax_front(Solver *solver, double *moves, const Relaxing *relaxing, Range 
 {
     const Step *step = &solver->step;
     const ptrdiff_t n = step->graph->nodes, rows = n + step->graph->ghosts;
-    for (ptrdiff_t c = chunks.first; c < chunks.last; c++) {
-        const Range range = chunk_range(solver, c);
+    EACH(solver, c, chunks, range)
         moves_chunk(step, moves, relaxing, range.first, range.last);
-    }
     team_wait(member);
-    for (ptrdiff_t c = chunks.first; c < chunks.last; c++) {
-        const Range range = chunk_range(solver, c);
+    EACH(solver, c, chunks, range)
         for (int d = 0; d < 3; d++)
             for (ptrdiff_t i = range.first; i < range.last; i++)
                 step->x[d * rows + i] += moves[d * n + i];
-    }
     team_wait(member);
 }
 

@@ -147,10 +147,6 @@ static double whole_sum(const Solver *solver, int which)
     return sum_of(solver->sums + which * solver->chunks, solver->chunks);
 }
 
-#define EACH(chunk, chunks, range)                                           \
-    for (ptrdiff_t chunk = chunks.first; chunk < chunks.last; chunk++)       \
-        for (Range range = chunk_range(solver, chunk); range.first >= 0; range.first = -1)
-
 static void put_sum(const Solver *solver, int which, ptrdiff_t chunk, double value)
 {
     solver->sums[which * solver->chunks + chunk] = value;
@@ -159,10 +155,10 @@ static void put_sum(const Solver *solver, int which, ptrdiff_t chunk, double val
 /* out = matrix of the black nodes times v, whose red part is filled. */
 static void apply(const Solver *solver, Share share, double *v, double *out, Member member)
 {
-    EACH(chunk, share.red, range)
+    EACH(solver, chunk, share.red, range)
         solve_red(&solver->step, v, 0.0, range.first, range.last);
     team_wait(member);
-    EACH(chunk, share.black, range)
+    EACH(solver, chunk, share.black, range)
         apply_rows(&solver->step, v, out, 0.0, 1.0, range.first, range.last);
 }
 
@@ -171,15 +167,14 @@ static double begin(const Solver *solver, Share share, double *residual, Member 
 {
     const Step *step = &solver->step;
     const ptrdiff_t n = step->graph->nodes, rows = n + step->graph->ghosts;
-    EACH(chunk, share.red, range) {
+    EACH(solver, chunk, share.red, range) {
         solve_red(step, step->change, 1.0, range.first, range.last);
         put_sum(solver, 0, chunk, dot_chunk(step->right, n, step->right, n, range));
-        put_sum(solver, 1, chunk, 0.0);
-        for (int which = 2; which < SUMS; which++)
+        for (int which = 1; which < SUMS; which++)
             put_sum(solver, which, chunk, 0.0);
     }
     team_wait(member);
-    EACH(chunk, share.black, range) {
+    EACH(solver, chunk, share.black, range) {
         apply_rows(step, step->change, solver->r, 1.0, -1.0, range.first, range.last);
         for (int d = 0; d < 3; d++)
             for (ptrdiff_t i = range.first; i < range.last; i++) {
@@ -207,19 +202,19 @@ int solve_step(Solver *solver, Member member)
     for (; k < solver->most && residual > enough; k++) {
         const double beta = turned / rho * alpha / omega;
         rho = turned;
-        EACH(chunk, share.black, range)
+        EACH(solver, chunk, share.black, range)
             turn_chunk(solver, beta, omega, range);
         team_wait(member);
         apply(solver, share, solver->p, solver->v, member);
-        EACH(chunk, share.black, range)
+        EACH(solver, chunk, share.black, range)
             put_sum(solver, 2, chunk, dot_chunk(solver->r0, n, solver->v, n, range));
         team_wait(member);
         alpha = rho / whole_sum(solver, 2);
-        EACH(chunk, share.black, range)
+        EACH(solver, chunk, share.black, range)
             put_sum(solver, 3, chunk, halve_chunk(solver, alpha, range));
         team_wait(member);
         apply(solver, share, solver->s, solver->t, member);
-        EACH(chunk, share.black, range) {
+        EACH(solver, chunk, share.black, range) {
             const ptrdiff_t rows = n + solver->step.graph->ghosts;
             put_sum(solver, 4, chunk, dot_chunk(solver->t, n, solver->s, rows, range));
             put_sum(solver, 5, chunk, dot_chunk(solver->t, n, solver->t, n, range));
@@ -227,19 +222,19 @@ int solve_step(Solver *solver, Member member)
         team_wait(member);
         const double square = whole_sum(solver, 5);
         omega = square > 0.0 ? whole_sum(solver, 4) / square : 0.0;
-        EACH(chunk, share.black, range) {
+        EACH(solver, chunk, share.black, range) {
             double other;
             put_sum(solver, 0, chunk, advance_chunk(solver, alpha, omega, range, &other));
             put_sum(solver, 1, chunk, other);
         }
-        EACH(chunk, share.red, range)
+        EACH(solver, chunk, share.red, range)
             put_sum(solver, 0, chunk, 0.0);
         team_wait(member);
         residual = whole_sum(solver, 0), turned = whole_sum(solver, 1);
         if (!(residual < INFINITY) || omega == 0.0)
             break;
     }
-    EACH(chunk, share.red, range)
+    EACH(solver, chunk, share.red, range)
         solve_red(&solver->step, solver->step.change, 1.0, range.first, range.last);
     team_wait(member);
     return residual <= 1e-2 * enough / (solver->tolerance * solver->tolerance) ? k : -1 - k;

@@ -24,5 +24,10 @@ static inline Range chunk_range(const Solver *solver, ptrdiff_t chunk)
     return (Range){first, first + CHUNK < end ? first + CHUNK : end};
 }
 
+/* For each of the Range `chunks`: its `range` of nodes. */
+#define EACH(solver, chunk, chunks, range)                                     \
+    for (ptrdiff_t chunk = (chunks).first; chunk < (chunks).last; chunk++)     \
+        for (Range range = chunk_range(solver, chunk); range.first >= 0; range.first = -1)
+
 /* Solve for step.change from what it holds. Returns the iterations, negative where they diverged. */
 int solve_step(Solver *solver, Member member);

@@ -11,17 +11,9 @@ typedef struct {
     ptrdiff_t *first, *point; /* those of bucket b: point[first[b]] to point[first[b + 1] - 1] */
 } Buckets;
 
-static ptrdiff_t column(const Buckets *b, double x)
-{
-    const double k = (x - b->left) / b->width;
-    return k <= 0 ? 0 : k >= (double)b->across ? b->across - 1 : (ptrdiff_t)k;
-}
-
-static ptrdiff_t row(const Buckets *b, double y)
-{
-    const double k = (y - b->bottom) / b->width;
-    return k <= 0 ? 0 : k >= (double)b->up ? b->up - 1 : (ptrdiff_t)k;
-}
+static ptrdiff_t within(double k, ptrdiff_t count) { return k <= 0 ? 0 : k >= (double)count ? count - 1 : (ptrdiff_t)k; }
+static ptrdiff_t column(const Buckets *b, double x) { return within((x - b->left) / b->width, b->across); }
+static ptrdiff_t row(const Buckets *b, double y) { return within((y - b->bottom) / b->width, b->up); }
 
 static int fill(Buckets *b, const double *p, ptrdiff_t n)
 {

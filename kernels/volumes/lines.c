@@ -3,10 +3,9 @@
 #include "clones.h"
 #include "team.h"
 #include <math.h>
-#include <stdlib.h>
 
 typedef struct {
-    double *nodes, *rooms;
+    double *nodes;
     ptrdiff_t before, n, after;
     const double *low, *high;
     double reach;
@@ -86,7 +85,7 @@ static void lines_share(void *data, Member member)
 {
     const Lines *l = data;
     const ptrdiff_t plane = l->before * l->n * l->after;
-    double *room = l->rooms + member.rank * ROWS * l->n;
+    double *room = team_room(member);
     const Range mine = team_share(l->before, member);
     for (ptrdiff_t b = mine.first; b < mine.last; b++)
         for (ptrdiff_t a = 0; a < l->after; a++) {
@@ -99,11 +98,6 @@ static void lines_share(void *data, Member member)
 int volume_lines(double *nodes, ptrdiff_t before, ptrdiff_t n, ptrdiff_t after, const double *low, const double *high,
                   double reach, int threads)
 {
-    Lines l = {nodes, NULL, before, n, after, low, high, reach};
-    l.rooms = malloc((size_t)threads * ROWS * (size_t)n * sizeof *l.rooms);
-    if (!l.rooms)
-        return -1;
-    team_run(threads, lines_share, &l);
-    free(l.rooms);
-    return 0;
+    Lines l = {nodes, before, n, after, low, high, reach};
+    return team_run_in_rooms(threads, ROWS * (size_t)n, lines_share, &l);
 }
