@@ -139,12 +139,12 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "step", ".step .stp", "STEP file; faces become patches of a surface (needs the extra cad)", "",
-        read_shapes=partial(later, "meshonet.formats.cad.read:read_step"),
+        read_shapes=partial(later, "meshonet.formats.cad.read:read_models", kind="STEP"),
         sniff=partial(begins, rb"\s*ISO-10303-21"),
     ),
     _format(
         "brep", ".brep .brp", "B-rep file of Open Cascade, treated as STEP", "",
-        read_shapes=partial(later, "meshonet.formats.cad.read:read_brep"),
+        read_shapes=partial(later, "meshonet.formats.cad.read:read_models", kind="B-rep"),
         sniff=partial(begins, rb"\s*(DBRep_DrawableShape|CASCADE Topology)"),
     ),
     _format(

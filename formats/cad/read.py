@@ -3,7 +3,7 @@
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,17 +22,11 @@ SECONDS, _BYTES_PER_SECOND = 60.0, 1e5
 _SEWN = 1e-6  # largest distance at which edges of separate faces are joined, relative to the model's extent
 
 
-def read_step(source: Source) -> Iterator[CadModel]:
-    """Yield the model of a STEP file. Raises InputError: no Open Cascade; not a STEP file; no faces."""
-    yield _model(source, _step_shape, "STEP")
+def read_models(source: Source, *, kind: str) -> Iterator[CadModel]:
+    """Yield the model of a file of a `kind`, ``STEP`` or ``B-rep``, the format of Open Cascade.
 
-
-def read_brep(source: Source) -> Iterator[CadModel]:
-    """Yield the model of all faces of a B-rep file of Open Cascade. Raises InputError: see `read_step`."""
-    yield _model(source, _brep_shape, "B-rep")
-
-
-def _model(source: Source, read: Callable[[str], tuple[Any, ...]], kind: str) -> CadModel:
+    Raises InputError: no Open Cascade; not a file of this kind; no faces.
+    """
     try:
         from OCP.Message import Message
     except ImportError:
@@ -48,13 +42,13 @@ def _model(source: Source, read: Callable[[str], tuple[Any, ...]], kind: str) ->
         path.write_bytes(data)
         notes: list[str] = []
         try:
-            shape, *notes = read(str(path)) if _is_readable(path, kind) else (None,)
+            shape, *notes = _READERS[kind](str(path)) if _is_readable(path, kind) else (None,)
         except Exception:  # whatever a damaged file makes of it
             shape = None
     if shape is None or shape.IsNull():
         raise InputError(f"is no {kind} file that can be read", f"export it again as {kind}")
     shape, *sewn = _sewn(shape)
-    return model_of(shape, source.stem, (*notes, *sewn))
+    yield model_of(shape, source.stem, (*notes, *sewn))
 
 
 def _is_readable(path: Path, kind: str) -> bool:
@@ -124,6 +118,8 @@ def _sewn(shape: Any) -> tuple[Any, ...]:
     return joined, f"{free - left} edges of separate faces were joined; {left} edges are open"
 
 
+_READERS = {"STEP": _step_shape, "B-rep": _brep_shape}
+
 if __name__ == "__main__":
     _, kind_of_file, file = sys.argv
-    sys.exit({"STEP": _step_shape, "B-rep": _brep_shape}[kind_of_file](file)[0] is None)
+    sys.exit(_READERS[kind_of_file](file)[0] is None)
