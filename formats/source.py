@@ -140,6 +140,11 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
+def reason_of(error: Exception) -> str:
+    """Return the first line of an error's message, or else its type, safe for terminals."""
+    return printable(str(error).split("\n")[0])[:100] or type(error).__name__
+
+
 def _selected(text: str) -> tuple[str, str, slice | None]:
     name, mark, words = text.rpartition("#")
     match = _SELECTION.fullmatch(words)

@@ -11,7 +11,7 @@ import numpy as np
 from meshonet.formats.gmsh.sections import Elements, NumberedNodes, elements, nodes, physical_tags
 from meshonet.formats.mesh.surface import MeshBoundary, flat, shapes_of
 from meshonet.formats.mesh.unstructured import Indices
-from meshonet.formats.source import Source, printable
+from meshonet.formats.source import Source, printable, reason_of
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 
@@ -38,7 +38,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         numbered = nodes(_section(data, b"Nodes"), version, binary, order)
         cells = elements(_section(data, b"Elements"), version, binary, order, tags)
     except (ValueError, OverflowError, IndexError) as error:
-        raise InputError(f"cannot be read ({printable(str(error))[:80]})", _AGAIN) from None
+        raise InputError(f"cannot be read ({reason_of(error)})", _AGAIN) from None
     yield from shapes_of(_surface(numbered, cells, names), source.stem)
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from meshonet.formats.mesh.metadata_read import connections_from
 from meshonet.formats.mesh.recover_topology import known_topology
-from meshonet.formats.source import Source, printable
+from meshonet.formats.source import Source, printable, reason_of
 from meshonet.geometry.arrays import SIDES, Floats, Topology
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.errors import InputError
@@ -220,7 +220,7 @@ def opened(source: Source, *, texts: bool = True) -> Iterator[h5py.File]:
             target = source.path or stack.enter_context(source.open())
             file = stack.enter_context(h5py.File(target, "r", locking="best-effort"))
         except _DAMAGE as error:
-            problem = f"is not readable as HDF5 ({_short(error)})"
+            problem = f"is not readable as HDF5 ({reason_of(error)})"
             raise InputError(problem, "check that the file is whole") from error
         try:
             yield file
@@ -231,7 +231,7 @@ def opened(source: Source, *, texts: bool = True) -> Iterator[h5py.File]:
 
 
 def _damaged(error: Exception, place: str = "") -> InputError:
-    return InputError(f"HDF5 data is damaged ({_short(error)})", "write the file again", place=place)
+    return InputError(f"HDF5 data is damaged ({reason_of(error)})", "write the file again", place=place)
 
 
 def _attribute(file: h5py.File, name: str) -> str:
@@ -240,10 +240,6 @@ def _attribute(file: h5py.File, name: str) -> str:
 
 def _text(value: object) -> str:
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
-
-
-def _short(error: Exception) -> str:
-    return printable(str(error).splitlines()[0] if str(error) else type(error).__name__)[:120]
 
 
 def check_heaps(source: Source) -> None:

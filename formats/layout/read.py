@@ -9,7 +9,7 @@ import numpy as np
 
 from meshonet.formats.layout.values import Values
 from meshonet.formats.layout.write import NAME, VERSION
-from meshonet.formats.source import Source, open_source, printable
+from meshonet.formats.source import Source, open_source, printable, reason_of
 from meshonet.geometry.arrays import Floats, Indices
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.curve import Curve
@@ -33,7 +33,7 @@ def read_layout(source: Source) -> Layout:
     try:
         data = json.loads(source.bytes_below(MOST_BYTES, "a layout").decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
-        raise InputError(f"is not JSON ({printable(str(error))[:100]})", "write the layout again") from None
+        raise InputError(f"is not JSON ({reason_of(error)})", "write the layout again") from None
     if not isinstance(data, dict) or data.get("format") != NAME:
         raise InputError("is no layout", "write one: meshonet layout DOMAIN -o LAYOUT.json")
     if data.get("version") != VERSION:

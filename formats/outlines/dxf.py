@@ -12,7 +12,7 @@ import numpy as np
 
 from meshonet.formats.mesh.surface import MOST_EDGES
 from meshonet.formats.outlines.joined import MOST_BYTES, SAG, extent_checked, shapes_of_drawing
-from meshonet.formats.source import Source, printable
+from meshonet.formats.source import Source, printable, reason_of
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
@@ -49,8 +49,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
     except InputError:
         raise
     except Exception as error:  # whatever a damaged drawing makes of it
-        reason = printable(str(error).split("\n")[0])[:100] or type(error).__name__
-        problem = f"is no DXF drawing that can be read ({reason})"
+        problem = f"is no DXF drawing that can be read ({reason_of(error)})"
         raise InputError(problem, "save it again as ASCII DXF") from error
     if len(entities) > MOST_EDGES:
         raise InputError(f"has more than {MOST_EDGES} entities", "simplify the drawing")

@@ -16,7 +16,7 @@ import numpy as np
 
 from meshonet.formats.mesh.surface import MOST_EDGES
 from meshonet.formats.outlines.joined import MOST_BYTES, SAG, extent_checked, shapes_of_drawing
-from meshonet.formats.source import Source, printable
+from meshonet.formats.source import Source, printable, reason_of
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import cos, product, sin
 from meshonet.geometry.errors import InputError
@@ -141,10 +141,8 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         root = fromstring(data)  # noqa: S314  (no entities)
         drawn = list(_drawn(root, (np.diag([1.0, -1.0]), np.zeros(2)), "", 0))
     except (ParseError, ValueError, LookupError, ArithmeticError) as error:
-        reason = printable(str(error).split("\n")[0])[:80] or type(error).__name__
-        raise InputError(
-            f"is no SVG drawing that can be read ({reason})", "save it again as plain SVG"
-        ) from None
+        problem = f"is no SVG drawing that can be read ({reason_of(error)})"
+        raise InputError(problem, "save it again as plain SVG") from None
     if not drawn:
         raise InputError("has no curves", "draw lines, paths or shapes, not pictures and text")
     extent = extent_checked(

@@ -14,7 +14,7 @@ import numpy as np
 
 from meshonet.formats.mesh.surface import shapes_of
 from meshonet.formats.outlines.joined import joined
-from meshonet.formats.source import LARGEST, Source, printable
+from meshonet.formats.source import LARGEST, Source, printable, reason_of
 from meshonet.geometry.arrays import Floats, ends_meet
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.edges import DrawnEdge, channel, four_edges
@@ -59,7 +59,7 @@ def read_geojson(source: Source) -> Iterator[Shape]:
     try:
         features = _features(json.loads(_text(source)))
     except (ValueError, RecursionError) as error:
-        raise InputError(f"is not JSON ({_short(error)})", "give a GeoJSON file") from None
+        raise InputError(f"is not JSON ({reason_of(error)})", "give a GeoJSON file") from None
     drawn: list[_Geometry] = []
     for number, (properties, geometry) in enumerate(features, start=1):
         place = f"feature {number}" if len(features) > 1 else ""
@@ -78,7 +78,7 @@ def read_geojson(source: Source) -> Iterator[Shape]:
             TypeError,
             ValueError,
         ) as error:
-            raise InputError(f"is not a GeoJSON geometry ({_short(error)})", _ASK, place=place) from None
+            raise InputError(f"is not a GeoJSON geometry ({reason_of(error)})", _ASK, place=place) from None
     yield from _named(drawn, source.stem)
 
 
@@ -103,7 +103,7 @@ def _geometries(text: str) -> list[tuple[str, BaseGeometry, str]]:
                 name = ""
             except ShapelyError as error:
                 remedy = _ASK if "(" in line else f"{_ASK}; a name is a line '# {printable(line)[:40]}'"
-                raise InputError(f"is not WKT ({_short(error)})", remedy, place=f"line {number}") from None
+                raise InputError(f"is not WKT ({reason_of(error)})", remedy, place=f"line {number}") from None
     return geometries
 
 
@@ -246,7 +246,3 @@ def _text(source: Source) -> str:
         return source.text_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError("is not UTF-8 text", "save it as UTF-8", place=f"byte {error.start}") from None
-
-
-def _short(error: Exception) -> str:
-    return printable(str(error).split("\n")[0])[:100] or type(error).__name__
