@@ -12,19 +12,6 @@ def rows() -> list[dict[str, str]]:
     return [dict(zip(_HEAD, _row(record), strict=True)) for record in TABLE.values()]
 
 
-def plain() -> str:
-    """Return the table in columns, for a terminal; long lists of endings are cut short."""
-
-    def short(words: str, most: int = 40) -> str:
-        return words if len(words) <= most else words[: words.rindex(" ", 0, most - 4)] + " ..."
-
-    lines = [_HEAD, *(tuple(map(short, _row(record)[:2])) + _row(record)[2:] for record in TABLE.values())]
-    widths = [max(len(line[k]) for line in lines) for k in range(len(_HEAD))]
-    return "\n".join(
-        "  ".join(f"{word:<{n}}" for word, n in zip(line, widths, strict=True)).rstrip() for line in lines
-    )
-
-
 def _row(record: Format) -> tuple[str, ...]:
     return (
         record.name,

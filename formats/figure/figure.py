@@ -27,6 +27,7 @@ from meshonet.formats.figure.layers import (
     in_view,
     limits_of,
     outline,
+    padded,
     paint,
     rule,
 )
@@ -99,9 +100,7 @@ def _visible(grid: Grid, singles: list[Grid], view: Box) -> list[CellsInView | N
 
 def _views(grid: Grid) -> list[Box]:
     """Return the boxes to show: the surroundings of a small body, if any, and the whole grid."""
-    whole = _whole(grid)
-    pad = 0.02 * max(whole[1] - whole[0], whole[3] - whole[2])
-    whole = (whole[0] - pad, whole[1] + pad, whole[2] - pad, whole[3] + pad)
+    whole = padded(np.array(grid.box), 0.02)
     if grid.topology == "blocks":
         wall = np.concatenate([np.empty((0, 2)), *map(grid.at, grid.walls())])
     else:
@@ -114,11 +113,6 @@ def _views(grid: Grid) -> list[Box]:
         return [whole]
     wide, tall = 0.68 * size, 0.51 * size
     return [(x - wide, x + wide, y - tall, y + tall), whole]
-
-
-def _whole(grid: Grid) -> Box:
-    (left, bottom), (right, top) = (corner.tolist() for corner in grid.box)
-    return left, right, bottom, top
 
 
 def _shown(colouring: Colouring | None, parts: list[CellsInView | None]) -> list[NDArray[Any]]:

@@ -77,6 +77,13 @@ def limits_of(colouring: Colouring | None, shown: Sequence[NDArray[Any]]) -> tup
     return float(low), float(high)
 
 
+def padded(points: Floats, part: float) -> Box:
+    """Return the box of points (n, 2), larger on every side by a part of its longer extent."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    pad = part * float((high - low).max())
+    return float(low[0] - pad), float(high[0] + pad), float(low[1] - pad), float(high[1] + pad)
+
+
 class CellsInView(NamedTuple):
     """Index ranges around the cells in view, and the mask (i1-i0, j1-j0) of these cells."""
 

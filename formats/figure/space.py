@@ -13,7 +13,7 @@ import numpy as np
 
 from meshonet.formats.figure.blocks import shown_counts
 from meshonet.formats.figure.figure import colour_bar, draw, frame, note, step_words
-from meshonet.formats.figure.layers import INK, Box, Colouring, limits_of
+from meshonet.formats.figure.layers import INK, Box, Colouring, limits_of, padded
 from meshonet.formats.figure.painting import faint_ink, paint, painted, steps_of
 from meshonet.formats.figure.row_sections import RowSections
 from meshonet.formats.figure.slices import CellSheet, Cut, cut, layers
@@ -99,9 +99,7 @@ def _seen(grid: Grid, sheets: Sequence[CellSheet], colouring: Colouring | None, 
     if not len(points):
         every = np.concatenate([sheet.nodes.reshape(-1, 3) for sheet in sheets])
         raise nothing_in(view.zoom or (), every.min(axis=0), every.max(axis=0))
-    low, high = points.min(axis=0), points.max(axis=0)
-    pad = 0.03 * float((high - low).max())
-    box = float(low[0] - pad), float(high[0] + pad), float(low[1] - pad), float(high[1] + pad)
+    box = padded(points, 0.03)
     figure, (ax,), bar = frame([box], colouring is not None)
     pixels = ax.get_window_extent().width / (box[1] - box[0])
     steps = [steps_of(sheet, axes, pixels, view.every) for sheet in sheets]
@@ -155,7 +153,7 @@ def _sections_figure(
     labels: Sequence[str],
 ) -> Figure:  # fmt: skip
     """Return a picture of the polygons of sections beside each other."""
-    boxes = [zoom or _box_around(each.polygons) for each in cuts]
+    boxes = [zoom or padded(each.polygons.reshape(-1, 2), 0.02) for each in cuts]
     figure, axes, bar = frame(boxes, colouring is not None)
     limits = limits_of(colouring, [each.values for each in cuts if each.values is not None])
     for ax, box, each, label in zip(axes, boxes, cuts, labels, strict=True):
@@ -165,13 +163,6 @@ def _sections_figure(
         note(ax, f"{label}   {names[0]}, {names[1]}" if label and ax is axes[0] else label or directions)
     _finish(axes[0], bar, grid, colouring, limits)
     return figure
-
-
-def _box_around(points: Floats) -> Box:
-    """Return a box a little larger than polygons (n, m, 2)."""
-    low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
-    pad = 0.02 * float((high - low).max())
-    return float(low[0] - pad), float(high[0] + pad), float(low[1] - pad), float(high[1] + pad)
 
 
 def _draw_polygons(

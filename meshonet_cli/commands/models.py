@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from meshonet_cli import options as o
+from meshonet_cli.terminal.text import aligned
 
 EXAMPLES = ("meshonet models", "meshonet models quad-general", "meshonet models --json")
 
@@ -41,10 +42,8 @@ def models_table(models: list[dict[str, Any]]) -> str:
     """Return one line per model: its use, time and error."""
     rows = [["model", "for", "takes", "median error"]]
     rows += [[model["name"], model["use"], model["speed"], model["error"]] for model in models]
-    widths = [max(len(row[k]) for row in rows) for k in range(4)]
-    lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
     more = "meshonet models NAME tells all of one; meshonet infer --model NAME makes grids by it"
-    return "\n".join([*(line.rstrip() for line in lines), "", more])
+    return f"{aligned(rows, left=4)}\n\n{more}"
 
 
 def model_text(facts: Mapping[str, Any]) -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from textwrap import shorten
 
 from meshonet.formats.convert import Conversion, plot3d_variant, unused_iblank
 from meshonet.geometry.blocks.boundary import Boundary
@@ -13,6 +14,7 @@ from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import Batch, BatchTask, each
 from meshonet_cli.report.delivered import Delivered, delivered, part_names
 from meshonet_cli.terminal.session import Session
+from meshonet_cli.terminal.text import aligned
 
 
 def convert_files(batch: Batch, conversion: Conversion, plot3d: str | None = None) -> int:
@@ -45,12 +47,16 @@ def _converted(
 
 
 def print_formats(session: Session) -> int:
-    """Print the properties of all formats, with JSON one object each, and return the exit code."""
-    from meshonet.formats.catalogue import plain, rows
+    """Print the properties of all formats, with JSON one object each, and return the exit code.
+
+    In the table, long lists of endings are cut short.
+    """
+    from meshonet.formats.catalogue import rows
 
     if session.as_json:
         for row in rows():
             session.result(row)
     else:
-        session.print(plain())
+        short = [row | {"endings": shorten(row["endings"], 40, placeholder=" ...")} for row in rows()]
+        session.print(aligned([list(short[0]), *(list(row.values()) for row in short)], left=len(short[0])))
     return session.finish()

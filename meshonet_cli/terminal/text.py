@@ -1,17 +1,18 @@
 """Numbers and tables as text."""
 
+from collections.abc import Sequence
+
 from meshonet.formats.source import printable
 
 _BAR_LENGTH = 24  # number of characters of a progress bar
 
 
-def aligned(rows: list[list[str]]) -> str:
-    """Return `rows` as lines with aligned columns, the first to the left and the others to the right."""
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+def aligned(rows: Sequence[Sequence[str]], left: int = 1) -> str:
+    """Return `rows` as lines with aligned columns, the first `left` to the left, the others to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = []
-    for first, *others in rows:
-        cells = [first.ljust(widths[0])]
-        cells += [text.rjust(width) for text, width in zip(others, widths[1:], strict=True)]
+    for row in rows:
+        cells = [*map(str.ljust, row[:left], widths), *map(str.rjust, row[left:], widths[left:])]
         lines.append("  ".join(cells).rstrip())
     return "\n".join(lines)
 
