@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Floats
 from meshonet.kernels import _native
 
 
@@ -98,7 +98,8 @@ def product(a: Any, b: Any) -> Any:
     """
     left, right = np.asarray(a), np.asarray(b)
     if left.dtype.kind == "c" or right.dtype.kind == "c":
-        return _complex_product(left, right)
+        real = product(left.real, right.real) - product(left.imag, right.imag)
+        return real + 1j * (product(left.real, right.imag) + product(left.imag, right.real))
     left, right = _doubles(left), _doubles(right)
     inner = left.shape[-1]
     if inner != right.shape[-2:][0]:
@@ -124,11 +125,6 @@ def _stacked_product(left: Floats, right: Floats) -> Floats:
     for k in range(right.shape[-2]):
         out += rows[..., :, k, None] * right[..., None, k, :]
     return out if left.ndim > 1 else out[..., 0, :]
-
-
-def _complex_product(a: Complexes, b: Complexes) -> Any:
-    real = product(a.real, b.real) - product(a.imag, b.imag)
-    return real + 1j * (product(a.real, b.imag) + product(a.imag, b.real))
 
 
 def _function_of_two(kernel: Any, x: Any, y: Any) -> Any:

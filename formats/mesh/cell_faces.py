@@ -41,13 +41,9 @@ def faces_of(side_numbers: Indices, side: Side) -> Indices:
         rows = np.stack([side_numbers[:-1], side_numbers[1:]], axis=-1)
         return rows[:, ::-1] if side in ("north", "west") else rows
     faces = _flat(ring_of(side_numbers))
-    return faces if points_out(side) else faces[:, [0, 3, 2, 1]]
-
-
-def points_out(side: Side) -> bool:
-    """Return whether the cross product of the two directions of a side points out of a volume."""
     axis, end = PLACES[side]
-    return (axis == 1) == (end == 0)
+    points_out = (axis == 1) == (end == 0)  # the cross product of the side's directions
+    return faces if points_out else faces[:, [0, 3, 2, 1]]
 
 
 def _flat(corners: Sequence[Indices] | Indices) -> Indices:

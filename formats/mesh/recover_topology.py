@@ -42,7 +42,8 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
     and the last row; then i and j are exchanged. The smaller closed side becomes south. In a C grid the last
     nodes of a side are its first nodes in reverse; this side becomes south.
     """
-    nodes = right_handed(usable(nodes))
+    nodes = usable(nodes)
+    nodes = nodes[::-1] if is_left_handed(nodes) else nodes
     if not _closed(nodes) and _closed(_quarter_turn(nodes)):
         nodes = _quarter_turn(nodes)
     if _closed(nodes):
@@ -73,11 +74,6 @@ def usable(nodes: Floats) -> Floats:
         problem = f"node {node} has {'xyz'[place[-1]]} = {nodes[place]:.6g}"
         raise InputError(problem, "check the file for wrong numbers")
     return nodes
-
-
-def right_handed(nodes: Floats) -> Floats:
-    """Return `nodes` (ni, nj, 2), with i reversed if their signed area is negative."""
-    return nodes[::-1] if is_left_handed(nodes) else nodes
 
 
 def is_left_handed(nodes: Floats) -> bool:

@@ -132,13 +132,9 @@ class LoftedBody(Body):
         return LimitedSpline(np.array([section.middle for section in self.sections]), self._at_sections[:, 0])
 
     @cached_property
-    def _shapes_at(self) -> LimitedSpline:
-        return LimitedSpline(np.array([section.shape for section in self.sections]), self.arcs)
-
-    @cached_property
     def _shapes(self) -> Floats:
         """Shapes (n, ANGLES, 2) of the sections, and their derivatives by s."""
-        spline = self._shapes_at
+        spline = LimitedSpline(np.array([section.shape for section in self.sections]), self.arcs)
         return np.ascontiguousarray(np.stack([spline.values, spline.slopes], axis=-1))
 
     def sizes(self, s: Floats) -> tuple[Floats, Floats, Floats]:

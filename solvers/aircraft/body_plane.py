@@ -88,7 +88,7 @@ def planned(
     ]
     between = tuple(
         _cells_between(
-            space, [level[k].sides[1] for level in known], [level[k + 1].sides[0] for level in known]
+            space.points, [level[k].sides[1] for level in known], [level[k + 1].sides[0] for level in known]
         )
         for k in range(len(columns) - 1)
     )
@@ -101,12 +101,12 @@ def planned(
     return LevelPlan(columns, between, ends)
 
 
-def _cells_between(space: BodyMap, sides: Sequence[Side], others: Sequence[Side]) -> int:
-    """Return the number of cells between two columns, from their lines on some levels."""
+def _cells_between(points: Points, sides: Sequence[Side], others: Sequence[Side]) -> int:
+    """Return the number of cells of lines between two sides, from these on some levels."""
     (begin, first), (end, last) = (
         tuple(np.concatenate(each) for each in zip(*some, strict=True)) for some in (sides, others)
     )
-    return smooth_cells(*ways_between(space.points, begin, end, (first, last)), WIDEST, FEWEST)
+    return smooth_cells(*ways_between(points, begin, end, (first, last)), WIDEST, FEWEST)
 
 
 def _points_from_tail(space: BodyMap) -> Points:
@@ -198,17 +198,13 @@ class BodyEnd:
         )
         core = core_of(polar, 2, max(count // 2, 3), even=True)
         end = cls(theta, core, float(s[core.at]), float(s[core.at + 1] - s[core.at]), 0)
-        lines = [end._lines(*side) for side in sides]
-        begin, side, first, cells = (np.concatenate(each) for each in zip(*lines, strict=True))
-        return replace(
-            end, cells=smooth_cells(*ways_between(points, begin, side, (first, cells)), WIDEST, FEWEST)
-        )
+        return replace(end, cells=_cells_between(points, [end._begin(side) for side, _ in sides], sides))
 
-    def _lines(self, side: Floats, last: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return begin and end (n, 3) of lines to a `side` (n, 3), and their end cells (n,) in s."""
+    def _begin(self, side: Floats) -> Side:
+        """Return the begin (n, 3) of lines to a `side` (n, 3), and their first cells (n,) in s."""
         zeta = 0.5 * float(side[0, 2] + side[-1, 2])
         begin = np.stack([np.full(len(side), self.at), self.theta, np.full(len(side), zeta)], axis=1)
-        return begin, side, np.full(len(side), self.step), last
+        return begin, np.full(len(side), self.step)
 
     def patches(self, points: Points, side: Floats, last: Floats) -> tuple[Floats, Floats]:
         """Return two patches (., ., 3) up to the `side` (n, 3) of a column: rows, and a core at the pole.
@@ -216,8 +212,8 @@ class BodyEnd:
         `last` (n,) are the lengths in s of the cells at the side. Nodes are s, theta, zeta (`BodyMap`), with
         s from the pole; `points` maps nodes to space.
         """
-        begin, end, *sizes = self._lines(side, last)
-        lines = lines_between(points, begin, end, (sizes[0], sizes[1]), self.cells)
+        begin, first = self._begin(side)
+        lines = lines_between(points, begin, side, (first, last), self.cells)
         zeta = float(begin[0, 2])
         rows = _polar(self.core.rows[:-1, :, :2], zeta).swapaxes(0, 1)
         rows[0, :, 1], rows[-1, :, 1] = 0.0, np.pi

@@ -76,9 +76,9 @@ def grid_of(
     )
     notes = (*domain.notes, *(note for note in said if note))
     growth = math.inf if height is None else request.growth or GROWTH
-    return Solution(
-        grid, METHOD, seconds=_stages(timings, perf_counter() - begun), notes=notes, growth=growth
-    )
+    layout = sum(part for name, part in timings.items() if name not in ("refine", "optimum", "layers"))
+    seconds = {"layout": layout, "grid": max(perf_counter() - begun - layout, 0.0)}
+    return Solution(grid, METHOD, seconds=seconds, notes=notes, growth=growth)
 
 
 def _at_walls(grid: Grid, domain: Domain, walls: tuple[str, ...], height: AtWalls | None) -> list[str]:
@@ -249,8 +249,3 @@ def _folded_coarser(grid: Grid, halvings: int) -> list[str]:
         if folded:
             notes.append(f"every {times}th node makes a grid of which {folded} cells are folded")
     return notes
-
-
-def _stages(timings: Timings, spent: float) -> dict[str, float]:
-    layout = sum(part for name, part in timings.items() if name not in ("refine", "optimum", "layers"))
-    return {"layout": layout, "grid": max(spent - layout, 0.0)}
