@@ -1,9 +1,8 @@
 """A wing given as a surface: strips of nodes from its root on a body to its tip."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
@@ -55,7 +54,7 @@ class SurfaceWing:
                 raise InputError(problem, "give lines along which the distance from the body rises")
 
     @classmethod
-    def ending(cls, strips: tuple[Floats, ...], name: str = "wing") -> SurfaceWing:
+    def ending(cls, strips: tuple[Floats, ...], name: str = "wing") -> Self:
         """Return the wing of `strips` up to the last station, or to where a closing tip begins to be thin."""
         strips = tuple(map(_rising, strips))
         end = min(float(strip[-1, :, 2].min()) for strip in strips)
@@ -159,7 +158,7 @@ class SurfaceWing:
         """Return the upper and the lower corners (n, 3) of the trailing edge at heights z (n,)."""
         return on_line(self.line(0.0), z), on_line(self.line(float(len(self.strips))), z)
 
-    def opened(self, least: float) -> SurfaceWing:
+    def opened(self, least: float) -> Self:
         """Return the wing with a base at least `least` chords thick, and a note if the wing is changed.
 
         The added thickness is proportional to the distance from the nose.

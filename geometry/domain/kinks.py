@@ -1,7 +1,5 @@
 """Kinks of polygons as corners of two cells, so that a grid has a node at each."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

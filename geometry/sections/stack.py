@@ -1,11 +1,9 @@
 """Sections stacked along z, and the interpolation between them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Literal, TypeAlias, get_args
+from typing import Literal, Self, TypeAlias, get_args
 
 import numpy as np
 
@@ -109,7 +107,7 @@ class Stack:
         cells = [each for each in self.panel_cells if each is not None]
         return sum(cells) + 1 if len(cells) == len(self.panel_cells) else None
 
-    def with_tip(self, tip: Tip | None) -> Stack:
+    def with_tip(self, tip: Tip | None) -> Self:
         """Return the stack with another tip; None keeps the tip as it is.
 
         Raises InputError: the stack is no wing, or the tip is unknown.

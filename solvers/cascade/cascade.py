@@ -1,8 +1,7 @@
 """A cascade: its blade with neighbours and layers, its passage, and the cell sizes in it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -65,7 +64,7 @@ class Cascade:
     factors: Floats | None = None
     share: float = 1.0
 
-    def ending(self, near: tuple[float, float], centre: complex) -> Cascade:
+    def ending(self, near: tuple[float, float], centre: complex) -> Self:
         """Return the cascade with another `near` and `centre`; the layers stay the same."""
         return replace(self, near=near, centre=centre, marched=self.ring)
 

@@ -7,8 +7,6 @@
                       +--- columns at the nodes of the front, straight rows ----------+--> whole
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

@@ -9,10 +9,9 @@
     inlet ----------------- cut ------------------ outlet
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -56,7 +55,7 @@ class Passage:
     def around(
         cls, front: Loop, period: complex, inlet: float, outlet: float, name: str = "",
         near: tuple[float, float] = (NEAR, NEAR), centre: complex | None = None,
-    ) -> Passage:  # fmt: skip
+    ) -> Self:  # fmt: skip
         """Return the passage around a closed front (the blade, or the outer edge of its layers).
 
         Blocks end at the distances `near` from the front, in pitches, or `inlet` and `outlet` if smaller. The

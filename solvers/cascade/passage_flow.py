@@ -13,10 +13,9 @@ strip
 The vortex sheet γ is computed with panels. Martensen, Arch. Rat. Mech. Anal. 3 (1959) 235-270.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import partial
+from typing import Self
 
 import numpy as np
 
@@ -50,7 +49,7 @@ class PassageFlow:
     away: Complexes
 
     @classmethod
-    def of(cls, points: Complexes) -> PassageFlow:
+    def of(cls, points: Complexes) -> Self:
         """Return the flow around a clockwise polygon (n,) in the plane of ζ, which repeats every iπ."""
         sheet = _sheet(points)
         gain = 2.0 * np.pi * sheet * modulus(np.roll(points, -1) - points)

@@ -14,8 +14,6 @@ downstream of it, are two rows of blocks each. The grid line between them leads 
 called the cut.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, Indices

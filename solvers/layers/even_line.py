@@ -6,11 +6,10 @@ neighbouring steps of each measure. The positions t of the nodes, initially t0 w
     E = the term of `growth_limit` in ρ + σ Σ (t - t0)² / s² + Σ (links)²
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -189,7 +188,7 @@ class _Line:
     @classmethod
     def of(
         cls, places: Floats, fixed: Bools, measures: Measures, closed: bool, links: PlaceLinks, change: float
-    ) -> _Line:
+    ) -> Self:
         n = len(places)
         first = np.arange(n if closed else n - 2)
         triples = (first[:, None] + np.arange(3)) % n

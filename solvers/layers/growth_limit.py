@@ -9,11 +9,9 @@ The weight w increases from step to step. In Gauss-Newton steps, ratios slightly
 as if they exceeded it, which prevents oscillations.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Self, TypeVar
 
 import numpy as np
 
@@ -43,7 +41,7 @@ class GrowthLimit:
     change: float = CHANGE
 
     @classmethod
-    def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> GrowthLimit:
+    def at(cls, growth: Floats, limit: float | Floats, change: float = CHANGE) -> Self:
         """Return the penalty term for initial ρ `growth` (..., k); ρ0 is ρ, clipped to the limit."""
         return cls(limit, np.clip(growth, -limit, limit), change)
 

@@ -1,11 +1,9 @@
 """Layers of cells at walls: first cells and growth, and their nodes along columns."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -47,11 +45,11 @@ class LayerSettings:
     limit: float = 0.0
 
     @classmethod
-    def limited(cls, first: float, limit: float, **others: Any) -> LayerSettings:
+    def limited(cls, first: float, limit: float, **others: Any) -> Self:
         """Return settings with the growth ratio at most `limit`, inside the layers and beyond them."""
         return cls(first, math.exp(NOMINAL * math.log(limit)), limit=limit, **others)
 
-    def at(self, names: Collection[str]) -> LayerSettings:
+    def at(self, names: Collection[str]) -> Self:
         """Return the settings for a wall whose parts have the given `names`, some with heights.
 
         Raises InputError: parts of the wall have different heights.

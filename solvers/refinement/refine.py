@@ -1,7 +1,5 @@
 """Changes the numbers of cells of a layout, by splines along its edges and through its blocks."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,9 +1,8 @@
 """Places opposite each other across the channel between two blades, as means over sections."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -23,7 +22,7 @@ class ChannelLines:
     slant: Floats  # (n,) tangent of the lean if an end moves by 1 in u; 0 where nothing is opposite
 
     @classmethod
-    def of(cls, planes: Sequence[SectionPlane]) -> ChannelLines:
+    def of(cls, planes: Sequence[SectionPlane]) -> Self:
         """Return the mean lines of the sections `planes`."""
         upper = ON_SIDE
         squares, sums = np.zeros(len(upper)), np.zeros(len(upper))

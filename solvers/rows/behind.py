@@ -3,8 +3,6 @@
 The functional hardly holds nodes along the flow; on short spans, lines along the span would lean strongly.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

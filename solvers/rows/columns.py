@@ -1,7 +1,5 @@
 """Layers of a section, respaced so that first cells have the prescribed height in space."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, arc_parts, norms, smooth_step

@@ -1,7 +1,5 @@
 """First cells of exact height at walls, also of nodes next to two walls."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

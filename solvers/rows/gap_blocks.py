@@ -1,7 +1,5 @@
 """Blocks in a gap, inside the outline of the blade."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -4,8 +4,6 @@ Ring blocks count i along the outline and j inwards, the core i along side 0 and
 Sides 1 and 3 go around the edges of the blade.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

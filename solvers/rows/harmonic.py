@@ -1,7 +1,5 @@
 """Displacements of inner nodes that are harmonic on the graph of a mesh."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Bools, Floats, dots

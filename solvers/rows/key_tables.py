@@ -1,7 +1,5 @@
 """The key sections of a row, from the middle to hub and casing in parallel."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """The middle section of a row, from which the others start."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

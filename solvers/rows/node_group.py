@@ -3,8 +3,6 @@
 Groups are complete columns of layers, or other nodes, and fit the cache.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

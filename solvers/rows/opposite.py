@@ -1,7 +1,5 @@
 """Places of nodes around a blade that are opposite each other on both sides."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Indices, wrapped

@@ -4,10 +4,9 @@ Lines off the blade lie in surfaces of revolution; where the blade leans far ove
 skewed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -36,7 +35,7 @@ class Rise:
     moves: Floats  # (k, 3) displacement in space of the node of each column at the end
 
     @classmethod
-    def of(cls, row: Row, zone: Zone, blade: Zone, around: SpanLines, lines: SpanLines) -> Rise:
+    def of(cls, row: Row, zone: Zone, blade: Zone, around: SpanLines, lines: SpanLines) -> Self:
         """Return the displacements of layers next to a gap, `zone`.
 
         Parameters
@@ -55,7 +54,7 @@ class Rise:
         deep = np.minimum(_DEEP * width / along, _PART * (blade.high - blade.low))
         return cls(end, up, zone.high - zone.low, deep, moves)
 
-    def of_columns(self, part: slice) -> Rise:
+    def of_columns(self, part: slice) -> Self:
         """Return the moves of some columns."""
         return replace(self, deep=self.deep[part], moves=self.moves[part])
 

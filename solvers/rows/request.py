@@ -1,7 +1,5 @@
 """Options of the grid of a blade row."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

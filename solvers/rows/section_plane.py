@@ -3,11 +3,10 @@
 On a surface of revolution (m', theta) with dm' = dm / r is conformal.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Self
 
 import numpy as np
 
@@ -47,7 +46,7 @@ class SectionPlane:
     places: Floats  # (n,) ascending places u of the points of the cascade's blade
 
     @classmethod
-    def of(cls, row: Row, height: float, first: float, growth: float, share: float = 1.0) -> SectionPlane:
+    def of(cls, row: Row, height: float, first: float, growth: float, share: float = 1.0) -> Self:
         """Return the section of a row at a height, with first cells `first` high; `share`: see `Cascade`."""
         u, lines = _lines(row.surface)
         s, theta = row.surface.crossings(lines, np.full(len(u), height)).T
@@ -104,7 +103,7 @@ class SectionPlane:
         slope = min(max(way.imag / way.real, -most), most) if way.real > 0.0 else 0.0
         return slope * (self.map.length - float(self.edges[1, 0]))
 
-    def ending(self, near: tuple[float, float], thickest: float) -> SectionPlane:
+    def ending(self, near: tuple[float, float], thickest: float) -> Self:
         """Return the section with straight rows of cells from `near` pitches before and behind the blade.
 
         The conformal map has its centre midway between the places u = `thickest` and u = 1 - `thickest`.

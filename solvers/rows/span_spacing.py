@@ -1,10 +1,8 @@
 """Heights of nodes along the span: prescribed cells at both ends, which grow to a largest size."""
 
-from __future__ import annotations
-
 from bisect import bisect_left
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Self, TypeAlias
 
 import numpy as np
 
@@ -123,7 +121,7 @@ class Spacing:
     table: Floats  # (cells + 1, m) relative arc lengths at m equally spaced lengths
 
     @classmethod
-    def of(cls, lengths: tuple[float, float], ends: Ends, growth: float, cells: int) -> Spacing:
+    def of(cls, lengths: tuple[float, float], ends: Ends, growth: float, cells: int) -> Self:
         """Return the spacing of `cells` cells that grow from both `ends`."""
         known = np.linspace(*lengths, _LENGTHS if lengths[1] > lengths[0] * (1.0 + 1e-9) else 1)
         return cls(lengths, (two_sided(known, ends, growth, cells) / known[:, None]).T)
@@ -148,7 +146,7 @@ class LineArcs:
     ahead: SpanLines  # parameter minus relative arc length, by relative arc length
 
     @classmethod
-    def through(cls, samples: Floats) -> LineArcs:
+    def through(cls, samples: Floats) -> Self:
         """Return n lines through positions (k, n, 3) at parameters ``key_heights(k)``."""
         speed = norms(slopes_at_keys(samples))
         arcs = integrals_at_keys(speed)

@@ -1,7 +1,5 @@
 """Key sections stacked along the span: each node is on a polynomial of the height."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """Places of nodes around a blade, with limited growth of steps at wall and front in all sections."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 

@@ -1,7 +1,5 @@
 """Adds layers, and rows to inlet and outlet, to the blocks of a section."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

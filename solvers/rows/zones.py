@@ -1,7 +1,5 @@
 """Zones of the span: a gap at the hub, the blade, a gap at the tip."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -9,11 +9,10 @@ Nodes near ratios above the limit minimise, in Gauss-Newton steps::
 and θ are real and imaginary parts of logarithms of quotients of edges as complex numbers.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Self
 
 import numpy as np
 
@@ -135,7 +134,7 @@ class _Patch:
     def of(
         cls, mesh: QuadMesh, lines: GrowthLines, z: Complexes, free: Bools, tangents: Complexes,
         pairs: Indices,
-    ) -> _Patch:  # fmt: skip
+    ) -> Self:  # fmt: skip
         own = free.copy()
         own[pairs[:, 1]] = False
         nodes = np.flatnonzero(own)

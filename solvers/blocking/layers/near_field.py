@@ -1,9 +1,8 @@
 """A distant outer loop, and the smaller circle that replaces it during the decomposition."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -46,7 +45,7 @@ class NearField:
     arcs: Floats
 
     @classmethod
-    def of(cls, domain: Domain) -> NearField | None:
+    def of(cls, domain: Domain) -> Self | None:
         """Return the near field of a domain; None unless its outer loop is smooth, far and star-shaped."""
         outer = domain.loops[0]
         if len(domain.loops) < 2 or outer.corners:

@@ -1,9 +1,8 @@
 """Cell lengths along walls, and thickness of the layers there, for layers in rows of a layout."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -53,9 +52,7 @@ class RowSizes:
     first: Floats
 
     @classmethod
-    def of(
-        cls, domain: Domain, number: int, stretches: Sequence[Stretch], settings: LayerSettings
-    ) -> RowSizes:
+    def of(cls, domain: Domain, number: int, stretches: Sequence[Stretch], settings: LayerSettings) -> Self:
         """Return the sizes along `stretches` (parts) of a loop; without any, along the whole loop."""
         loop = domain.loops[number]
         arcs, length = sizes_by_bend(loop, loop.length / COLUMNS, TURN)

@@ -1,10 +1,9 @@
 """Walls with their layers, the remaining domain, and the numbers of cells in it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
@@ -66,7 +65,7 @@ class WallLayers:
     def of(
         cls, domain: Domain, loops: Sequence[int], settings: LayerSettings,
         stretches: Sequence[Stretch] = (), sheets: Sequence[int] = (),
-    ) -> WallLayers:  # fmt: skip
+    ) -> Self:  # fmt: skip
         """Return the layers of a domain: rings around `loops`, rows along `stretches`, rows around `sheets`.
 
         `sheets` are loops with one sharp edge, whose layers continue along the wake. Raises InputError: too

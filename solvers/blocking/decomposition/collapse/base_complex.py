@@ -7,10 +7,9 @@ Tarini, Puppo, Panozzo, Pietroni, Cignoni, "Simple quad domains for field aligne
 Trans. Graph. 30 (2011), section 3.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
@@ -54,7 +53,7 @@ class BaseComplex:
         edge[first[1:] - 1] = -1
         return edge, first, self.chord[edge[first]]
 
-    def moved(self, mesh: QuadMesh) -> BaseComplex:
+    def moved(self, mesh: QuadMesh) -> Self:
         """Return the same blocks with other positions of the nodes."""
         moved = replace(self, mesh=mesh)
         if "sides" in self.__dict__:
