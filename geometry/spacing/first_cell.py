@@ -103,8 +103,10 @@ class FirstCell:
 
         return first_cell(setting, self.reynolds, self.chord_fraction) * (self.length or unit)
 
-    def height_note(self, where: str, unit: float = 1.0, in_unit: str = "", scale: float = 1.0) -> str:
-        """Return a note on how the first-cell height follows from y+; empty without y+.
+    def height_notes(
+        self, where: str, unit: float = 1.0, in_unit: str = "", scale: float = 1.0
+    ) -> tuple[str, ...]:
+        """Return a note on how the first-cell height follows from y+; none without y+.
 
         `where` describes the reference length; `scale` is the factor to the unit of the note, called
         `in_unit`.
@@ -112,12 +114,12 @@ class FirstCell:
         from meshonet.geometry.spacing.y_plus import height_note
 
         if self.y_plus is None:
-            return ""
+            return ()
         if self.length is not None:
             where = f"on a length of {self.length * scale:.6g}{in_unit}"
         heights = ", ".join(f"{height * scale:.6g}{in_unit}" for height in _values(self.heights(unit)))
         y_plus = ", ".join(f"{value:g}" for value in _values(self.y_plus))
-        return height_note(y_plus, self.reynolds, where, heights)
+        return (height_note(y_plus, self.reynolds, where, heights),)
 
 
 def _values(setting: AtWalls | None) -> tuple[float, ...]:

@@ -66,7 +66,7 @@ def grid_of(
     fine = fine_of(domain, timings)
     grid = to_grid(around_body(fine), walls=request.layered).with_provenance(method=METHOD, cells=fine.cells)
     said = (
-        request.height_note(f"on a length of {shape.unit:.6g}", shape.unit),
+        *request.height_notes(f"on a length of {shape.unit:.6g}", shape.unit),
         _fewer_cells(request),
         _more_cells(fine.cells, request),
         *_at_walls(grid, domain, request.walls, height),

@@ -29,24 +29,19 @@ def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) ->
     seconds: dict[str, float] = {}
     request.check_far_field()
     sizes = aircraft_dimensions(aircraft, request.height(), request.far_field)
-    _refuse_thick_cells(aircraft, sizes.first_cell)
+    shortest = min(float(wing.chords.min()) for wing in aircraft.wings)
+    if sizes.first_cell > _HIGHEST * shortest:
+        problem = f"first cells are {sizes.first_cell:g} high at a wing with a chord of {shortest:g}"
+        raise InputError(problem, f"use at most {_HIGHEST:g} of it", parameter="first_cell")
     _refuse_far_tip(aircraft, sizes.far_field)
     with limited_to(request.threads):
         with stage("load", seconds):
             from meshonet.solvers.aircraft.aircraft_grid import aircraft_grid
         with stage("grid", seconds):
             grid, growth, notes = aircraft_grid(aircraft, request)
-        note = request.height_note(f"on a chord of {sizes.chord:.6g}", sizes.chord)
-        notes = (*notes, *[note] * bool(note))
+        notes = (*notes, *request.height_notes(f"on a chord of {sizes.chord:.6g}", sizes.chord))
         solution = Solution(grid, "aircraft", notes=notes, dimensions=sizes, growth=growth)
         return judged(solution, seconds, request, remedy=_REMEDY)
-
-
-def _refuse_thick_cells(aircraft: Aircraft, first: float) -> None:
-    shortest = min(float(wing.chords.min()) for wing in aircraft.wings)
-    if first > _HIGHEST * shortest:
-        problem = f"first cells are {first:g} high at a wing with a chord of {shortest:g}"
-        raise InputError(problem, f"use at most {_HIGHEST:g} of it", parameter="first_cell")
 
 
 def _refuse_far_tip(aircraft: Aircraft, far: float) -> None:

@@ -49,8 +49,7 @@ def section_grid(
     if isinstance(shape, Grid):
         refuse(request.chosen, GIVEN_SECTION)
         return shape, ()
-    request, note = _with_height(shape, request)
-    notes = (note,) if note else ()
+    request, notes = _with_height(shape, request)
     if isinstance(shape, Circle) and five_blocks:
         disc = _disc(shape, request, around)
         grid = butterfly(disc)
@@ -82,14 +81,14 @@ def extent(shape: Shape | Grid) -> float:
     return float(np.ptp(points, axis=0).max())
 
 
-def _with_height(shape: Shape, request: GridRequest) -> tuple[GridRequest, str]:
+def _with_height(shape: Shape, request: GridRequest) -> tuple[GridRequest, tuple[str, ...]]:
     """Return the request with the first-cell height of its y+, based on the section's extent, and a note."""
     if request.y_plus is None:
-        return request, ""
+        return request, ()
     unit = extent(shape)
-    note = request.height_note(f"on a length of {unit:.6g}", unit)
+    notes = request.height_notes(f"on a length of {unit:.6g}", unit)
     plain = FirstCell(first_cell=request.heights(unit))
-    return replace(request, **vars(plain)), note
+    return replace(request, **vars(plain)), notes
 
 
 def _disc(shape: Circle, request: GridRequest, around: int | None) -> Disc:

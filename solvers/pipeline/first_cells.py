@@ -36,12 +36,12 @@ def heights_of(request: OneBlock, boundary: Boundary) -> Heights:
     return Heights(**off | request.sides, **rows)
 
 
-def y_plus_note(request: OneBlock, boundary: Boundary) -> str:
+def y_plus_notes(request: OneBlock, boundary: Boundary) -> tuple[str, ...]:
     """Return a text that explains how the heights follow from y+; empty without y+."""
     if boundary.around_body:
-        return request.height_note(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
+        return request.height_notes(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
     where = f"on a length of {boundary.chord:.6g}, the extent of south,"
-    return request.height_note(where, boundary.chord)
+    return request.height_notes(where, boundary.chord)
 
 
 def sides_called(boundary: Boundary, name: str) -> list[Side]:

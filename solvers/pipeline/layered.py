@@ -14,7 +14,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.layers.first_cells import Heights
 from meshonet.solvers.pipeline.fallback import guard
-from meshonet.solvers.pipeline.first_cells import heights_of, y_plus_note
+from meshonet.solvers.pipeline.first_cells import heights_of, y_plus_notes
 from meshonet.solvers.pipeline.named import Each, Wrapper, method_named, solved
 from meshonet.solvers.pipeline.uses import CHANNEL, MARCHED, refuse
 from meshonet.solvers.solution import Solution
@@ -63,10 +63,10 @@ class Layered(Wrapper):
 
     def _march(self, boundary: Boundary) -> Solution:
         refuse(self.request.chosen, MARCHED)
-        height, note = self.request.height() or 0.0, y_plus_note(self.request, boundary)
+        height, said = self.request.height() or 0.0, y_plus_notes(self.request, boundary)
         march = method_named("hyperbolic", wall_spacing=height, **self.request.rows_at_walls)
         solution = march.solve([boundary])[0]
-        return replace(solution, notes=(note, *solution.notes)) if note else solution
+        return replace(solution, notes=(*said, *solution.notes))
 
     def _in_layers(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
         """Return the grid of `boundary` with layers; its time includes all stages."""
@@ -83,8 +83,8 @@ class Layered(Wrapper):
             solution = spread(guard(solution, edges, allow_invalid=True), edges, heights)
             solution = solution if slid else _noted_lean(solution, boundary, heights)
         seconds = {**solution.seconds, "grid": perf_counter() - begun}
-        notes = filter(None, [y_plus_note(self.request, boundary)])
-        return replace(solution, notes=(*notes, *solution.notes), seconds=seconds)
+        notes = (*y_plus_notes(self.request, boundary), *solution.notes)
+        return replace(solution, notes=notes, seconds=seconds)
 
     def _even(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
         """Return the grid of `boundary` without layers; wall nodes may slide or grid lines be turned."""

@@ -52,7 +52,6 @@ def make_row(row: Row, request: RowRequest | None = None) -> Result:
             grid = grid if row.frame is None else rotated(grid, row.frame.inverse())
         dimensions = row_dimensions(row)
         own = (*row.changes, *doubts(dimensions), row.surface.edges)
-        note = request.height_note(f"on a chord of {row.chord:.6g}", scale=row.chord)
-        notes = (*own, *notes, *[note] * bool(note))
+        notes = (*own, *notes, *request.height_notes(f"on a chord of {row.chord:.6g}", scale=row.chord))
         solution = Solution(grid, "row", notes=notes, dimensions=dimensions, growth=request.ratio)
         return judged(solution, seconds, request, remedy=_REMEDY)

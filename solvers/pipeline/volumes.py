@@ -61,7 +61,7 @@ def _march(shape: SpatialShape, request: Volume) -> Solution:
         symmetry=request.symmetry, growth=request.growth,
     )  # fmt: skip
     solution = march_surface(surface_of(shape.grid, poles=request.poles), settings)
-    return _noted(solution, request.height_note("on a length of 1"))
+    return _noted(solution, *request.height_notes("on a length of 1"))
 
 
 def _fill(shape: SpatialShape, request: Volume) -> Solution:
