@@ -79,7 +79,6 @@ def _zone_names(grid: Grid, taken: set[str]) -> list[str]:
 
 
 def _write_zone(base: Node, name: str, grid: Grid, block: int, facts: Facts) -> Node:
-    """Add the zone of a block of a grid, with metadata `facts`, and return it."""
     nodes = grid.blocks[block].nodes
     dims = nodes.shape[:-1]
     size = np.array([dims, [n - 1 for n in dims], [0] * len(dims)], np.int32)

@@ -116,7 +116,6 @@ def _views(grid: Grid) -> list[Box]:
 
 
 def _shown(colouring: Colouring | None, parts: list[CellsInView | None]) -> list[NDArray[Any]]:
-    """Return the values of the cells in view."""
     if colouring is None:
         return []
     return [
@@ -182,7 +181,6 @@ def note(ax: Axes, text: str) -> None:
 
 
 def _drawn_lines(xi: int, eta: int) -> str:
-    """Return the steps of the drawn lines along xi and eta as text."""
     return f"every {_ordinal(xi)}xi and {_ordinal(eta)}eta line"
 
 

@@ -87,7 +87,6 @@ def _flattened(sheets: Sequence[CellSheet]) -> tuple[list[Floats] | None, int]:
 
 
 def _seen(grid: Grid, sheets: Sequence[CellSheet], colouring: Colouring | None, view: View) -> Figure:
-    """Return a picture of sheets seen from a direction."""
     axes = view.axes
     inside = [_within(sheet, view.zoom) for sheet in sheets]
     shown = [

@@ -63,13 +63,10 @@ class StackedRow:
         values = np.stack([plane.map.back(nodes[:, 0]), nodes[:, 1]], axis=1)
         np.clip(values[:, 0], 0.0, 1.0, out=values[:, 0])
         column = values[self.columns]
-        space = self._space(column, plane.height)
+        heights = np.full((*column.shape[:-1], 1), plane.height)
+        space = self.row.channel.in_space(np.concatenate([column, heights], axis=-1))
         values[self.columns] = respaced_columns(column, space, self.first)
         return values
-
-    def _space(self, values: Floats, height: float) -> Floats:
-        heights = np.full((*values.shape[:-1], 1), height)
-        return self.row.channel.in_space(np.concatenate([values, heights], axis=-1))
 
     @cached_property
     def levels(self) -> tuple[int, ...]:

@@ -51,7 +51,6 @@ def sums_of(chords: Chords) -> Sums:
 
 
 def _names(chords: Chords, edge: int) -> list[str]:
-    """Return the names along an edge on the boundary."""
     mesh = chords.layout.mesh
     loop = mesh.domain.loops[mesh.places.loop[chords.edges[edge]].max()]
     low, high = np.sort(chords.arcs(edge)[[0, -1]]).tolist()

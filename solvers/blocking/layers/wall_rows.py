@@ -149,5 +149,4 @@ def with_wall_rows(
 
 
 def _edges(mesh: QuadMesh, pairs: Sequence[Edge]) -> Indices:
-    """Return the numbers of the edges between pairs of nodes."""
     return mesh.edges_between(*np.array(pairs, dtype=np.intp).reshape(-1, 2).T)

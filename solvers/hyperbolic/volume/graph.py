@@ -4,8 +4,6 @@ Ghosts are mirror images in planes of symmetry, extrapolated at free edges. Red 
 each other; ``kernels/surfaces/graph.h`` has the arrays.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -32,14 +30,14 @@ class Seen:
         """Whether it is a node of the surface."""
         return self.own == 0.0 and bool((self.sign == 1.0).all())
 
-    def mirrored(self, plane: Plane) -> Seen:
+    def mirrored(self, plane: Plane) -> "Seen":
         """Return its mirror image in a plane."""
         turned = np.where(np.arange(3) == plane.axis, -1.0, 1.0)
         return Seen(
             self.base, self.own, turned * self.sign, turned * self.shift + (1.0 - turned) * plane.value
         )
 
-    def opposite(self, splay: float) -> Seen:
+    def opposite(self, splay: float) -> "Seen":
         """Return the ghost node on the opposite side, 1 + `splay` times as far from the node."""
         far = 1.0 + splay
         return Seen(self.base, 1.0 + far, -far * self.sign, -far * self.shift)

@@ -112,7 +112,8 @@ def _best(
 
         def marched(steps: Floats, graph: MarchGraph = graph, smoothing: Smoothing = smoothing) -> Floats:
             lines = _respaced(march_levels(surface, graph, nodes, steps, smoothing), graph, steps)
-            _keep_planes(lines, surface, planes, inside)
+            for plane, flags in zip(planes, inside, strict=True):
+                lines[plane.axis, surface.open_edges[flags]] = plane.value
             return lines
 
         lines = marched(steps)
@@ -186,13 +187,6 @@ def _respaced(levels: Floats, graph: MarchGraph, steps: Floats) -> Floats:
     fade = exp(-np.arange(made) / FADE)
     respace_lines(levels, steps[:made], fade, graph.order, SWEEPS, lines, threads_for(lines[0].size))
     return lines
-
-
-def _keep_planes(lines: Floats, surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> None:
-    """Move nodes back, in place, into planes of symmetry."""
-    edges = surface.open_edges
-    for plane, flags in zip(planes, inside, strict=True):
-        lines[plane.axis, edges[flags]] = plane.value
 
 
 def _refusal(

@@ -77,7 +77,10 @@ def nested(nodes: Tensor) -> Tensor:
         few = tuple(between(side, n) for side, n in zip(sides, counts, strict=True))
         start = interpolated(few, tuple(between(law, n) for law, n in zip(laws, counts, strict=True)))
         if (ni, nj) == sizes[-1]:
-            x = _fixed_point(start)
+            x = start
+            for _ in range(STARTS):
+                left, alpha, gamma = residual(x)
+                x = x - bordered(DAMPING * Separable(alpha, gamma).solve(left))
         else:
             change = torch.nn.functional.interpolate(x - before, (ni, nj), mode="bicubic", align_corners=True)
             x = start + bordered(inner(change))
@@ -159,13 +162,6 @@ class _Linearised:
         for into in (product[:, :, 2:, :-2], product[:, :, :-2, 2:]):
             into -= by_twist
         return product
-
-
-def _fixed_point(nodes: Tensor) -> Tensor:
-    for _ in range(STARTS):
-        left, alpha, gamma = residual(nodes)
-        nodes = nodes - bordered(DAMPING * Separable(alpha, gamma).solve(left))
-    return nodes
 
 
 class Separable:
