@@ -1,7 +1,5 @@
 """Tables of TOML. Values are checked before they are used."""
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib
@@ -53,7 +51,7 @@ class Table:
             if key not in keys:
                 raise self.error(printable(key), "is not known", "use " + ", ".join(keys))
 
-    def rows(self, key: str, least: int = 1) -> list[Table]:
+    def rows(self, key: str, least: int = 1) -> "list[Table]":
         """Return an array of at least `least` tables."""
         rows = self.data.get(key)
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows) or len(rows) < least:

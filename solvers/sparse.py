@@ -1,7 +1,5 @@
 """Sparse symmetric linear systems, factored without pivoting."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,7 +53,7 @@ class SparsePattern:
         """Number of entries of the factor below its diagonal."""
         return int(self.arrays[4][-1])
 
-    def matrix(self, values: Floats) -> SparseMatrix:
+    def matrix(self, values: Floats) -> "SparseMatrix":
         """Return the matrix with the `values` (m,) of the entries, for one unknown per row."""
         summed = np.bincount(self.slot, np.asarray(values, dtype=np.float64), self.entries)
         return SparseMatrix(self, np.asarray(summed, dtype=np.float64))
@@ -64,7 +62,7 @@ class SparsePattern:
         """Return the error for a matrix whose pivot in row `row` is zero or not finite."""
         return SolverError(f"a system of {self.size} equations is singular in row {row}")
 
-    def factor(self, values: Floats) -> Factor:
+    def factor(self, values: Floats) -> "Factor":
         """Return the factors of the matrix with the `values` (m,) of the entries; see `SparseMatrix`."""
         return self.matrix(values).factor()
 
@@ -83,7 +81,7 @@ class SparseMatrix:
         sparse_multiply(self.pattern.arrays, self.values, columns, product)
         return product.reshape(np.shape(x))
 
-    def factor(self) -> Factor:
+    def factor(self) -> "Factor":
         """Return the factors of A = P^T L D L^T P; A must be positive definite or quasi-definite.
 
         A quasi-definite matrix is ((K, C^T), (C, -E)) with positive definite K and E: Vanderbei, SIAM J.

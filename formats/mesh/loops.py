@@ -1,7 +1,5 @@
 """Closed curves from named edges in any order and direction, and default names of outer edges."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -24,11 +22,11 @@ class EdgeLoop:
     nodes: Indices
     names: tuple[str, ...]
 
-    def reversed(self) -> EdgeLoop:
+    def reversed(self) -> "EdgeLoop":
         """Return the curve in the opposite direction, starting at the same point."""
         return EdgeLoop(np.roll(self.nodes[::-1], 1), self.names[::-1])
 
-    def begun_at(self, place: int) -> EdgeLoop:
+    def begun_at(self, place: int) -> "EdgeLoop":
         """Return the curve starting at its point with the index `place`."""
         return EdgeLoop(np.roll(self.nodes, -place), (*self.names[place:], *self.names[:place]))
 

@@ -1,7 +1,5 @@
 """Strips of a wing from patches of a surface, in order around its sections."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -28,7 +26,7 @@ class _Strip:
     nodes: Floats
     rows: Floats
 
-    def turned(self) -> _Strip:
+    def turned(self) -> "_Strip":
         return _Strip(self.nodes[:, ::-1], self.rows[:, ::-1])
 
 

@@ -1,7 +1,5 @@
 """Domains given by separate sides: four edges that meet, or the two walls of a channel."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -34,7 +32,7 @@ class DrawnEdge(NamedTuple):
     places: Sequence[str]
     name: str = ""
 
-    def reversed(self) -> DrawnEdge:
+    def reversed(self) -> "DrawnEdge":
         """Return the side with its points in reverse order."""
         return DrawnEdge(self.points[::-1], self.places[::-1], self.name)
 

@@ -15,8 +15,6 @@ All places are (s, theta). Collars are made in lengths in space, by the lengths 
 section.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -44,7 +42,7 @@ class LevelPlan:
 
     columns: tuple[ColumnPlan, ...]  # plans of the columns, from nose to tail
     between: tuple[int, ...]  # number of cells between each column and the next
-    ends: tuple[BodyEnd, BodyEnd]  # nose and tail
+    ends: "tuple[BodyEnd, BodyEnd]"  # nose and tail
 
     @property
     def patches(self) -> int:

@@ -1,7 +1,5 @@
 """Sections of wings on key levels, and the limits of their collars."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise, product
@@ -48,7 +46,7 @@ def columns_of(
     return tuple(tuple(column) for column in columns if column)
 
 
-def _near(one: _Along, other: _Along) -> bool:
+def _near(one: "_Along", other: "_Along") -> bool:
     """Return whether two wings overlap along the body, or nearly so, on some level."""
     rooms = _room(one, other, _CLEAR_FIN), _room(other, one, _CLEAR_FIN)
     return not any(bool((gaps >= needed).all()) for gaps, needed in rooms)

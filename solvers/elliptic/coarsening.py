@@ -1,7 +1,5 @@
 """Multigrid data of one index direction: finite-difference weights and transfers between levels."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -36,7 +34,7 @@ class Direction:
         return np.minimum(2 * np.arange((self.cells + 1) // 2 + 1), self.cells)
 
     @cached_property
-    def coarse(self) -> Direction:
+    def coarse(self) -> "Direction":
         """The next coarser direction."""
         return Direction(self.positions[self.kept], self.periodic)
 

@@ -4,8 +4,6 @@ Escobar et al., Comput. Methods Appl. Mech. Engrg. 192 (2003) 2775-2787 (regular
 Trans. Graph. 40 (2021) 154 (untangling with volumes).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -36,11 +34,11 @@ class Slides:
     projections: Floats
 
     @classmethod
-    def none(cls) -> Slides:
+    def none(cls) -> "Slides":
         """Return the value for a mesh without sliding nodes."""
         return cls(np.empty(0, dtype=np.intp), np.empty((0, 3, 3)))
 
-    def among(self, nodes: Indices) -> Slides:
+    def among(self, nodes: Indices) -> "Slides":
         """Return the sliding nodes among the sorted `nodes` (m,), with their positions in it as indices."""
         place = np.minimum(np.searchsorted(nodes, self.nodes), len(nodes) - 1)
         some = nodes[place] == self.nodes

@@ -1,7 +1,5 @@
 """Grids of one size and topology on which an operator is trained or tested."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -42,7 +40,7 @@ class Samples:
         """Return the boundary of every grid."""
         return [edges(nodes, self.topology, name) for nodes, name in zip(self.nodes, self.names, strict=True)]
 
-    def pick(self, rows: Iterable[int]) -> Samples:
+    def pick(self, rows: Iterable[int]) -> "Samples":
         """Return the samples with indices `rows`."""
         chosen = np.fromiter(rows, dtype=np.intp)
         names, splits = (tuple(have[k] for k in chosen) for have in (self.names, self.splits))

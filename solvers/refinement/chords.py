@@ -1,7 +1,5 @@
 """Edges of the blocks of a layout, and the chords that they form: edges with equal counts of cells."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -35,7 +33,7 @@ class Chords:
     images: Sequence[Indices]  # for each mirror, (n,) each node's mirror image
 
     @classmethod
-    def of(cls, layout: Layout, images: Sequence[Indices] = ()) -> Chords:
+    def of(cls, layout: Layout, images: Sequence[Indices] = ()) -> "Chords":
         """Return the edges and chords of a layout; an edge and its mirror image belong to the same chord."""
         edges: list[Indices] = []
         numbers: dict[tuple[int, ...], int] = {}
@@ -62,7 +60,7 @@ class Chords:
         chord, count = joined_classes(np.ascontiguousarray(np.concatenate(pairs)), len(edges))
         return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, images)
 
-    def of_refined(self, layout: Layout) -> Chords:
+    def of_refined(self, layout: Layout) -> "Chords":
         """Return the chords of `layout`, which has the same blocks with other numbers of cells."""
         return replace(Chords.of(layout), chord=self.chord, count=self.count)
 

@@ -4,8 +4,6 @@ Patches are blade, tip (or foot, at a hub gap), hub, shroud, inlet, outlet, and 
 periodic2.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -54,7 +52,7 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
 
     *ends, (made, rest) = run_in_threads([*(partial(ends_of, k) for k in open_), stacked.nodes])
 
-    def section(k: int) -> ZoneSection:
+    def section(k: int) -> "ZoneSection":
         if not zones[k].gap:
             return ZoneSection(to_grid(stacked.layout), stacked.layout, None)
         low, high = stacked.bounds[k]

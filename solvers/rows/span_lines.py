@@ -1,7 +1,5 @@
 """Polynomials along the span through values at key sections."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cache
@@ -28,7 +26,7 @@ class SpanLines:
     coefficients: Floats
 
     @classmethod
-    def through(cls, values: Floats, degree: int | None = None) -> SpanLines:
+    def through(cls, values: Floats, degree: int | None = None) -> "SpanLines":
         """Return the polynomials through values (k, n, ...) at ``key_heights(k)``.
 
         With a `degree` below k - 1 they are least-squares fits with half weight at both ends.
@@ -36,7 +34,7 @@ class SpanLines:
         kept = _fit(len(values))[: len(values) if degree is None else degree + 1]
         return cls(_times(kept, values))
 
-    def of(self, columns: slice | Indices) -> SpanLines:
+    def of(self, columns: slice | Indices) -> "SpanLines":
         """Return the functions with these indices."""
         return SpanLines(self.coefficients[:, columns])
 

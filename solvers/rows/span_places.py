@@ -5,8 +5,6 @@ blades, or lean less where opposite places change from hub to casing, as does th
 a channel that turns outwards.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -41,7 +39,7 @@ class SpanPlaces:
     @classmethod
     def of(
         cls, planes: Sequence[SectionPlane], places: Floats, pairs: Indices, gaps: tuple[bool, bool]
-    ) -> SpanPlaces:
+    ) -> "SpanPlaces":
         """Return places near `places` (k,) of the middle section, with a node at each corner.
 
         Parameters
@@ -71,7 +69,7 @@ class SpanPlaces:
         start, end = self.ends
         return np.asarray(np.mod(start + height * wrapped(end - start), 1.0))
 
-    def evened(self, planes: Sequence[SectionPlane], growth: float, pairs: Indices) -> SpanPlaces:
+    def evened(self, planes: Sequence[SectionPlane], growth: float, pairs: Indices) -> "SpanPlaces":
         """Return places moved so that steps between nodes grow by about `growth` at most in all sections."""
         lines, corners = ChannelLines.of(planes), planes[0].corners
 

@@ -1,7 +1,5 @@
 """Training data of the quad operator: Winslow's and variational grids of the same domains, normalised."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -38,7 +36,7 @@ class Quads:
     def __len__(self) -> int:
         return len(self.base)
 
-    def __getitem__(self, rows: Any) -> Quads:
+    def __getitem__(self, rows: Any) -> "Quads":
         base, step, winslow, variational = (grids[rows] for grids in self.grids())
         return Quads(base, step, winslow, variational, self.around)
 

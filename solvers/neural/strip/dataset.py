@@ -1,7 +1,5 @@
 """Training data of the strip operator: lifted boundaries, and their Winslow solutions by Picard iteration."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
@@ -33,7 +31,7 @@ class Strips:
     def __len__(self) -> int:
         return len(self.wall)
 
-    def __getitem__(self, rows: slice) -> Strips:
+    def __getitem__(self, rows: slice) -> "Strips":
         return Strips(self.wall[rows], self.far[rows], self.residual[rows])
 
 
