@@ -102,9 +102,9 @@ class Domain:
         return float(sum(polygon_area(loop.curve.points) for loop in self.loops))
 
     @property
-    def curved_area(self) -> float:
-        """Area bounded by the curves of the loops, not by the polygons through their points."""
-        return float(sum(polygon_area(loop.curve.polyline(_PARTS)) for loop in self.loops))
+    def curved_areas(self) -> list[float]:
+        """Area bounded by the curve of each loop, not by the polygon through its points; holes below 0."""
+        return [float(polygon_area(loop.curve.polyline(_PARTS))) for loop in self.loops]
 
     @cached_property
     def lengths(self) -> Floats:

@@ -8,6 +8,8 @@ from dataclasses import replace
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
@@ -17,6 +19,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.lattice import around_body
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.to_grid import to_grid
+from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.reach import MOST_CELLS
 from meshonet.geometry.shapes.domain_shape import DomainShape
@@ -36,6 +39,7 @@ METHOD = "blocks"
 GROWTH = 1.2  # default ratio of neighbouring layers
 MORE = 1.2  # ratio of the number of cells to the requested one above which a note says so
 CUT_OFF = 1e-3  # fraction of the area that cells may cut off along walls without a note
+HOLE_CUT_OFF = 0.02  # fraction of a hole's area by which that of its cells may differ without a note
 
 
 def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
@@ -71,7 +75,7 @@ def grid_of(
         _more_cells(fine.cells, request),
         *_at_walls(grid, domain, request.walls, height),
         *(sharp_edge_notes(fine) if height is not None else ()),
-        _cut_off(fine),
+        _cut_off(fine) or _cut_off_of_holes(fine),
         *_folded_coarser(grid, request.refine),
     )
     notes = (*domain.notes, *(note for note in said if note))
@@ -97,11 +101,30 @@ def _at_walls(grid: Grid, domain: Domain, walls: tuple[str, ...], height: AtWall
 def _cut_off(fine: Layout) -> str:
     """Return a note if cells along walls cut off, or add, more than `CUT_OFF` of the area."""
     off = abs(cut_off(fine))
-    if off <= CUT_OFF or abs(cut_off(fine, fine.mesh.domain.curved_area)) <= CUT_OFF:
+    if off <= CUT_OFF or abs(cut_off(fine, sum(fine.mesh.domain.curved_areas))) <= CUT_OFF:
         return ""
     return (
         f"cells along curved walls differ from the domain by {100 * off:.2g} % of its area: more cells help"
     )
+
+
+def _cut_off_of_holes(fine: Layout) -> str:
+    """Return a note on the hole whose area differs most between cells, if by more than `HOLE_CUT_OFF`.
+
+    The area of a domain with a far field does not tell how coarse the cells along a body are.
+    """
+    mesh, changes = fine.mesh, dict[str, float]()
+    for number, (loop, area) in enumerate(zip(mesh.domain.loops, mesh.domain.curved_areas, strict=True)):
+        wall = np.flatnonzero(mesh.places.loop == number)
+        change = abs(
+            polygon_area(mesh.nodes[wall[np.argsort(mesh.places.arc[wall], kind="stable")]]) / area - 1.0
+        )
+        if number and change > HOLE_CUT_OFF:
+            changes[loop.names[0]] = change
+    if not changes:
+        return ""
+    worst = max(changes, key=lambda name: changes[name])
+    return f"cells along {worst} change its area by {100 * changes[worst]:.2g} %: more cells help"
 
 
 def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:

@@ -109,3 +109,11 @@ def test_blocks_become_one_mesh_one_cell_thick(meshonet: Meshonet, tmp_path: Pat
     o_ring().write(tmp_path / "ring.cgns")
     meshonet("convert", tmp_path / "ring.cgns", tmp_path / "ring.vtu", "--extrude", "0.1")
     assert (tmp_path / "ring.vtu").stat().st_size > 1000
+
+
+def test_a_body_that_few_cells_cut_off_has_a_note(meshonet: Meshonet) -> None:
+    coarse, fine = (
+        meshonet("infer", "naca:0012-sharp", "--cells", cells, "-o", "a.cgns") for cells in (2500, 10000)
+    )
+    assert "cells along body change its area by " in coarse.err
+    assert "change its area" not in fine.err
