@@ -7,8 +7,6 @@
     bottom, top (ni, nj)     k = 0, nk-1
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -69,7 +67,7 @@ class SixFaces:
                 raise InputError(problem, "give both the same nodes", place=place_of(own[at]))
 
     @classmethod
-    def of_block(cls, nodes: Floats, *, name: str = "", patches: tuple[Patch, ...] = ()) -> SixFaces:
+    def of_block(cls, nodes: Floats, *, name: str = "", patches: tuple[Patch, ...] = ()) -> "SixFaces":
         """Return the outer faces of nodes (ni, nj, nk, 3)."""
         west, east, south, north, bottom, top = (face_of(nodes, side) for side in FACES)
         return cls(west, east, south, north, bottom, top, name, patches)
@@ -120,7 +118,7 @@ class SixFaces:
         patches = self.patches or _sides(block.counts)
         return Grid((block,), patches, (), self.name, provenance or {})
 
-    def resampled(self, counts: tuple[int, int, int]) -> SixFaces:
+    def resampled(self, counts: tuple[int, int, int]) -> "SixFaces":
         """Return the faces with other node counts but equal distribution, interpolated by cubic splines.
 
         Raises InputError: fewer than 2 nodes along a direction.
@@ -134,7 +132,7 @@ class SixFaces:
             self.at(knots, [np.linspace(0.0, 1.0, n) for n in counts]), patches=self._scaled(counts)
         )
 
-    def at(self, knots: list[Floats], places: list[Floats]) -> SixFaces:
+    def at(self, knots: list[Floats], places: list[Floats]) -> "SixFaces":
         """Return the faces interpolated from the parameters `knots` of nodes to new parameters `places`.
 
         Both are given for each direction and increase from 0 to 1. Nodes of an edge stay on that edge.

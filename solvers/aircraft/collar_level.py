@@ -1,7 +1,5 @@
 """The collar of a wing on one level, and the sizes of cells around it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -90,7 +88,7 @@ def planned_corners(holes: Sequence[Hole]) -> tuple[int, int]:
 
 def planned_collar(
     holes: Sequence[Hole], corners: tuple[int, int], first: float, growth: float
-) -> tuple[CollarPlan, list[CollarLevel]]:
+) -> "tuple[CollarPlan, list[CollarLevel]]":
     """Return the plan for the collars (cells around sections), and the collars around `holes`.
 
     `holes` are sections of a wing from the root on. Above and below collars, there are as few cells as growth
@@ -129,7 +127,7 @@ class CollarLevel:
     last: tuple[float, float, float, float]  # outermost cells in space: before, below, above, behind
 
     @classmethod
-    def of(cls, plan: CollarPlan, hole: Hole) -> CollarLevel:
+    def of(cls, plan: CollarPlan, hole: Hole) -> "CollarLevel":
         """Return the collar of a hole."""
         plane, box = hole.plane, hole.box
         edge, nose, half = plan.edge, plan.nose, (len(plane) - 1) // 2

@@ -12,8 +12,6 @@ Nodes inside a face are blended between its edges in the coordinates of its surf
 Nodes of an edge are made once, so that they are bitwise the same in all patches.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal, NamedTuple
@@ -46,10 +44,10 @@ class _FaceLine(NamedTuple):
     places: Floats
     points: Floats
 
-    def reversed(self) -> _FaceLine:
+    def reversed(self) -> "_FaceLine":
         return _FaceLine(self.places[::-1], self.points[::-1])
 
-    def part(self, start: int, stop: int) -> _FaceLine:
+    def part(self, start: int, stop: int) -> "_FaceLine":
         return _FaceLine(self.places[start : stop + 1], self.points[start : stop + 1])
 
 
@@ -106,7 +104,7 @@ def _joined(lines: list[_FaceLine]) -> _FaceLine:
     )
 
 
-def _four(plan: _FacePlan, sides: list[_FaceLine]) -> list[_FaceLine]:
+def _four(plan: "_FacePlan", sides: list[_FaceLine]) -> list[_FaceLine]:
     """Return the four sides of a face, counter-clockwise; nose and base have equally many cells."""
     if plan.kind == "quad":
         return sides

@@ -1,7 +1,5 @@
 """Target lengths of edges, depending on position and direction, from the requirements of walls and fronts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -26,7 +24,7 @@ class Near:
     distance: Floats  # (p, m) distance to this point
     square: Floats  # (p, m) squared cosine of the angle between the edge and the normal at this point
 
-    def length(self, sizes: SizeMetric) -> Floats:
+    def length(self, sizes: "SizeMetric") -> Floats:
         """Return the target lengths (m,) of the edges for `sizes`: the least that any part requires."""
         rise = sizes.grading * self.distance
         high = np.minimum(sizes.across[self.point] + rise, sizes.largest)
@@ -52,7 +50,7 @@ class SizeMetric:
     starts: tuple[int, ...] = (0,)  # first points of parts; edges have the least length of all parts
 
     @classmethod
-    def joined(cls, metrics: Sequence[SizeMetric]) -> SizeMetric:
+    def joined(cls, metrics: "Sequence[SizeMetric]") -> "SizeMetric":
         """Return the metric of all requirements in `metrics`."""
         starts = np.cumsum([0, *(len(each.points) for each in metrics[:-1])])
         points, normals, across, along = (

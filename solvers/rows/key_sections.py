@@ -4,8 +4,6 @@ All are optima of one functional, which limits the growth of cells along lines, 
 first.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -69,7 +67,7 @@ class LayerColumns:
     ends: Floats  # (k, 2) points on the outer edge of the layers at which they end
 
     @classmethod
-    def of(cls, plane: SectionPlane, places: Floats) -> LayerColumns:
+    def of(cls, plane: SectionPlane, places: Floats) -> "LayerColumns":
         """Return the columns of nodes that begin on the blade at `places` u (k,), 0 to 1 around it."""
         front = plane.front_arcs(places)
         lines, walls = plane.cascade.ring.columns(front)
@@ -93,7 +91,7 @@ class Beginning:
     plan: SectionPlan  # data that all sections share
     columns: Sequence[LayerColumns | None]  # columns of the layers of each section; None for the middle one
     middle: KeySection  # the middle section
-    following: tuple[NextSections, NextSections]  # makers of the sections towards hub and casing
+    following: "tuple[NextSections, NextSections]"  # makers of the sections towards hub and casing
 
 
 def planned(

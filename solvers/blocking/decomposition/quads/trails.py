@@ -1,7 +1,5 @@
 """Coordinate lines of a seamless map as pieces in triangles; points on the lines by arc length."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from itertools import pairwise
 
@@ -68,7 +66,7 @@ class Trails:
         part = np.divide(length - start[piece], span, out=np.zeros(len(piece)), where=span > 0)
         return piece, np.clip(part, 0.0, 1.0)
 
-    def joined(self, others: Trails) -> Trails:
+    def joined(self, others: "Trails") -> "Trails":
         """Return these trails followed by the others."""
         names = [each.name for each in fields(self)]
         mine, theirs = ([getattr(trails, name) for name in names] for trails in (self, others))
