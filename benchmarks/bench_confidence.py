@@ -181,16 +181,16 @@ CPU times are medians, for one thread on a machine that other programs also used
 - *true error*: RMS distance of the nodes from the converged solution, divided in the same way.
 - *--polish auto*: solver iterations improve the predicted grid before its error is estimated. *off*: none.
 - *rank correlation*: Spearman's coefficient of expected and true errors.
-- *expected / true*: expected error divided by true error: 5th, 50th and 95th percentile.
+- *expected / true*: 5th, 50th and 95th percentile of the ratio.
 - *low*: grids with an expected error of at most {threshold:g}. *high*: grids with a larger expected error.
 - *time*: CPU time per grid to estimate the error.
 
 The shapes for the [networks of meshonet](../theory/operators.md) are of nine random kinds
 ([open comparison](yardstick.md)), {count} of each kind: six kinds of four-sided domains on 65 x 65 nodes for
 `quad-general`, and three kinds of bodies on 65 x 33 nodes for `hole-o` and `airfoil-o`. The last row is the
-network `meshonet` of [the paper](paper/index.md), trained on 30 arches: 120 shapes are of the families arch,
-hexagon and semicircle of the paper, 80 are four-sided domains of two of the nine kinds. The given boundary
-nodes replace those that `meshonet` predicts, and this folds cells.
+network `meshonet` of [the paper](paper/index.md), trained on 30 arches. It is applied to 120 arches, hexagons
+and semicircles of the paper and to 80 four-sided domains. The given boundary nodes replace the predicted
+boundary nodes of `meshonet`, which folds cells.
 """
 COLUMNS = (
     "| network | grids | true error, median | true error, maximum | rank correlation | expected / true "
@@ -213,7 +213,6 @@ line is the threshold of 0.03.
 - A low expected error does not exclude folded cells: without polish, 15 of 456 grids with a low expected
   error have folded cells. Acceptance therefore also requires that no cell is folded.
 - With `--polish auto`, all 480 grids of `quad-general`, `hole-o` and `airfoil-o` are accepted.
-- The estimate takes 1 to 7 ms per grid.
 """
 
 if __name__ == "__main__":

@@ -76,8 +76,8 @@ TAIL = """
 - A batch spends 0.3 ms per grid besides the solver. The index file of 1,000 parts takes 4 s.
 - Reading the nodes of a sample takes 5 ms with 1,000 parts and 46 ms with 10,000 parts. Parts are therefore
   large: up to 1,000 grids or 256 MiB. A million grids of 200 x 100 nodes are 2,000 parts.
-- From 200 files, HDF5 reads a sample in 0.6 ms, Zarr in 1.6 ms. meshonet uses HDF5, which needs no further package, and which
-  h5py, MATLAB and Julia can read.
+- From 200 files, HDF5 reads a sample in 0.6 ms, Zarr in 1.6 ms. meshonet uses HDF5, which needs no further
+  package, and which h5py, MATLAB and Julia can read.
 """
 READER = """
 import json, sys, time, h5py

@@ -32,8 +32,8 @@ STANDS = """
 """
 
 LOWEST = """The paper claims that MeshONet's loss is orders of magnitude below the losses of four *baselines*:
-`deeponet`, `pod-deeponet`, `fno1d` and `fno2d`. Our comparison trains all networks on the same shapes, equally
-often ([losses](#loss-on-one-budget)).
+`deeponet`, `pod-deeponet`, `fno1d` and `fno2d`. Our comparison trains all networks on one *budget*: the same
+shapes, equally often ([losses](#loss-on-one-budget)).
 
 """
 
