@@ -147,8 +147,8 @@ def times(sizes: list[int]) -> str:
     solved, slow = (shares[sizes[0], f"`{name}`"] for name in ("variational", "winslow"))
     lines.append(
         "\n`variational` solves on 33³ nodes and interpolates to all nodes. On "
-        f"{sizes[0]}³ nodes, it takes as long as\n{solved:.0f} copies of the nodes; `winslow` takes as long as "
-        f"{slow:.0f} copies."
+        f"{sizes[0]}³ nodes, it takes as long as\n{solved:.0f} copies of the nodes; `winslow` takes as long "
+        f"as {slow:.0f} copies."
     )
     return "\n".join(lines)
 
