@@ -197,7 +197,6 @@ def settings_of(request: BlockRequest, height: AtWalls) -> LayerSettings:
 
 
 def _outside_layers(domain: Domain, request: BlockRequest, height: AtWalls, layout: Layout | None) -> Layout:
-    """Return the blocks of the domain outside of layers."""
     from meshonet.solvers.blocking.layers.outside import found_outside, taken_outside
     from meshonet.solvers.blocking.layers.stretches import layered_walls
     from meshonet.solvers.blocking.layers.wall_layers import WallLayers

@@ -9,7 +9,6 @@ from meshonet.geometry.blocks.extrude import End, thickened
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import arctan2, cos, exp, sin
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.sections.section import Section
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.far_field import o_boundary
@@ -111,14 +110,15 @@ def _four_sided(stack: Stack, request: StackRequest, first: float | None) -> lis
     n = _side(request) + 1
     planes = []
     for section in stack.sections:
-        length = section.frame[1]
+        origin, length = section.frame
         h = None if first is None else first / section.chord * length
         sides = GridRequest(
             Sampling(n, n), slide=False, spacing_south=h, spacing_north=h, spacing_west=h, spacing_east=h
         )
         plane = make_grid(section.shape, sides).grid
         patches = (replace(p, name="wall", kind="wall") for p in plane.outer_patches())
-        planes.append(replace(_unit(plane, section), patches=tuple(patches)))
+        unit = plane.with_nodes((plane.nodes - origin) / length)
+        planes.append(replace(unit, patches=tuple(patches)))
     return planes
 
 
@@ -145,11 +145,6 @@ def _side(request: StackRequest) -> int:
             f"{request.surface.around} nodes around the four sides of a duct", remedy, parameter="around"
         )
     return (request.surface.around - 1) // 4
-
-
-def _unit(plane: Grid, section: Section) -> Grid:
-    origin, length = section.frame
-    return plane.with_nodes((plane.nodes - origin) / length)
 
 
 def _lofted(

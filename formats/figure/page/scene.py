@@ -21,7 +21,6 @@ from meshonet.formats.figure.page.cells import (
 from meshonet.formats.figure.page.packing import Packed, packed, rounding_step, shortest_edge
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.vertices import irregular_points
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import Metric, metric_of, metrics_of
@@ -196,21 +195,16 @@ def _shell(grid: Grid) -> tuple[list[Lattice], list[SceneSheet]]:
     """Return the patches of a volume, each as a lattice and a sheet."""
     lattices, sheets = [], []
     for number, patch in enumerate(grid.outer_patches()):
-        lattices.append(_of_patch(grid, patch))
+        axis, end = patch.place
+        start = [first for first, _ in patch.range(grid.face(patch.block, patch.side).shape[:-1])]
+        start.insert(axis, grid.blocks[patch.block].counts[axis] - 2 if end else 0)
+        lattices.append(Lattice(patch.block, grid.at(patch), tuple(start), axis))
         ranges = tuple((0, count - 1) for count in lattices[-1].counts)
         sheets.append(SceneSheet(number, patch.name, patch.kind, None, 0, ranges))
     return lattices, sheets
 
 
-def _of_patch(grid: Grid, patch: Patch) -> Lattice:
-    axis, end = patch.place
-    start = [first for first, _ in patch.range(grid.face(patch.block, patch.side).shape[:-1])]
-    start.insert(axis, grid.blocks[patch.block].counts[axis] - 2 if end else 0)
-    return Lattice(patch.block, grid.at(patch), tuple(start), axis)
-
-
 def _of(lattice: Lattice, values: Sequence[Floats]) -> Floats:
-    """Return the values of the cells of a lattice from the values of all blocks."""
     cells = values[lattice.block]
     if lattice.fixed is None:
         return cells
