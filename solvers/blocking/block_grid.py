@@ -13,6 +13,7 @@ from meshonet.solvers.blocking.decomposition.decompose import most_folded
 from meshonet.solvers.blocking.decomposition.side_counts import suited, sums_of
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric, node_images
 from meshonet.solvers.blocking.request import CELLS
+from meshonet.solvers.blocking.unfolded import unfolded
 from meshonet.solvers.energy.quad_problem import ALLOWED, smallest_jacobian
 from meshonet.solvers.energy.quads import QuadOptimum, optimise
 from meshonet.solvers.refinement.chords import Chords
@@ -92,7 +93,7 @@ def fine_layout(
             chords, times = chords.of_refined(fine), 2**halved
             exact = suited(chords, chords.counts * 2**halvings, chords.least)
             fine = refine(fine, exact, chords)
-        fine = multiplied(fine, times) if times > 1 else fine
+        fine = unfolded(multiplied(fine, times)) if times > 1 else fine
         return replace(fine, mesh=with_tied_sides(made_symmetric(fine.mesh)))
 
 
@@ -145,7 +146,11 @@ def _optimum(mesh: QuadMesh, turning: float) -> QuadOptimum:
         symmetric = made_symmetric(optimum.mesh, images)
         if optimum.valid and smallest_jacobian(symmetric.nodes, symmetric.quads) > 0.0:
             return replace(optimum, mesh=symmetric)
-    return optimise(mesh, iterations=ITERATIONS, turning=turning)
+    optimum = optimise(mesh, iterations=ITERATIONS, turning=turning)
+    if not optimum.valid:  # nodes that slide along a wall can be caught at its corners: unfold without them
+        held = optimise(mesh, iterations=ITERATIONS, turning=turning, held=mesh.wall_nodes)
+        optimum = optimise(held.mesh, iterations=ITERATIONS, turning=turning) if held.valid else optimum
+    return optimum
 
 
 def _more_along_walls(fine: Chords, finer: float, times: int) -> Indices:

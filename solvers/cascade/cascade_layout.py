@@ -66,6 +66,8 @@ def cascade_layout(
                 raise
     with stage("refine", timings):
         fine = multiplied(coarse, times)
+        if smallest_jacobian(fine.mesh.nodes, fine.mesh.quads) <= 0.0:  # splines through few nodes can cross
+            fine = passage_optimum(fine, ITERATIONS, metric)
         fine = evened_loops(fine, cascade.measures, EVEN, FEW_STEPS)
     with stage("layers", timings):
         rows = _rows(cascade, fine, metric)

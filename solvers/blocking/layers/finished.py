@@ -1,4 +1,4 @@
-"""Last steps of grids with layers: limitation of growth ratios, repair of folded cells."""
+"""Last step of grids with layers: limitation of growth ratios."""
 
 from dataclasses import replace
 
@@ -13,11 +13,8 @@ from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetr
 from meshonet.solvers.blocking.layers.even_mesh import NO_PAIRS, evened_mesh
 from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.blocking.layers.marched import AT_SHARP_EDGE
-from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.blocking.unfolded import unfolded
 from meshonet.solvers.layers.layer_settings import LayerSettings
-
-FEW_ITERATIONS = 10  # only nodes around folds move
-NEAR_FOLDS = 5  # cells around folded ones that are optimised with them
 
 
 def finished(layout: Layout, settings: LayerSettings, held: Bools, following: Indices = NO_PAIRS) -> Layout:
@@ -73,20 +70,3 @@ def _as_far(mesh: QuadMesh, before: QuadMesh, pairs: Indices) -> QuadMesh:
     far = norms(before.nodes[second] - before.nodes[first])
     nodes[second] = nodes[first] + away * (far / norms(away))[:, None]
     return mesh.with_nodes(nodes)
-
-
-def unfolded(layout: Layout, held: Bools) -> Layout:
-    """Return the layout with folded cells unfolded; nodes in `held` (n,) and aspect ratios do not change."""
-    mesh = layout.mesh
-    bad = smallest_jacobians(mesh.nodes, mesh.quads) <= 0.0
-    if not bad.any():
-        return layout
-    free = np.zeros(len(mesh.nodes), dtype=bool)
-    free[mesh.quads[bad]] = True
-    for _ in range(NEAR_FOLDS):
-        free[mesh.quads[free[mesh.quads].any(axis=1)]] = True
-    lengths = np.maximum(mesh.edge_lengths, np.finfo(float).tiny)
-    optimum = optimise(
-        mesh, iterations=FEW_ITERATIONS, held=held | ~free, targets=lengths, aspects=mesh.aspects(lengths)
-    )
-    return replace(layout, mesh=made_symmetric(optimum.mesh)) if optimum.valid else layout

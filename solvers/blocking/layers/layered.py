@@ -27,7 +27,7 @@ from meshonet.solvers.blocking.decomposition.side_counts import alike_along_side
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric, node_images
 from meshonet.solvers.blocking.layers.attach import attach
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
-from meshonet.solvers.blocking.layers.finished import finished, unfolded
+from meshonet.solvers.blocking.layers.finished import finished
 from meshonet.solvers.blocking.layers.growth_lines import GrowthLines
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
 from meshonet.solvers.blocking.layers.outside import found_outside, taken_outside
@@ -35,6 +35,7 @@ from meshonet.solvers.blocking.layers.placed_rows import held_nodes, layers_of, 
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.layers.wall_layers import ROWS, Counts, WallLayers, wanted_counts
 from meshonet.solvers.blocking.layers.wall_rows import WallRows, has_sharp_edge, wake_of, with_wall_rows
+from meshonet.solvers.blocking.unfolded import unfolded
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.layers.even_line import EVEN, FEW_STEPS, evened_loops

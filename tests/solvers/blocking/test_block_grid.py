@@ -1,13 +1,19 @@
 """Domains in, valid grids of blocks out."""
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 from known_meshes import circle
 from planar_domains import blob, block_grid
 
+from meshonet import infer
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import SolverError
+from meshonet.geometry.layout.lattice import smallest_jacobians
+from meshonet.geometry.shapes.airfoil.naca import naca_points
 from meshonet.solvers.blocking import block_grid as blocks
 from meshonet.solvers.blocking.block_grid import cut_off, fine_layout
 from meshonet.solvers.blocking.decomposition import decompose as decomposition
@@ -129,3 +135,36 @@ def test_wall_nodes_come_closer_where_walls_bend_when_more_than_allowed_is_cut_o
     assert held.cells == free.cells
     assert largest_turning(held.mesh) < 0.8 * largest_turning(free.mesh)
     assert abs(cut_off(held)) < 1e-3 < abs(cut_off(free))
+
+
+def test_fine_cells_beside_a_flap_are_not_folded(tmp_path: Path) -> None:
+    """Splines through the nodes of coarse cells cross at thin trailing edges."""
+    wing, turn = naca_points("2412"), np.radians(-30)
+    turned = wing @ np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+    files = [str(tmp_path / name) for name in ("main.dat", "flap.dat")]
+    for file, points in zip(files, (wing, 0.3 * turned + [1.0, -0.04]), strict=True):
+        np.savetxt(file, points, header="section", comments="")
+    grid = infer(files, assemble=True, cells=8000)
+    assert grid.cells > blocks.OPTIMISED  # so it is refined from an optimised grid
+    assert cells_of(grid).min() > 0
+
+
+def test_nodes_caught_at_a_corner_of_a_wall_are_held_in_a_second_attempt(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    held, optimise = [], blocks.optimise
+
+    def caught(mesh, **settings):
+        held.append(settings.get("held"))
+        optimum = optimise(mesh, **settings)
+        return replace(optimum, valid=False) if len(held) == 1 else optimum
+
+    monkeypatch.setattr(blocks, "optimise", caught)
+    domain = Domain.of_polygons([blob(2, 2.0), circle(0.4, 60, (-0.3, 0.1))])
+    fine = fine_layout(decompose(domain), cells=500)
+    assert smallest_jacobians(fine.mesh.nodes, fine.mesh.quads).min() > 0
+    assert held[0] is None
+    assert held[1] is not None
+    assert held[2] is None
+    assert held[1][fine.mesh.places.loop >= 0].all()
+    assert not held[1][fine.mesh.places.loop < 0].any()
