@@ -93,8 +93,13 @@ def fine_layout(
             chords, times = chords.of_refined(fine), 2**halved
             exact = suited(chords, chords.counts * 2**halvings, chords.least)
             fine = refine(fine, exact, chords)
-        fine = unfolded(multiplied(fine, times)) if times > 1 else fine
+        fine = _with_more_cells(fine, times) if times > 1 else fine
         return replace(fine, mesh=with_tied_sides(made_symmetric(fine.mesh)))
+
+
+def _with_more_cells(layout: Layout, times: int) -> Layout:
+    fine = multiplied(layout, times)
+    return unfolded(fine, fine.mesh.wall_nodes)
 
 
 def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, halvings: int) -> Indices:

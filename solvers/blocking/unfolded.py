@@ -11,25 +11,23 @@ from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetr
 from meshonet.solvers.energy.quads import optimise
 
 FEW_ITERATIONS = 10  # only nodes around folds move
-NEAR_FOLDS = 5  # cells around folded ones that are optimised with them
+NEAR_FOLDS = 5, 10, 20  # cells around folded ones that are optimised with them, in the order of attempts
 
 
-def unfolded(layout: Layout, held: Bools | None = None) -> Layout:
+def unfolded(layout: Layout, held: Bools) -> Layout:
     """Return the layout with folded cells unfolded; nodes in `held` (n,) and aspect ratios do not change."""
     mesh = layout.mesh
     bad = smallest_jacobians(mesh.nodes, mesh.quads) <= 0.0
     if not bad.any():
         return layout
-    free = np.zeros(len(mesh.nodes), dtype=bool)
+    free, lengths = np.zeros(len(mesh.nodes), dtype=bool), np.maximum(mesh.edge_lengths, np.finfo(float).tiny)
     free[mesh.quads[bad]] = True
-    for _ in range(NEAR_FOLDS):
-        free[mesh.quads[free[mesh.quads].any(axis=1)]] = True
-    lengths = np.maximum(mesh.edge_lengths, np.finfo(float).tiny)
-    optimum = optimise(
-        mesh,
-        iterations=FEW_ITERATIONS,
-        held=~free if held is None else held | ~free,
-        targets=lengths,
-        aspects=mesh.aspects(lengths),
-    )
-    return replace(layout, mesh=made_symmetric(optimum.mesh)) if optimum.valid else layout
+    for more in np.diff(NEAR_FOLDS, prepend=0):
+        for _ in range(more):
+            free[mesh.quads[free[mesh.quads].any(axis=1)]] = True
+        optimum = optimise(
+            mesh, iterations=FEW_ITERATIONS, held=held | ~free, targets=lengths, aspects=mesh.aspects(lengths)
+        )
+        if optimum.valid:
+            return replace(layout, mesh=made_symmetric(optimum.mesh))
+    return layout
