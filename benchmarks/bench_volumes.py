@@ -61,9 +61,9 @@ are left out.
 NETWORKS = """## A network: 3DMeshNet
 
 A 3DMeshNet (`train --model meshnet`) is trained for one domain, here for each of the first {count} domains
-of the last table, with {epochs} steps (default 15,000). The training is part of the CPU time. The boundary
-nodes of the network's grid miss the given faces by up to {off} % of the domain size (median over the
-domains).
+of the last table, with {epochs} steps (default 15,000). The training is part of the CPU time. The largest
+distance of a boundary node of the network's grid from the given faces is {off} % of the domain size
+(median over the domains).
 
 - *3DMeshNet*: the given boundary nodes replace those of the network (`infer --answer pasted`).
 - *3DMeshNet, repaired*: folded cells are repaired too, as by `infer` without options.

@@ -42,7 +42,7 @@ COLUMNS = """
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
 
 NETWORKS = """
-- meshonet repairs folded cells, except with `--no-repair`. Here all grids are written, also those with
+- `meshonet infer` and `solve-pde` repair folded cells, except with `--no-repair`; `tfi` does not. Here all grids are written, also those with
   folded cells (`--allow-invalid`).
 - One four-sided domain, `wavy-15`, has a corner of 182 degrees, at which every grid has a folded cell.
   `infer` and `solve-pde --method variational` fold no other cells.

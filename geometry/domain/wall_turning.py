@@ -33,7 +33,7 @@ def _turned(loop: Loop, arc: Floats, arcs: Floats, turned: Floats) -> Floats:
 
 
 def corners_between(loop: Loop, first: float, last: float) -> tuple[Floats, Indices]:
-    """Return arc lengths and numbers of cells of the corners strictly between two arc lengths, in order."""
+    """Return the corners strictly between two arc lengths: arc lengths, and how many cells meet at each."""
     low, high = min(first, last), max(first, last)
     rounds = np.floor(low / loop.length) + np.arange(3)
     arcs = (loop.corner_arcs + rounds[:, None] * loop.length).ravel()

@@ -154,7 +154,7 @@ class Stack:
     def cants(self) -> Floats:
         """(n,) cant (rotation about x) of the sections in radians.
 
-        A cant ``panel`` is the mean dihedral of the adjacent panels, and 0 in a plane of symmetry.
+        Input ``panel``: the mean dihedral of the adjacent panels, and 0 in a plane of symmetry.
         """
         panels = self.dihedrals
         own = np.concatenate([[0.0], 0.5 * (panels[1:] + panels[:-1]), panels[-1:]])

@@ -54,8 +54,8 @@ def plot(
     ),
     slice_: str | None = _option(
         "--slice", metavar="SLICE", help="Draw this slice of a volume: a grid surface of constant index, "
-        "such as i=10 or k=-1 (the last), or a plane such as x=.5. [default: no slice but the walls; without "
-        "walls the whole boundary]",
+        "such as i=10 or k=-1 (the last), or a plane such as x=.5. [default: the walls of the volume instead "
+        "of a slice; if it has no walls, its whole boundary]",
     ),
     span: str | None = _option(
         metavar="S,...", help="Draw sections of a blade row, side by side, at these fractions of the span, "

@@ -58,9 +58,9 @@ def solve_pde(
     ),
     coarse: str = _option(
         default="auto", metavar="auto|off|N", help="Solve on at most N x N nodes and interpolate to --res by "
-        "splines. off: solve on all nodes. auto: N = 257 for winslow with more than 512 nodes along a side "
-        "of a four-sided domain, N = 129 for variational with more than 257, at the same quality; else, and "
-        "with --tol, --max-cycles or --initial, all nodes.",
+        "splines. off: solve on all nodes. auto: in a four-sided domain, N = 257 for winslow with more "
+        "than 512 nodes along a side, and N = 129 for variational with more than 257; otherwise, and with "
+        "--tol, --max-cycles or --initial, off.",
     ),
     refine: o.Refine = 0,
     initial: str | None = _option(

@@ -20,12 +20,13 @@ Slide = Annotated[bool | None, _option(
     "first cell, else --no-slide]",
 )]
 FirstCell = Annotated[str | None, _option(
-    "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls. Its "
-    "unit is that of the input, but around a body in one block the chord of an airfoil or the largest extent "
-    "of another body (longer side of the bounding box). WALL=H,WALL=H gives layers to the named walls only. "
-    "Without names, layers are at south, north and sides named wall of a four-sided domain; at holes of a "
-    "multi-block grid; without holes, at all sides except inlet, outlet, axis and symmetry, if there is one "
-    "of these. --walls selects others. [default: no layers]",
+    "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, "
+    "in the unit of the input. In a one-block grid around a body the unit is the chord of an airfoil, or the "
+    "largest extent (longer side of the bounding box) of another body. WALL=H,WALL=H gives layers to the "
+    "named walls only. Without names, the walls are south, north and sides named wall of a four-sided "
+    "domain, and the holes of a multi-block grid. A domain without holes has walls only if a side is named "
+    "inlet, outlet, axis or symmetry: then all other sides are walls. --walls selects others. [default: no "
+    "layers]",
 )]
 YPlus = Annotated[float | None, _option(
     metavar="Y", help="y+ at the height of the first cell, instead of --first-cell; at the centre of the "

@@ -39,8 +39,9 @@ class BlockOptions:
     )
     layout: str | None = _option(
         metavar="LAYOUT.json", help="Use the blocks in this file, which meshonet layout wrote for the same "
-        "or a similar domain, and with a first cell if the grid has layers. In meshonet layout: fit these "
-        "blocks to DOMAIN and write them with about --cells cells. [default: new blocks]",
+        "or a similar domain. For a grid with layers, run meshonet layout with a first cell. The command "
+        "layout itself fits the blocks to DOMAIN and writes them with about --cells cells. [default: new "
+        "blocks]",
     )
     periodic: list[str] | None = _option(
         metavar="SIDE,SIDE", help="Make the nodes of two named sides of the outer boundary match; one must "

@@ -59,8 +59,8 @@ class SamplingOptions:
     te: Literal["auto", "exact", "round", "wedge"] = _option(
         default="auto", help="Shape of a blunt trailing edge. exact: unchanged; grid angles at its two "
         "corners are about 45 degrees off 90. round: rounded corners; at most 10 degrees off. wedge: closed "
-        "by a wedge, up to four base heights long. auto: wedge for a C grid that is not marched, or has no "
-        "first cell and a base of at most 0.005 chords; else exact.",
+        "by a wedge, up to four base heights long. auto: in a C grid, wedge if the grid is not marched, or "
+        "if there is no first cell and the base has at most 0.005 chords; otherwise exact.",
     )
     far_field: float | None = _option(
         metavar="R", help="Smallest distance of the far field from the middle of the body, in chords of a "

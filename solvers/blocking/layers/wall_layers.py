@@ -231,8 +231,8 @@ class Counts:
     times : factor from the counts of the last optimisation to the final counts.
     scale : factor by which the cell lengths along walls are multiplied.
     metric : target sizes.
-    layers : (rows,) number of layers of each row divided by the number that its thickness requires; known
-        after an optimisation, and averaged with the previous value.
+    layers : (rows,) ratio of the number of layers of each row to the number that the thickness of the row
+        requires, from the last optimisation, averaged with the ratio before.
     """
 
     coarse: Indices
