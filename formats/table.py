@@ -152,7 +152,7 @@ _FORMATS: tuple[Format, ...] = (
         read_shapes=partial(later, "meshonet.formats.outlines.vector:read_wkt"),
     ),
     _format(
-        "layout", ".json", "layout of blocks as JSON; read as its coarse grid, or as its domain to make a grid",
+        "layout", ".json", "layout of blocks as JSON; read as a coarse grid, or as the domain of a new one",
         "layout.read:read_shapes layout.read:read_grids layout.write:write_layouts",
         sniff=partial(holds, (b'"meshonet-layout"',)), names_patches=True,
     ),

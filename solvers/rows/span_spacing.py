@@ -81,7 +81,7 @@ def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | No
 def smooth_cells(
     length: Floats | float, ends: tuple[Floats | float, Floats | float | None], growth: float, least: int
 ) -> int:
-    """Return the smallest number of cells, from `least` on, for which `smooth_arcs` grows by at most `growth`.
+    """Return the least number of cells, from `least` on, for which `smooth_arcs` grows by at most `growth`.
 
     `length` and `ends` are numbers, or (n,) for n lines.
     """
