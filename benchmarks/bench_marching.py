@@ -36,16 +36,17 @@ from surfaces](../guide/marching-surfaces.md).
 
 Measured on one thread of {machine}, while other programs used the machine.
 
-- *bwb*: blended wing body. *m6_small*: ONERA M6 wing. *star*, *dented*: deformed spheres. The first four
-  surfaces are read from files.
+- *bwb*: blended wing body. *m6_small*: ONERA M6 wing. *star*, *dented*: deformed spheres. *wing, ring and
+  core*: wing whose tip is a patch with a ring of patches around it. The first four surfaces are read from
+  files.
 - *levels*: number of nodes along a grid line from the surface to the far field.
 - *first-cell height*, *distance of the far field*: prescribed values, in the length unit of the surface.
 - *folded cells*: cells in which a corner Jacobian, or a Bezier coefficient of the Jacobian, is not positive.
 - *relative error of first-cell height*: maximum over the nodes of the surface.
 - *angle off the normal*: angle between a grid line from the surface and the normals of the grid surfaces that
   it crosses.
-- *growth*: ratio of the heights of adjacent cells along a grid line, minus 1. *largest growth*: maximum over
-  the volume.
+- *growth*: ratio of the heights of adjacent cells along a grid line, minus 1. *prescribed growth*: follows
+  from first-cell height, levels and distance of the far field. *largest growth*: maximum over the volume.
 - *CPU time*: time to march and to test the volume, without reading and writing, best of 3 runs.
 
 """

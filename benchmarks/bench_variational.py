@@ -239,8 +239,8 @@ grids](../theory/elliptic.md) and [variational grids](../theory/variational.md).
   degrees, hexagon 135 degrees).
 - *deviation from 90 degrees at the sides*: mean for the grid lines that leave the four sides.
 - *distance to the solution on all nodes*: relative L2 distance from the grid by `winslow` or by `variational`
-  without `--coarse`; the grid by `quad-general` is compared with the grid by `variational`. Empty where there
-  is no such grid.
+  without `--coarse`; the grid by `quad-general` is compared with the grid by `variational`. Empty if this
+  grid was not computed on all nodes.
 - *grids worse than Winslow's*: number of grids whose maximum or mean is larger than in Winslow's grid.
 - *CPU time*: best of several runs; for random domains, the median over the domains.
 

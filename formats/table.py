@@ -93,7 +93,7 @@ _FORMATS: tuple[Format, ...] = (
         space=_BOTH,
     ),
     _format(
-        "vtu", ".vtu", "VTK XML unstructured grid; seams are merged, patches are numbers",
+        "vtu", ".vtu", "VTK XML unstructured grid; coincident nodes are merged, patches have numbers",
         "", write_grids=partial(_write, partial(later, "meshonet.formats.meshio_export:write_vtu"), "vtu"),
         blocks="merged", space=_BOTH,
     ),
@@ -152,7 +152,7 @@ _FORMATS: tuple[Format, ...] = (
         read_shapes=partial(later, "meshonet.formats.outlines.vector:read_wkt"),
     ),
     _format(
-        "layout", ".json", "layout of blocks as JSON; read as a coarse grid, or as the domain of a new one",
+        "layout", ".json", "layout of blocks as JSON; read as a coarse grid or as a domain",
         "layout.read:read_shapes layout.read:read_grids layout.write:write_layouts",
         sniff=partial(holds, (b'"meshonet-layout"',)), names_patches=True,
     ),
