@@ -208,12 +208,11 @@ def families(twin: str) -> str:
 FAMILIES = """
 ## Shapes of the MeshONet paper, 101 x 101
 
-The table gives the median distance to Winslow's solution for six shapes of a
-[family](../reference/families.md) and, in brackets, the number of grids with folded cells. *MeshONet* is the
-paper's network and *MeshONet-hard* a variant. Both were trained on 30 shapes of each family
-([the reproduction](paper/index.md)); *interpolation* shapes are inside the range of this training,
-*extrapolation* shapes outside. `quad-winslow` was not trained on the families. Winslow's own grids of the
-wrench have folded cells.
+Each entry is the median distance to Winslow's solution for six shapes of a [family](../reference/families.md)
+and, in brackets, the number of these six grids that have folded cells. *MeshONet* is the paper's network and
+*MeshONet-hard* a variant. Both were trained on 30 shapes of each family ([the reproduction](paper/index.md));
+*interpolation* shapes are inside the range of this training, *extrapolation* shapes outside. `quad-winslow`
+was not trained on the families. Winslow's own grids of the wrench have folded cells.
 
 | family | quad-winslow --polish off | quad-winslow --polish 1 | MeshONet | MeshONet-hard |
 | --- | --- | --- | --- | --- |"""
@@ -249,9 +248,9 @@ TAIL = """
   to 5 ms, but its gain is only 94 to 96 %.
 - **Batches**: use `infer --model quad-general --polish off`. A grid takes 1.1 ms in a batch, and 8.4 ms with
   the solver. Up to 0.9 % of the grids have folded cells, which `infer` repairs. With `--polish 2` all 372
-  grids are valid, and a grid takes 5.5 ms.
-- **Python**: `load("quad-general").solve(boundaries, "off", dtype="float32", threads=2)` takes 0.6 ms of CPU
-  time per grid. The second thread does not change the grids.
+  grids of the first three tables are valid, and a grid takes 5.5 ms in a batch.
+- **Python**: `load("quad-general").solve(boundaries, "off", dtype="float32")` takes 0.6 ms of CPU time per
+  grid. `threads=2` adds a second thread, which does not change the grids.
 - **Winslow's grid**: use `solve-pde`. On 65 x 65 nodes, Winslow's solver takes 2.8 ms and `quad-winslow`
   4.0 ms. On 385 x 385 nodes, *Winslow --coarse 65* and `quad-winslow` take 4.8 and 4.5 ms, and their median
   distances are 2.0e-04 and 1.7e-04.
