@@ -249,16 +249,18 @@ Rows of the tables; bold rows are `infer` and the networks:
 Terms and columns:
 
 - *procedural airfoils*: random airfoils that a formula generates; none was used to train a network. Brackets
-  in headings: number of shapes. Shapes without a converged solution of Winslow's equations are left out.
+  in headings: number of shapes, including those without a converged solution of Winslow's equations, which
+  are left out of the tables.
 - *spacing*: law by which the wall nodes are distributed (`--spacing`).
 - *grids without folded cells*: share of the grids, before repair.
-- *reference grid*: Winslow's converged solution, extrapolated from two finer grids; with uniform spacing of
-  the wall nodes its error is about 1e-4. For the rows *variational* and *quad-general* it is the grid of the
-  row *variational, all nodes*.
+- *reference grid*: Winslow's converged solution, extrapolated from two grids; the finer of them has 2 or 4
+  times as many cells in each direction as the tested grid. With uniform spacing of the wall nodes the error
+  of the reference grid is about 1e-4. For the rows *variational* and *quad-general* the reference grid is
+  that of the row *variational, all nodes*.
 - *distance*: root mean square distance of the nodes from their places in the reference grid, divided by the
   root mean square distance of the reference nodes from the centre of the shape. *near the wall*: only nodes
-  within 1.5 chords of the centre of the airfoil, or in the tenth of the rows that is next to a side. For TFI
-  the distance does not measure quality.
+  within 1.5 chords of the centre of the airfoil; in four-sided domains, the tenth of the rows next to each
+  side. For TFI the distance does not measure quality.
 - *largest angle*, *mean angle*: maximum and mean, over the cells, of the largest angle of a cell. *relative
   to Winslow*: divided by the value of Winslow's converged grid on the same boundary. Smaller is better.
 - *CPU time*: time to generate the grid, without reading, writing and repair; median over the shapes.
@@ -274,8 +276,8 @@ cells.
   the plate with a hole. These networks were not trained on the families.
 - *network, polished*: 2 multigrid cycles after the network; for the airfoil, `infer` without options.
 - *MeshONet*, *MeshONet-hard*: the network of the paper, and a similar network whose boundary nodes are
-  exactly the given nodes; [both](paper/index.md) were trained on 30 shapes of each family. The distance is
-  from the grid of the PDE solver.
+  exactly the given nodes; [both](paper/index.md) were trained on 30 shapes of each family. In these two
+  columns the distance is from the grid of `solve-pde` with 101x101 nodes, without extrapolation.
 - *interpolation*, *extrapolation*: shapes inside and outside the range of the training shapes of MeshONet.
 """
 TIMES_HEAD = """

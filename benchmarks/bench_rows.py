@@ -52,7 +52,7 @@ other programs run.
 ## Rotor 37
 
 Rotor 37 is NASA's transonic compressor rotor, with a tip gap of 0.356 mm. Its grids differ in `--cells`; the
-first-cell height is {first:g} chords, and the growth ratio to be kept 1.2.
+first-cell height is {first:g} chords, and `--growth` is 1.2.
 
 | nodes | folded cells | scaled Jacobian | largest angle, degrees | first-cell error \
 | growth: 99.9th percentile / largest | distance from the blade, chords | CPU time, s |

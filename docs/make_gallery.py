@@ -39,7 +39,7 @@ TABLE = """# Multi-block grids of thirty domains
 
 <!-- made by python docs/make_gallery.py (make gallery) -->
 
-Use this page to find the blocks and the quality of the grid for a domain similar to yours. The domains are
+Use this page to find the number of blocks and the grid quality for a domain similar to yours. The domains are
 those of the [gallery](../gallery/domains.md). The command is `meshonet solve-pde DOMAIN.geojson --cells 900`.
 
 - *irregular vertices*: interior nodes at which more or fewer than four cells meet.
