@@ -11,7 +11,7 @@ code  meaning
 143   terminated
 ===== ==========================================================================
 
-A batch ends with the greatest code of its members: 3 is worse than 2, and 2 is worse than 1.
+A batch ends with the greatest code of its members.
 """
 
 import contextlib

@@ -43,8 +43,9 @@ def convert(
         "three-dimensional grids. The result has one layer of cells, or more with --planes.",
     ),
     planes: int | None = _option(
-        metavar="K", min=2, max=10_000, help="Number of planes of nodes for --extrude or --revolve, one "
-        "more than the layers of cells. [default: 2; for sectors and full rings, cells of at most 4 degrees]",
+        metavar="K", min=2, max=10_000, help="Number of planes of nodes for --extrude or --revolve, one more "
+        "than the layers of cells. [default: 2; in sectors and full rings as many as cells of at most 4 "
+        "degrees need]",
     ),
     plot3d: str | None = _output(
         metavar="WORDS", help="Variant of the Plot3D file to write, or to read if the output has another "

@@ -34,11 +34,11 @@ def infer(
     polish: str = _option(
         default="auto", metavar="auto|off|N", help="Number of solver iterations after the neural operator: "
         "elliptic around bodies, variational in four-sided domains. off: none. auto: as many as suit the "
-        "model. off or N without --model selects the default model for the topology.",
+        "model. Without --model, off or N selects the default model for the topology.",
     ),
     answer: Literal["valid", "pasted", "raw"] = _option(
         default="valid", help="Treatment of the grid that a network predicts. raw: unchanged; its boundary "
-        "nodes can differ from the given ones. pasted: with the given boundary nodes. valid: also with "
+        "nodes can differ from the given ones. pasted: with the given boundary nodes. valid: as pasted, with "
         "folded cells repaired.",
     ),
     device: Literal["cpu", "cuda"] | None = _option(

@@ -43,9 +43,9 @@ def plot(
     files: PictureFiles,
     run: o.InputOptions,
     metric: str = _option(
-        default="max_angle", metavar="METRIC", help="Metric that colours the cells: one of the report of "
-        "meshonet quality, growth (along grid lines), or checkMesh's non_orthogonality, face_skewness or "
-        "box_ratio. none: grid lines only.",
+        default="max_angle", metavar="METRIC", help="Metric that colours the cells: one in the report of "
+        "meshonet quality; growth (along grid lines); or non_orthogonality, face_skewness or box_ratio of "
+        "checkMesh. none: grid lines only.",
     ),
     zoom: str | None = _option(
         metavar="x0,x1,y0,y1", help="Show only this region: x0,x1,y0,y1 of a planar grid, x0,x1,y0,y1,z0,z1 "

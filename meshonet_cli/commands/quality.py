@@ -23,12 +23,12 @@ def quality(
     run: o.InputOptions,
     gates: o.GateOptions,
     plot: str | None = _output(
-        metavar="F.png", help="Draw the grid, coloured by max_angle, into this picture; for several grids "
-        "into '{stem}.png'.",
+        metavar="F.png", help="Draw the grid, coloured by max_angle, into this picture. For several grids: a "
+        "pattern such as '{stem}.png'.",
     ),
     html: str | None = _output(
         metavar="F.html", help="Write a report page with pictures, histograms, the worst cells, and the "
-        "results of --fail-on and --profile; only for the 20 worst of more than 20 grids.",
+        "results of --fail-on and --profile. Of more than 20 grids it shows the 20 worst.",
     ),
     per_cell: str | None = _output(
         metavar="F.vts", help="Write all metrics of every cell into this file: .vts, or .vtm for a "
@@ -42,8 +42,8 @@ def quality(
     ),
     pair: Literal["auto", "name", "order"] | None = _check(
         help="Rule that assigns grids to the references of --compare. name: equal names. order: first to "
-        "first, and so on. auto: all grids to a single reference; of several references, by name if the "
-        "names agree, else by order. [default: auto]",
+        "first, and so on. auto: a single reference for all grids; several by name if the names agree, else "
+        "by order. [default: auto]",
     ),
     reynolds: float | None = _check(
         metavar="RE", help="Reynolds number, based on --length. The report then gives y+ of the first cells "

@@ -29,7 +29,7 @@ def sample_boundary(
     family: str | None = _option(
         metavar="NAME", help="Make shapes with random parameters instead of reading files. arch, hexagon, "
         "wrench, semicircle, airfoil and hole: the families of the MeshONet paper, with one parameter each. "
-        "procedural: airfoils. four-sided: quad domains. bodies: bodies in far fields. Without --res, "
+        "procedural: airfoils. four-sided: four-sided domains. bodies: bodies in far fields. Without --res, "
         "boundaries have 101x101 nodes.",
     ),
     count: int | None = _option(metavar="N", min=1, help="Number of shapes of the --family. [default: 1]"),

@@ -22,8 +22,9 @@ EXAMPLES = (
 _option = o.option_of(o.METHOD)
 
 AUTO = (
-    "hyperbolic around a body with a first cell, and for C grids without one unless {coarse}, {refine}, "
-    "{tol}, {max_cycles} or {initial} is given; variational for multi-block grids and volumes; else winslow"
+    "hyperbolic outside a body or surface with a first cell, and for C grids if none of {coarse}, {refine}, "
+    "{tol}, {max_cycles} and {initial} is given; variational for multi-block grids and inside six faces; "
+    "else winslow"
 )
 SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves} | {"auto": AUTO}
 if TYPE_CHECKING:
@@ -48,19 +49,19 @@ def solve_pde(
     ),
     tol: float | None = _option(
         metavar="T", help="Stop when the residual is below T times the residual of transfinite "
-        "interpolation; for the variational method, when no node moves by more than about T times the "
+        "interpolation. The variational method stops when no node moves by more than about T times the "
         "square root of the area of the domain. [default: stop when the iteration error is below the "
         "discretisation error]",
     ),
     max_cycles: int | None = _option(
-        metavar="N", min=1, help="Largest number of multigrid cycles; for the variational method, of "
-        "iterations on all nodes. [default: 30; variational 200]",
+        metavar="N", min=1, help="Largest number of multigrid cycles, or of iterations of the variational "
+        "method on all nodes. [default: 30 cycles; 200 iterations]",
     ),
     coarse: str = _option(
         default="auto", metavar="auto|off|N", help="Solve on at most N x N nodes and interpolate to --res by "
-        "splines. off: solve on all nodes. auto: in a four-sided domain, N = 257 for winslow with more "
-        "than 512 nodes along a side, and N = 129 for variational with more than 257; otherwise, and with "
-        "--tol, --max-cycles or --initial, off.",
+        "splines. off: solve on all nodes. auto: in four-sided domains, N = 257 for winslow with more than "
+        "512 nodes along a side, N = 129 for variational with more than 257. In all other cases, and with "
+        "--tol, --max-cycles or --initial: off.",
     ),
     refine: o.Refine = 0,
     initial: str | None = _option(

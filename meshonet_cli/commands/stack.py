@@ -35,15 +35,15 @@ def stack(
         help="File with two or more sections, or - for standard input. A section of a wing or blade has an "
         "airfoil (a file or naca:2412), a chord, its position z and, where needed, x, y and twist, or sweep "
         "and dihedral. A section of a duct has an outline instead: circle:RADIUS or a file with a closed "
-        "curve. The file of a blade row has profiles, hub and shroud instead; the file of an aircraft a body "
-        "and wings, described by numbers or by surface files (Plot3D, CGNS or VTK).",
+        "curve. The file of a blade row has profiles, hub and shroud instead; the file of an aircraft has a "
+        "body and wings, described by numbers or by surface files (Plot3D, CGNS or VTK).",
     )],
     files: VolumeFiles,
     run: o.RunOptions,
     gates: o.GateOptions,
     around: int | None = _sampling(
-        metavar="N", help="Number of nodes around each section, odd; the first node counts twice. [default: "
-        "129]",
+        metavar="N", help="Odd number of nodes around each section. The first node is also the last and "
+        "counts twice. [default: 129]",
     ),
     span: int | None = _sampling(
         metavar="N", help="Number of nodes along z, from the first to the last section. [default: 49; more "
@@ -69,7 +69,8 @@ def stack(
     ),
     tip: Literal["round", "flat", "open"] | None = _volume(
         help="Tip of a wing. round: closed by a cap of half the local thickness. flat: closed by a plane. "
-        "open: not closed, in a plane of symmetry. [default: as given in the file, else round]",
+        "open: the tip is not closed and lies in a plane of symmetry. [default: as given in the file, else "
+        "round]",
     ),
     revolve: float | None = _volume(
         metavar="DEGREES", help="Bend the z axis of a blade or duct around --axis, by this angle in degrees "
@@ -82,7 +83,7 @@ def stack(
     layers: o.Layers = None,
     first_cell: float | None = _layer(
         "--first-cell", "--wall-spacing", metavar="H", help="Height of the first cell at every wall, in "
-        "longest chords; in ducts in the unit of the file. [default: 0.001; in ducts about the height of "
+        "longest chords, or for ducts in the unit of the file. [default: 0.001; in ducts about the height of "
         "the cells in the middle]",
     ),
     y_plus: o.YPlus = None,

@@ -44,7 +44,7 @@ def sweep(
     ),
     around: int | None = _sampling(
         metavar="N", help="Number of cells around a circle, a multiple of four. [default: 88; with --cells, "
-        "derived from it and at least 84, so that the area is accurate to 0.1 %]",
+        "as many as it requires, but at least 84 to keep the area within 0.1 %]",
     ),
     planes: int | None = _volume(
         metavar="K", help="Number of planes of nodes along the path or around the axis. [default: as many "
@@ -66,8 +66,8 @@ def sweep(
     revolve: o.Revolve = None,
     axis: o.Axis = None,
     cells: int | None = o.option_of(o.DOMAIN)(
-        metavar="N", help="Approximate number of cells in the section; more in a circle whose area would be "
-        "wrong by over 0.1 %. [default: derived from --around for a circle, else 2500]",
+        metavar="N", help="Approximate number of cells in the section; a circle has more if its area would "
+        "be wrong by over 0.1 %. [default: set by --around for a circle, else 2500]",
     ),
     cell_size: float | None = o.option_of(o.DOMAIN)(
         metavar="H", help="Edge length of cells away from walls, in the unit of the section, instead of "
@@ -80,15 +80,16 @@ def sweep(
     walls: o.Walls = None,
     first_cell: str | None = o.option_of(o.BOUNDARY_LAYER)(
         "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, "
-        "in the unit of the section. WALL=H,WALL=H gives layers to the named walls of a multi-block section "
-        "only. Without names, layers are at all sides of a four-sided section, at holes, and at an outer "
-        "curve without corners, but not at sides named inlet, outlet, axis or symmetry. [default: no layers]",
+        "in the unit of the section. WALL=H,WALL=H makes a multi-block section with layers at the named "
+        "walls only. Without names, layers are at all sides of a four-sided section, at holes, and at an "
+        "outer curve without corners, but not at sides named inlet, outlet, axis or symmetry. [default: no "
+        "layers]",
     ),
     y_plus: o.YPlusAtWalls = None,
     reynolds: o.Reynolds = None,
     length: float | None = o.option_of(o.BOUNDARY_LAYER)(
         metavar="L", help="Reference length of --reynolds, in the unit of the section. [default: the largest "
-        "extent of the section; the diameter of a pipe]",
+        "extent of the section]",
     ),
     growth: float | None = o.option_of(o.BOUNDARY_LAYER)(
         metavar="G", help="Largest ratio of the heights of neighbouring cells along a grid line away from "

@@ -59,7 +59,7 @@ class TrainOptions:
         "training. [default: strip the last 300, quad 600, others 0]",
     )
     initial: str | None = _option(
-        metavar="NAME|PATH", help="Model whose weights the training of a quad operator starts from. "
+        metavar="NAME|PATH", help="Model with the weights from which the training of a quad operator starts. "
         "[default: random weights]",
     )
     patience: int | None = _option(
@@ -76,7 +76,7 @@ class TrainOptions:
         "quad, auto for others]",
     )
     amp: bool = _option(
-        default=False, help="Multiply matrices in bfloat16 where the accuracy permits it. On a CPU without "
+        default=False, help="Multiply matrices in bfloat16 where the accuracy permits. On a CPU without "
         "bfloat16 units this takes twice as long.",
     )
     compiled: bool = _option(

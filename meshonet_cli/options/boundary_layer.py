@@ -10,23 +10,22 @@ _option = option_of(BOUNDARY_LAYER)
 # fmt: off
 WallAngle = Annotated[float | None, _option(
     metavar="DEGREES", help="Angle between grid lines and walls in degrees, for --method steger-sorenson. It "
-    "applies to sides with a first cell; if there are none, to south and north, or to the body. [default: "
-    "90]",
+    "applies to sides with a first cell; if no side has one, to south and north, or to the wall of a body. "
+    "[default: 90]",
 )]
 Slide = Annotated[bool | None, _option(
     "--slide/--no-slide", help="Move wall nodes along the walls, so that grid lines leave the walls at right "
     "angles: along south and north of a four-sided domain, or along all sides of a given multi-block grid. "
-    "[default: --slide for --method auto if this command places the wall nodes and south or north has a "
-    "first cell, else --no-slide]",
+    "[default: --slide if --method is auto, this command places the wall nodes, and south or north has a "
+    "first cell; else --no-slide]",
 )]
 FirstCell = Annotated[str | None, _option(
-    "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, "
-    "in the unit of the input. In a one-block grid around a body the unit is the chord of an airfoil, or the "
+    "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, in "
+    "the unit of the input. In a one-block grid around a body the unit is the chord of an airfoil, or the "
     "largest extent (longer side of the bounding box) of another body. WALL=H,WALL=H gives layers to the "
     "named walls only. Without names, the walls are south, north and sides named wall of a four-sided "
-    "domain, and the holes of a multi-block grid. A domain without holes has walls only if a side is named "
-    "inlet, outlet, axis or symmetry: then all other sides are walls. --walls selects others. [default: no "
-    "layers]",
+    "domain, and the holes of a multi-block grid. A multi-block grid without holes has walls only if a side "
+    "is named inlet, outlet, axis or symmetry: all its other sides are then walls. [default: no layers]",
 )]
 YPlus = Annotated[float | None, _option(
     metavar="Y", help="y+ at the height of the first cell, instead of --first-cell; at the centre of the "
@@ -38,9 +37,10 @@ YPlusAtWalls = Annotated[str | None, _option(
     "--reynolds for a turbulent flat plate.",
 )]
 Length = Annotated[float | None, _option(
-    metavar="L", help="Reference length of --reynolds, in the unit of --first-cell. [default: chord or "
-    "largest extent of a body; from the first to the farthest node of south in a four-sided domain; largest "
-    "extent of all holes, else of the domain, in a multi-block grid; 1 for a marched volume]",
+    metavar="L", help="Reference length of --reynolds, in the unit of --first-cell. [default: of a body, "
+    "chord or largest extent; of a four-sided domain, distance from the first to the farthest node of south; "
+    "of a multi-block grid, largest extent of all holes, or of the domain if it has none; of a marched "
+    "volume, 1]",
 )]
 Reynolds = Annotated[float | None, _option(
     metavar="RE", help="Reynolds number for --y-plus, based on --length.",
@@ -69,12 +69,12 @@ class LayerOptions:
     length: Length = None
     chord_fraction: float = _option(
         default=0.5, metavar="X", help="Distance from the leading edge, as a fraction of --length, at which "
-        "the flat plate has this y+.",
+        "the flat plate has the given y+.",
     )
     growth: float | None = _option(
         metavar="G", help="Largest ratio of the heights of neighbouring cells along a grid line away from "
-        "the wall, e.g. 1.15. The number of rows follows from it, unless --res gives NJ. [default: 1.2 for "
-        "multi-block grids and marched volumes; otherwise from the number of rows]",
+        "the wall. The number of rows follows from it, unless --res gives NJ. [default: 1.2 for multi-block "
+        "grids and marched volumes; otherwise set by the number of rows]",
     )
     constant_layers: int | None = _option(
         metavar="K", min=1, help="Number of rows at the wall with the height of the first cell, before "

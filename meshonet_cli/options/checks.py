@@ -51,8 +51,8 @@ class GateOptions:
     )
     profile: list[Profile] | None = _option(
         metavar="openfoam|pointwise|verdict|viscous", help="Check the grid against the thresholds of another "
-        "program or guideline, listed on the documentation's page on quality: each gives pass, warn or FAIL, "
-        "and a FAIL exits with code 1. Repeatable.",
+        "program or guideline, listed on the documentation's page on quality. Each threshold gives pass, "
+        "warn or FAIL; FAIL exits with code 1. Repeatable.",
     )
 
     def criteria(self, leave_out: bool = False, *, more: Sequence[str] = ()) -> "Criteria | None":

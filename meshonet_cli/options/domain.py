@@ -11,8 +11,8 @@ _COUNTS = "use SIDE=N, e.g. inlet=40,floor=120"
 
 # fmt: off
 BlocksName = Annotated[Literal["auto", "single"], _option(
-    "--blocks", help="Number of blocks. auto: one for a four-sided domain or a body in a far field, several "
-    "for all other domains. single: one.",
+    "--blocks", help="Number of blocks. auto: one for a four-sided domain or a body in a far field, else "
+    "several. single: one.",
 )]
 Walls = Annotated[str | None, _option(
     metavar="NAME,NAME", help="Names of the walls with layers: holes, or named parts of a boundary curve. "
@@ -39,20 +39,19 @@ class BlockOptions:
     )
     layout: str | None = _option(
         metavar="LAYOUT.json", help="Use the blocks in this file, which meshonet layout wrote for the same "
-        "or a similar domain. For a grid with layers, run meshonet layout with a first cell. The command "
-        "layout itself fits the blocks to DOMAIN and writes them with about --cells cells. [default: new "
-        "blocks]",
+        "or a similar domain. For a grid with layers, run meshonet layout with a first cell. In meshonet "
+        "layout: fit these blocks to DOMAIN and write them with about --cells cells. [default: new blocks]",
     )
     periodic: list[str] | None = _option(
         metavar="SIDE,SIDE", help="Make the nodes of two named sides of the outer boundary match; one must "
-        "be a translation of the other. Formats that know periodic sides mark them. Repeat the option for a "
-        "second pair. A GeoJSON file may have the property periodic instead.",
+        "be a translation of the other. Formats that support periodic sides mark the two. Repeat the option "
+        "for a second pair. A GeoJSON file may have the property periodic instead.",
     )
 
     walls: Walls = None
     count: str | None = _option(
         metavar="SIDE=N,...", help="Number of cells along each named side of the domain, e.g. inlet=40. "
-        "Opposite sides of a block have equal numbers, so some combinations are impossible. [default: from "
+        "Opposite sides of a block have equal numbers, so some combinations are impossible. [default: set by "
         "--cells]",
     )
 

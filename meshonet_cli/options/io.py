@@ -50,10 +50,10 @@ Threads = Annotated[int | None, _option(
 )]
 AsJson = Annotated[bool, _option("--json", help="Print one JSON object per result on standard output.")]
 PartSize = Annotated[int | None, _option(
-    metavar="N", min=1, max=1_000_000, help="Write an .h5 dataset in parts of N inputs each: "
-    "out/part-00000.h5, out/part-00001.h5 and so on; out.h5 presents them as one dataset. --skip-existing "
-    "continues an unfinished dataset. [default: parts of up to 256 MiB with --shard or more than 10,000 "
-    "inputs, else no parts]",
+    metavar="N", min=1, max=1_000_000, help="Write the dataset out.h5 in parts of N inputs each: "
+    "out/part-00000.h5, out/part-00001.h5 and so on; out.h5 presents them as one. --skip-existing continues "
+    "an unfinished dataset. [default: with --shard or more than 10,000 inputs, parts of up to 256 MiB; else "
+    "no parts]",
 )]
 Debug = Annotated[bool, _option(help="Show the traceback of errors.")]
 

@@ -25,8 +25,8 @@ _option = option_of(SAMPLING)
 Resolution = Annotated[str | None, _option(
     "--res", metavar="N|NIxNJ[xNK]", help="Number of nodes: N along every direction, or NI along xi (around "
     "a body), NJ along eta (away from it) and NK along zeta (volumes). If --growth determines the number of "
-    "rows, N is NI. For a multi-block grid, number of cells along its largest extent. [default: the nodes of "
-    "the input; 200x100 for airfoils and outlines]",
+    "rows, N is NI. For a multi-block grid N is the number of cells along its largest extent. [default: the "
+    "nodes of the input; 200x100 for airfoils and outlines]",
 )]
 
 
@@ -37,39 +37,39 @@ class SamplingOptions:
     res: Resolution = None
     topology: TopologyName = _option(
         default="auto", help="Topology of the grid. quad: four-sided. o: around a body. c: around an airfoil "
-        "and its wake; NI includes both sides of the wake. auto: c for an airfoil with a sharp trailing edge "
-        "if a first cell is given (not in tfi); o for other airfoils, and outlines with fewer than four "
-        "corners; else quad.",
+        "and its wake; NI includes both sides of the wake. auto: c around an airfoil with a sharp trailing "
+        "edge and a first cell (not in tfi); o around other airfoils and outlines with fewer than four "
+        "convex corners; else quad.",
     )
     spacing: SpacingName = _option(
         default="auto", help="Distribution of the nodes along walls. uniform: equal cells. cosine, tanh: "
-        "smaller cells at both ends of a side, or at leading and trailing edge. curvature: there and at "
-        "bends. conformal: equal steps on the circle to which a conformal map takes the body. auto: "
-        "curvature in a C grid or with a first cell (not in tfi); otherwise tanh with --le-spacing or "
-        "--te-spacing; conformal around other airfoils and smooth bodies; else uniform.",
+        "smaller cells at both ends of a side, or at leading and trailing edge. curvature: smaller cells "
+        "also at bends. conformal: equal steps on the circle to which a conformal map takes the body. auto: "
+        "curvature in C grids and with a first cell (not in tfi). In all other grids: conformal around "
+        "airfoils and smooth bodies (tanh with --le-spacing or --te-spacing); else uniform.",
     )
     le_spacing: float | None = _option(
-        metavar="H", help="Length of the wall cells at the leading edge, in chords. [default: from "
+        metavar="H", help="Length of the wall cells at the leading edge, in chords. [default: set by "
         "--spacing]",
     )
     te_spacing: float | None = _option(
-        metavar="H", help="Length of the wall cells at the trailing edge, in chords. [default: from "
+        metavar="H", help="Length of the wall cells at the trailing edge, in chords. [default: set by "
         "--spacing]",
     )
     te: Literal["auto", "exact", "round", "wedge"] = _option(
         default="auto", help="Shape of a blunt trailing edge. exact: unchanged; grid angles at its two "
-        "corners are about 45 degrees off 90. round: rounded corners; at most 10 degrees off. wedge: closed "
-        "by a wedge, up to four base heights long. auto: in a C grid, wedge if the grid is not marched, or "
-        "if there is no first cell and the base has at most 0.005 chords; otherwise exact.",
+        "corners are about 45 degrees off 90. round: rounded corners with angles at most 10 degrees off 90. "
+        "wedge: closed by a wedge, up to four base heights long. auto: wedge in C grids that are not "
+        "marched, and in C grids without a first cell if the base is at most 0.005 chords high; else exact.",
     )
     far_field: float | None = _option(
-        metavar="R", help="Smallest distance of the far field from the middle of the body, in chords of a "
-        "single airfoil, else in largest extents of all bodies together. For lift and drag use 100 or more. "
-        "For a volume marched from a surface: marching distance, in the unit of the surface. [default: 15; "
-        "from a surface 15 largest extents]",
+        metavar="R", help="Smallest distance of the far field from the middle of the body. Its unit is the "
+        "chord of a single airfoil, or the largest extent of all bodies together. For lift and drag use 100 "
+        "or more. A volume is marched over this distance, in the unit of its surface. [default: 15; for a "
+        "volume 15 largest extents]",
     )
     wake: float | None = _option(
-        metavar="L", help="Length of the wake of a C grid, from the trailing edge, in chords. [default: "
+        metavar="L", help="Length of the wake of a C grid, from the trailing edge, in chords. [default: as "
         "--far-field]",
     )
     wake_nodes: int | None = _option(
@@ -87,10 +87,10 @@ class SamplingOptions:
         "and the cells next to it]",
     )
     smooth: float | None = _option(
-        metavar="TOL", help="Smooth noisy or rounded airfoil coordinates by splines within TOL chords of the "
-        "points. Give 3 standard deviations of the noise, or one unit of the last digit: 1e-4 for four "
-        "decimals. A corner stays if it is more than 2 TOL off the line from the third point before to the "
-        "third after it. A base lower than TOL is closed. The report lists the changes. Needs SciPy. "
+        metavar="TOL", help="Smooth noisy or coarsely rounded airfoil coordinates by splines within TOL "
+        "chords of the points. Give 3 standard deviations of the noise, or one unit of the last digit: 1e-4 "
+        "for four decimals. A corner stays if it is more than 2 TOL off the line between the third points "
+        "before and after it. A base lower than TOL is closed. The report lists the changes. Needs SciPy. "
         "[default: off]",
     )
     corners: str = _option(

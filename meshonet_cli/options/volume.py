@@ -13,7 +13,7 @@ _option = option_of(VOLUME)
 # fmt: off
 Layers = Annotated[int | None, _option(
     metavar="N", min=3, help="Number of nodes along each grid line of a marched volume from the surface to "
-    "the far field, including both ends. [default: as many as --growth, by default 1.2, needs]",
+    "the far field, including both ends. [default: as many as --growth needs]",
 )]
 
 Revolve = Annotated[float | None, _option(
