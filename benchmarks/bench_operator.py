@@ -292,7 +292,7 @@ WHICH = """
 
 - **Airfoils**: use `infer`. For 39 airfoil files on 200x200 nodes the median time is 3.9 ms with `infer`, 6.2
   ms with the polished network and 8.9 ms with Winslow's equations on all nodes. In every table of airfoils
-  the median distance near the wall is smaller with `infer` than with the network alone.
+  on 200x200 nodes the median distance near the wall is smaller with `infer` than with the network alone.
 - **Large O grids**: on 800x800 nodes `infer` takes 14 ms, Winslow's equations on all nodes 153 ms.
 - **Folded cells**: no grid by `infer` around 100 procedural airfoils has folded cells before repair. Of
   Winslow's grids 5 to 31 % have some, depending on the spacing law.
