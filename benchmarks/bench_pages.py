@@ -42,7 +42,8 @@ loading the page to the first drawing of the grid, in Chromium without a graphic
 OTHERS = """
 ## Comparison with other libraries
 
-Each library writes a page of one O grid with 100,000 cells, with grid lines and coloured by one cell metric.
+Each library writes a page of the grid of 401 x 251 nodes, with grid lines and coloured by one cell metric.
+meshonet was timed again.
 *Metrics in the page*: the metrics that a user can show.
 
 | library | size, MB | time to write, s | time to display, s | metrics in the page |

@@ -59,9 +59,9 @@ QUALITY = """
 Each case has 30 training shapes and 6 test shapes of 101 x 101 nodes. The networks learn from the grids of the
 PDE solver. All values are for test shapes. *Mean* is an average over the test grids.
 
-In each solved grid of the wrench, 4 to 18 cells at the two corners of 270 degrees are folded. They are
-repaired together with the 12 cells around them; this number was chosen after looking at all grids, including
-the test grids.
+In each solved grid of the wrench, 4 to 18 cells at the two corners of 270 degrees are folded. A repair moves
+all nodes within 12 cells of a folded cell. The number 12 was chosen after looking at all grids, including the
+test grids.
 """
 
 RACE = """
@@ -96,7 +96,7 @@ TIME = """
 
 The table gives seconds from boundary nodes in memory to grid nodes in memory, for an arch that was not used in
 training. For more than 512² nodes, `solve-pde` solves on 257² nodes and interpolates. A dash means not
-measured. Our times are for one thread on {machine}; the paper's MeshONet ran on an RTX 4090.
+measured. Our programs ran in one thread on {machine}; the paper's MeshONet ran on an RTX 4090.
 """
 
 MAPS = """
@@ -113,9 +113,9 @@ has 3,000 epochs. The optimiser is Adam with a learning rate of 0.001, which is 
 fifteenth of the epochs. A step uses 30 shapes, 1,000 random points inside and 200 on the boundary. The loss of
 `meshonet` is 900 times the mean square error inside plus 1,000 times the mean square error on the boundary.
 
-`meshonet-hard` on wrench and airfoil uses a quarter of the points, and modes of the training grids instead of
-a trunk network ([reasons](../../theory/paper-models.md#meshonet-hard)). On the wrench the learning rate is
-0.003 with a cosine schedule.
+`meshonet-hard` on wrench and airfoil uses a quarter of the points, and proper orthogonal modes of the training
+grids instead of a trunk network ([reasons](../../theory/paper-models.md#meshonet-hard)). On the wrench the
+learning rate is 0.003 with a cosine schedule.
 """
 
 SECONDS = {
