@@ -51,7 +51,8 @@ Methods:
 - *IDW*: inverse-distance weighting of displacements, with weights 1/r^3 (Witteveen, Bijl, AIAA 2009-3996).
 - *IDW, rotations*: inverse-distance weighting of displacements and rotations, with the exponents -3 and -5
   (Luke, Collins, Blades, J. Comput. Phys. 231 (2012) 586-601).
-- *deform*: as *IDW, rotations*, but with the exponents -2 and -4 and with distant boundary nodes in groups.
+- *deform*: as *IDW, rotations*, but with the exponents -2 and -4; each group of distant boundary nodes counts
+  as one node.
   If cells are folded, `deform` repeats the deformation in several steps; here this happens for {steps}
   deformations.
 

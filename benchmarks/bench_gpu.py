@@ -49,7 +49,7 @@ this page. Rows that were not measured for lack of time are marked.
   runs give bitwise equal nodes.
 - **Operators**: `infer --device cuda` with three networks.
 - **Training**: shapes per second of three networks, for two batch sizes and with the options `--amp` and
-  `--compile`. Relative values compare training with and without these options. The time of compiling does not
+  `--compile`. Relative values are divided by those without these options. The time of compiling does not
   count.
 - *MB*: peak memory of the GPU.
 - *distance*: largest distance of a node from the node that the CPU computes, relative to the size of the

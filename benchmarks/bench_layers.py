@@ -42,7 +42,7 @@ which generate grids in torch. Their grids are compared with those of the compil
 
 The shapes are random: airfoils for `conformal`, four-sided domains for all other functions. The sides are
 given in double precision (*64 bits*), or rounded to single precision (*32 bits*). The compiled solvers
-compute with these sides.
+compute with the same sides, rounded or not.
 
 - *distance*: largest distance between a node of `meshonet.layer` and the node of the compiled solver,
   relative to the domain size.

@@ -212,9 +212,10 @@ def curve(name: str) -> list[str]:
     with path.open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     some = [rows[k] for k in sorted({0, len(rows) // 4, len(rows) // 2, len(rows) - 1})]
-    losses = ", ".join(f"{float(row['held_out_loss']):.3g} after {row['epoch']}" for row in some)
+    losses = ", ".join(f"{float(row['held_out_loss']):.3g}" for row in some)
+    epochs = ", ".join(row["epoch"] for row in some)
     what = "[loss](../theory/operators.md#training) on the held-out samples"
-    text = f"\nThe {what} is {losses} epochs ([every epoch](curves/{name}.csv))."
+    text = f"\nAfter {epochs} epochs the {what} is {losses} ([every epoch](curves/{name}.csv))."
     initial = described(name)["recipe"]["initial"]
     if initial not in shipped():
         text += f" The training continues an earlier one ([every epoch](curves/{initial}.csv))."
