@@ -55,8 +55,8 @@ Grids have {around} nodes around the wing and {span} along the span, and a far f
 - *scaled Jacobian*: smallest [scaled Jacobian](../reference/metrics.md#cells-of-volumes) of the cells of a
   grid.
 - *first-cell error*: largest relative error of a first-cell height.
-- *even growth*: share of the pairs of consecutive edges of grid lines, also across block interfaces, whose
-  lengths differ by a factor of at most 1.3.
+- *even growth*: of all pairs of consecutive edges of a grid line, the share whose lengths differ by a factor
+  of at most 1.3. Grid lines continue across block interfaces.
 - *angle to the wall normal*: 95th percentile of the angle between the normal of a wall and the grid line
   that leaves it.
 

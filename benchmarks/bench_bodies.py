@@ -160,7 +160,7 @@ WAKES = """
 
 A C grid is a four-sided domain whose south side consists of wake, airfoil and wake. The table gives averages
 over six grids of 201 x 65 nodes: around three airfoils, each with a far field at 5 and at 15 chords. The
-network `quad-general` for four-sided domains was not trained on C grids, and works on only 33 nodes per side.
+network `quad-general` for four-sided domains was not trained on C grids, and predicts 33 x 33 nodes only.
 Use `infer`, which marches C grids from the wall.
 
 | method | valid, % | largest angle, degrees | mean angle, degrees | CPU time per grid, ms |

@@ -207,9 +207,9 @@ line is the threshold of 0.03.
 ## Conclusions
 
 - Expected and true errors rise and fall together: the rank correlation is 0.91 to 1.00.
-- The expected error is more often too small than too large: in at least 90 % of the grids it is 0.20 to 1.25
-  times the true error. The medians of this ratio are 0.86 to 1.00. An accepted grid can therefore have a true
-  error above 0.03: with `--polish auto`, the largest true error is 0.057.
+- The expected error is more often too small than too large: the medians of its ratio to the true error are
+  0.86 to 1.00. In at least 90 % of the grids this ratio is 0.20 to 1.25. An accepted grid can therefore have
+  a true error above 0.03: with `--polish auto`, the largest true error is 0.057.
 - A low expected error does not exclude folded cells: without polish, 15 of 456 grids with a low expected
   error have folded cells. Acceptance therefore also requires that no cell is folded.
 - With `--polish auto`, all 480 grids of `quad-general`, `hole-o` and `airfoil-o` are accepted.

@@ -152,7 +152,8 @@ def pipes() -> str:
         "knot, closed": (knot, 0.4),
     }
     lines = ["", "## Pipes", "",
-             "A circular section, a square block and a ring of four blocks, is swept along each path.", "",
+             "A circular section is swept along each path. It consists of a square block and a ring of four "
+             "blocks.", "",
              "| path | folded cells | nodes | scaled Jacobian | largest angle, degrees | CPU time, ms |",
              "| --- | --- | --- | --- | --- | --- |"]  # fmt: skip
     for name, (points, radius) in paths.items():
