@@ -210,7 +210,7 @@ TAIL = """
 ## Conclusions
 
 - **Default**: `infer` without `--model` uses `hole-o` only for compact bodies for which the conformal map
-  fails. If the network's grid on 65 x 33 nodes has folded cells, the elliptic solver generates the grid.
+  fails. The network predicts 65 x 33 nodes; if these cells are folded, the elliptic solver makes the grid.
 - **Quality**: all 44 grids of `hole-o --polish 5` are valid, with a gain of 93 to 96 %. Of Winslow's grids on
   129 x 65 nodes, 24 % have folded cells.
 - **Time**: `hole-o --polish 5` takes about three times as long as Winslow's solver, and a third of the time
@@ -218,8 +218,8 @@ TAIL = """
 - **Spacing**: in the grids of `hole-o` and of the variational solver, grid lines cluster where the body is
   close to the far field.
 - **Limits**: `hole-o` was not trained on bodies whose centroid lies outside them, such as clips, crescents
-  and angle sections. Around such bodies its grids often have folded cells without polish. For 25 plates,
-  crescents and angle sections, all grids of `--polish 5` were valid.
+  and angle sections. Around such bodies its grids often have folded cells without polish. For 25 such bodies
+  and thin plates, all grids of `--polish 5` were valid.
 """
 
 if __name__ == "__main__":

@@ -64,7 +64,7 @@ class QualityReport:
     quality : Quality
         Statistics of every metric, with percentiles.
     worst : tuple of BadCell
-        Folded cells, at most ten.
+        The folded cells, at most ten of them.
     figures : Figures
         Values for walls, growth ratios and blocks.
     profile : ProfileReport, optional

@@ -184,7 +184,7 @@ class Stack:
         )
 
     def lofted(self, unit: Floats, z: Floats, weight: Floats | None = None) -> Floats:
-        """Return nodes (m, n, 3) of the sections at the heights `z` (m,) of the leading edge.
+        """Return nodes (m, n, 3) of the sections at positions `z` (m,) of the leading edge along the span.
 
         `unit` (sections, n, 2) are nodes of the given sections at unit chord. Shape, chord, twist and
         position are interpolated separately. Nodes with `weight` (n,) 0 are not twisted, and are scaled

@@ -50,7 +50,7 @@ def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: flo
 
 
 def largest_ratio(lengths: Floats, sizes: Floats, steps: Floats) -> float:
-    """Return the largest ratio of neighbouring cells along lines, including the cells beyond the lines.
+    """Return the largest ratio of neighbouring cells along lines; cells of `sizes` (k,) follow their ends.
 
     Infinite if the steps (k, rows) do not fill the `lengths` (k,).
     """

@@ -11,7 +11,7 @@ _WEDGE = 0.02  # near an edge the least thickness is this fraction of the distan
 
 
 def moved_apart(ring: Floats, nose: int) -> Floats:
-    """Return a closed polygon (n, 2) with surfaces at least 2 `MOST` chords apart, moved by up to `MOST`.
+    """Return a closed polygon (n, 2) whose two surfaces are moved apart, by up to `MOST` chords each.
 
     The polygon runs clockwise from the trailing edge. The trailing edge and the leading edge, index `nose`,
     do not move.

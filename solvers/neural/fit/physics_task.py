@@ -17,8 +17,8 @@ from meshonet.solvers.neural.samples import Samples
 class PhysicsTask(ModelTask):
     """Training of the networks of `MGNet` or `MeshNet` on the geometries of `samples`.
 
-    `points`: numbers of points drawn for each step, anywhere inside and among the nodes of the boundary; None
-    takes every node.
+    `points`: number of points drawn inside, and number of boundary nodes drawn, for each step; None: all
+    nodes.
     """
 
     model: MGNet

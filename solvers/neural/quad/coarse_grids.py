@@ -79,9 +79,9 @@ def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, a
     """Return grids `z` (batch, n, n), or strips (batch, m + 1, n) of bodies (`around`), moved by a network.
 
     `unit`: the same grids at unit size, and the factors (batch, 1, 1) that undo the scaling; `network`:
-    returns displacements, given grids after Picard steps and the last step; `shares`: returns the fraction
-    (batch, 1, 1) of displacements to apply, given grids and displacements; None: all; `xp`: numpy or torch,
-    the module of the arrays.
+    returns displacements, given the grids and the last displacements of the Picard steps; `shares`: returns
+    the fraction (batch, 1, 1) of displacements to apply, given grids and displacements; None: all; `xp`:
+    numpy or torch, the module of the arrays.
     """
     sized, back = unit
     near, step = approach(sized, xp, around)
