@@ -10,7 +10,7 @@ import numpy as np
 
 from meshonet.formats.mesh.metadata import Facts
 from meshonet.formats.mesh.structured import grid_of_block
-from meshonet.formats.source import Source, printable
+from meshonet.formats.source import Source, printable, reason_of
 from meshonet.formats.vtk.arrays import CUT, Encoded, Encoding, decode
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
@@ -61,8 +61,7 @@ def vtk_root(text: bytes, kind: str) -> Element:
     try:
         root = fromstring(text)  # noqa: S314  (no document type, so no entities)
     except (ParseError, ValueError, LookupError) as error:
-        problem = f"is not well-formed XML ({printable(str(error))[:80]})"
-        raise InputError(problem, "write the file again") from error
+        raise InputError(f"is not well-formed XML ({reason_of(error)})", "write the file again") from error
     if root.tag != "VTKFile" or root.get("type") != kind:
         problem = f"is a VTK file of type {printable(root.get('type', '?'))[:60]}"
         raise InputError(problem, f"give one of type {kind}")

@@ -13,7 +13,7 @@ from meshonet.solvers.blocking.decomposition.decompose import most_folded
 from meshonet.solvers.blocking.decomposition.side_counts import suited, sums_of
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric, node_images
 from meshonet.solvers.blocking.request import CELLS
-from meshonet.solvers.blocking.unfolded import unfolded
+from meshonet.solvers.blocking.unfolded import with_more_cells
 from meshonet.solvers.energy.quad_problem import ALLOWED, smallest_jacobian
 from meshonet.solvers.energy.quads import QuadOptimum, optimise
 from meshonet.solvers.refinement.chords import Chords
@@ -93,13 +93,8 @@ def fine_layout(
             chords, times = chords.of_refined(fine), 2**halved
             exact = suited(chords, chords.counts * 2**halvings, chords.least)
             fine = refine(fine, exact, chords)
-        fine = _with_more_cells(fine, times) if times > 1 else fine
+        fine = with_more_cells(fine, times) if times > 1 else fine
         return replace(fine, mesh=with_tied_sides(made_symmetric(fine.mesh)))
-
-
-def _with_more_cells(layout: Layout, times: int) -> Layout:
-    fine = multiplied(layout, times)
-    return unfolded(fine, fine.mesh.wall_nodes)
 
 
 def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, halvings: int) -> Indices:

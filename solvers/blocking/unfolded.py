@@ -9,6 +9,7 @@ from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric
 from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.refinement.refine import multiplied
 
 FEW_ITERATIONS = 10  # only nodes around folds move
 NEAR_FOLDS = 5, 10, 20  # cells around folded ones that are optimised with them, in the order of attempts
@@ -31,3 +32,9 @@ def unfolded(layout: Layout, held: Bools) -> Layout:
         if optimum.valid:
             return replace(layout, mesh=made_symmetric(optimum.mesh))
     return layout
+
+
+def with_more_cells(layout: Layout, times: int) -> Layout:
+    """Return the layout with `times` as many cells in each direction, unfolded if splines cross."""
+    fine = multiplied(layout, times)
+    return unfolded(fine, fine.mesh.wall_nodes)

@@ -21,6 +21,7 @@ from meshonet.solvers.blocking.chord_cells import WantedCounts
 from meshonet.solvers.blocking.layers.attach import Rows
 from meshonet.solvers.blocking.layers.finished import evened
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
+from meshonet.solvers.blocking.unfolded import with_more_cells
 from meshonet.solvers.cascade.cascade import COARSEST, Cascade, scaled
 from meshonet.solvers.cascade.passage import BLADE, INLET, OUTLET, Passage, extended, turned_round
 from meshonet.solvers.cascade.passage_template import cut_of, template
@@ -28,7 +29,7 @@ from meshonet.solvers.energy.quad_problem import smallest_jacobian
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.layers.even_line import EVEN, FEW_STEPS, evened_loops
 from meshonet.solvers.refinement.chords import Chords
-from meshonet.solvers.refinement.refine import multiplied, refine
+from meshonet.solvers.refinement.refine import refine
 from meshonet.solvers.refinement.size_metric import SizeMetric
 from meshonet.solvers.stages import Timings, stage
 
@@ -65,9 +66,7 @@ def cascade_layout(
             if attempt == CORNERS[-1]:
                 raise
     with stage("refine", timings):
-        fine = multiplied(coarse, times)
-        if smallest_jacobian(fine.mesh.nodes, fine.mesh.quads) <= 0.0:  # splines through few nodes can cross
-            fine = passage_optimum(fine, ITERATIONS, metric)
+        fine = with_more_cells(coarse, times)
         fine = evened_loops(fine, cascade.measures, EVEN, FEW_STEPS)
     with stage("layers", timings):
         rows = _rows(cascade, fine, metric)

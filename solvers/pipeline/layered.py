@@ -63,10 +63,10 @@ class Layered(Wrapper):
 
     def _march(self, boundary: Boundary) -> Solution:
         refuse(self.request.chosen, MARCHED)
-        height, said = self.request.height() or 0.0, y_plus_notes(self.request, boundary)
+        height, of_heights = self.request.height() or 0.0, y_plus_notes(self.request, boundary)
         march = method_named("hyperbolic", wall_spacing=height, **self.request.rows_at_walls)
         solution = march.solve([boundary])[0]
-        return replace(solution, notes=(*said, *solution.notes))
+        return replace(solution, notes=(*of_heights, *solution.notes))
 
     def _in_layers(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
         """Return the grid of `boundary` with layers; its time includes all stages."""

@@ -261,8 +261,8 @@ def _of_base(lines: BaseWake, request: GridRequest, seconds: dict[str, float]) -
     begun = time.perf_counter()
     solution = around_base(lines, first=lines.first, **request.rows_at_walls)
     _add_times(seconds, solution, time.perf_counter() - begun)
-    said = request.height_notes(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
-    solution = replace(solution, notes=(*said, *solution.notes), growth=request.growth or math.inf)
+    of_heights = request.height_notes(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
+    solution = replace(solution, notes=(*of_heights, *solution.notes), growth=request.growth or math.inf)
     return judged(solution, seconds, request, remedy="use another {res}, or {te} wedge")
 
 

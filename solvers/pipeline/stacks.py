@@ -139,10 +139,10 @@ def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
     layered = stack.kind == "blade" or request.at_walls
     limit = request.growth or (math.inf if request.layers or not layered else GROWTH)
     if stack.kind == "duct":
-        said = request.height_notes(f"on a width of {stack.chord:.6g}", stack.chord)
+        of_heights = request.height_notes(f"on a width of {stack.chord:.6g}", stack.chord)
     else:
-        said = request.height_notes(f"on a chord of {stack.chord:.6g}", scale=stack.chord)
-    return Solution(grid, "loft", notes=(*notes, *said), growth=limit)
+        of_heights = request.height_notes(f"on a chord of {stack.chord:.6g}", scale=stack.chord)
+    return Solution(grid, "loft", notes=(*notes, *of_heights), growth=limit)
 
 
 def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
@@ -160,8 +160,8 @@ def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
     settings = _march(stack, request)
     with stage("grid", seconds):
         solution = march_surface(surface, settings, wing=True, remedy=_remedy(stack))
-    said = request.height_notes(f"on a chord of {chord:.6g}", scale=chord)
-    notes = (*notes, *said, *solution.notes, *wall_facts(solution.grid))
+    of_heights = request.height_notes(f"on a chord of {chord:.6g}", scale=chord)
+    notes = (*notes, *of_heights, *solution.notes, *wall_facts(solution.grid))
     return replace(solution, grid=replace(solution.grid, name=stack.name), notes=notes)
 
 

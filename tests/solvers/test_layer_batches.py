@@ -12,15 +12,15 @@ from meshonet import layer  # noqa: E402
 
 @pytest.mark.parametrize("function", QUADS + AROUND)
 def test_members_through_vmap_are_those_alone(function: Any) -> None:
-    nodes, given = inputs(function, 8)
+    nodes, sides = inputs(function, 8)
 
     def loss(*sides: Any) -> Any:
         return (nodes(*sides) ** 3).sum()
 
-    together = torch.func.vmap(nodes)(*given)
-    slopes = torch.func.vmap(torch.func.grad(loss))(*given)
+    together = torch.func.vmap(nodes)(*sides)
+    slopes = torch.func.vmap(torch.func.grad(loss))(*sides)
     for k in (0, 3, 7):
-        alone = [side[k].clone().requires_grad_() for side in given]
+        alone = [side[k].clone().requires_grad_() for side in sides]
         grid = nodes(*alone)
         torch.testing.assert_close(together[k], grid.detach(), rtol=0, atol=1e-11)
         (grid**3).sum().backward()
@@ -29,15 +29,15 @@ def test_members_through_vmap_are_those_alone(function: Any) -> None:
 
 @pytest.mark.parametrize("function", [*QUADS[:3], layer.QuadGrids()])
 def test_members_through_two_levels_of_vmap_are_those_of_one_batch(function: Any) -> None:
-    given = [side[:4] for side in sides_of(domains(9, 8, 8))]
-    nested = torch.func.vmap(torch.func.vmap(function))(*(side.unflatten(0, (2, 2)) for side in given))
-    torch.testing.assert_close(nested.flatten(0, 1), function(*given), rtol=0, atol=1e-11)
+    sides = [side[:4] for side in sides_of(domains(9, 8, 8))]
+    nested = torch.func.vmap(torch.func.vmap(function))(*(side.unflatten(0, (2, 2)) for side in sides))
+    torch.testing.assert_close(nested.flatten(0, 1), function(*sides), rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize("function", QUADS + AROUND)
 def test_single_precision_has_the_nodes_of_double_precision_rounded(function: Any) -> None:
-    nodes, given = inputs(function, 2)
-    single = [side.float() for side in given]
+    nodes, sides = inputs(function, 2)
+    single = [side.float() for side in sides]
     result = nodes(*single)
     assert result.dtype == torch.float32
     assert torch.equal(result, nodes(*(side.double() for side in single)).float())
@@ -45,10 +45,10 @@ def test_single_precision_has_the_nodes_of_double_precision_rounded(function: An
 
 @pytest.mark.parametrize("function", QUADS + AROUND)
 def test_grids_of_any_size_are_those_of_unit_size(function: Any) -> None:
-    nodes, given = inputs(function, 2)
-    unit = nodes(*given)
+    nodes, sides = inputs(function, 2)
+    unit = nodes(*sides)
     for size in (2.0**-500, 2.0**500):
-        scaled = [(side * size).requires_grad_() for side in given]
+        scaled = [(side * size).requires_grad_() for side in sides]
         result = nodes(*scaled)
         torch.testing.assert_close(result.detach() / size, unit, rtol=0, atol=1e-11)
         (result / size).sum().backward()
@@ -57,27 +57,27 @@ def test_grids_of_any_size_are_those_of_unit_size(function: Any) -> None:
 
 @pytest.mark.parametrize("function", QUADS + AROUND)
 def test_an_empty_batch_has_no_grids(function: Any) -> None:
-    nodes, given = inputs(function, 1)
-    none = [side[:0].requires_grad_() for side in given]
+    nodes, sides = inputs(function, 1)
+    none = [side[:0].requires_grad_() for side in sides]
     result = nodes(*none)
-    assert result.shape == (0, *nodes(*given).shape[1:])
+    assert result.shape == (0, *nodes(*sides).shape[1:])
     result.sum().backward()
     assert none[0].grad.shape == none[0].shape
 
 
 @pytest.mark.parametrize("function", QUADS + AROUND)
 def test_grids_are_made_in_inference_mode_too(function: Any) -> None:
-    nodes, given = inputs(function, 1)
+    nodes, sides = inputs(function, 1)
     with torch.inference_mode():
-        result = nodes(*given)
-    torch.testing.assert_close(result, nodes(*given), rtol=0, atol=1e-11)
+        result = nodes(*sides)
+    torch.testing.assert_close(result, nodes(*sides), rtol=0, atol=1e-11)
 
 
 def test_sides_keep_their_nodes_and_dtype() -> None:
-    given = [side.float() for side in sides_of(domains(17, 9, 3))]
-    nodes = layer.winslow(*given)
+    sides = [side.float() for side in sides_of(domains(17, 9, 3))]
+    nodes = layer.winslow(*sides)
     assert nodes.dtype == torch.float32
-    for side, edge in zip(given, (nodes[:, :, 0], nodes[:, :, -1], nodes[:, 0], nodes[:, -1]), strict=True):
+    for side, edge in zip(sides, (nodes[:, :, 0], nodes[:, :, -1], nodes[:, 0], nodes[:, -1]), strict=True):
         assert torch.equal(side, edge)
 
 

@@ -27,15 +27,15 @@ SOLVED = (*QUADS[1:3], *LIFTED, layer.conformal)
 
 @pytest.mark.parametrize("function", SOLVED)
 def test_members_without_a_grid_leave_the_others_as_they_are(function: Any) -> None:
-    _, given = inputs(function, 4)
+    _, sides = inputs(function, 4)
     more = (6,) if function is layer.conformal else ()
-    broken = [side.clone() for side in given]
+    broken = [side.clone() for side in sides]
     broken[0][1, 4, 1] = torch.nan
     for side in broken:
         side[2] = 0.0
     result = function(*(side.requires_grad_() for side in broken), *more, failed="nan")
     assert result.isfinite().all((1, 2, 3)).tolist() == [True, False, False, True]
-    few = [side[[0, 3]].requires_grad_() for side in given]
+    few = [side[[0, 3]].requires_grad_() for side in sides]
     alone = function(*few, *more)
     torch.testing.assert_close(result[[0, 3]], alone, rtol=0, atol=1e-11)
     result.square().sum().backward()
@@ -46,12 +46,12 @@ def test_members_without_a_grid_leave_the_others_as_they_are(function: Any) -> N
 
 
 def test_a_batch_of_failures_alone_is_nan() -> None:
-    given = [(0.0 * side).requires_grad_() for side in sides_of(domains(9, 8, 3))]
-    nodes = layer.winslow(*given, failed="nan")
+    sides = [(0.0 * side).requires_grad_() for side in sides_of(domains(9, 8, 3))]
+    nodes = layer.winslow(*sides, failed="nan")
     assert nodes.shape[1:] == (9, 8, 2)
     assert nodes.isnan().all()
     nodes.sum().backward()
-    assert not given[0].grad.any()
+    assert not sides[0].grad.any()
 
 
 def test_an_unknown_word_for_failures_is_refused() -> None:
@@ -61,19 +61,19 @@ def test_an_unknown_word_for_failures_is_refused() -> None:
 
 @pytest.mark.parametrize("function", QUADS[1:] + AROUND)
 def test_a_member_that_is_not_finite_is_named(function: Any) -> None:
-    nodes, given = inputs(function, 2)
-    given[0][1, 4, 1] = torch.nan
+    nodes, sides = inputs(function, 2)
+    sides[0][1, 4, 1] = torch.nan
     with pytest.raises(SolverError, match=r"member 1 of the batch: a coordinate is not finite"):
-        nodes(*given)
+        nodes(*sides)
 
 
 @pytest.mark.parametrize("function", QUADS[1:3])
 def test_a_member_without_a_solution_is_named(function: Any) -> None:
-    given = sides_of(domains(9, 8, 5))
-    for side in given:
+    sides = sides_of(domains(9, 8, 5))
+    for side in sides:
         side[1] = 0.0
     with pytest.raises(SolverError, match=r"member 1 of the batch"):
-        function(*given)
+        function(*sides)
 
 
 @pytest.mark.parametrize(
@@ -87,15 +87,15 @@ def test_a_member_without_a_solution_is_named(function: Any) -> None:
     ],
 )
 def test_sides_that_bound_no_batch_are_refused(change: Any, said: str) -> None:
-    given = sides_of(domains(9, 8, 6))
+    sides = sides_of(domains(9, 8, 6))
     with pytest.raises(InputError, match=said):
-        layer.winslow(change(given), *given[1:])
+        layer.winslow(change(sides), *sides[1:])
 
 
 def test_arrays_that_are_no_tensors_are_refused() -> None:
-    given = sides_of(domains(9, 8, 2))
+    sides = sides_of(domains(9, 8, 2))
     with pytest.raises(InputError, match=r"south is a ndarray; give tensors of torch"):
-        layer.winslow(given[0].numpy(), *given[1:])
+        layer.winslow(sides[0].numpy(), *sides[1:])
 
 
 @pytest.mark.parametrize("function", QUADS)
@@ -113,6 +113,6 @@ def test_without_torch_its_installation_is_said() -> None:
 
 
 def test_variational_grids_whose_systems_are_too_large_are_refused() -> None:
-    given = sides_of(domains(601, 601, 1))
+    sides = sides_of(domains(601, 601, 1))
     with pytest.raises(InputError, match=r"the optimum of 601 x 601 nodes needs factors of 56 GB"):
-        layer.variational(*given)
+        layer.variational(*sides)

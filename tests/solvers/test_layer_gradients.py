@@ -13,9 +13,9 @@ from meshonet import layer  # noqa: E402
 
 @pytest.mark.parametrize("function", QUADS + AROUND)
 def test_gradients_are_those_of_finite_differences(function: Any) -> None:
-    nodes, given = inputs(function, 2)
-    given = [side.requires_grad_() for side in given]
-    assert torch.autograd.gradcheck(nodes, given, fast_mode=True)
+    nodes, sides = inputs(function, 2)
+    sides = [side.requires_grad_() for side in sides]
+    assert torch.autograd.gradcheck(nodes, sides, fast_mode=True)
 
 
 def test_the_gradient_of_a_slow_conformal_grid_is_that_of_finite_differences() -> None:
@@ -36,19 +36,19 @@ def test_the_gradient_of_a_slow_conformal_grid_is_that_of_finite_differences() -
 
 @pytest.mark.parametrize("function", QUADS + AROUND)
 def test_one_side_may_have_a_gradient_alone_and_any_memory_layout(function: Any) -> None:
-    nodes, given = inputs(function, 2)
-    every = [side.clone().requires_grad_() for side in given]
+    nodes, sides = inputs(function, 2)
+    every = [side.clone().requires_grad_() for side in sides]
     nodes(*every).square().sum().backward()
-    for k in range(len(given)):
-        some = [side.mT.contiguous().mT.requires_grad_(i == k) for i, side in enumerate(given)]
+    for k in range(len(sides)):
+        some = [side.mT.contiguous().mT.requires_grad_(i == k) for i, side in enumerate(sides)]
         nodes(*some).square().sum().backward()
         torch.testing.assert_close(some[k].grad, every[k].grad, rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.parametrize("function", [layer.transfinite, layer.winslow])
 def test_gradients_at_a_repeated_node_are_finite(function: Any) -> None:
-    given = sides_of(domains(9, 8, 4))
-    given[0][1, 4] = given[0][1, 5]
-    given = [side.requires_grad_() for side in given]
-    function(*given).square().sum().backward()
-    assert all(bool(side.grad.isfinite().all()) for side in given)
+    sides = sides_of(domains(9, 8, 4))
+    sides[0][1, 4] = sides[0][1, 5]
+    sides = [side.requires_grad_() for side in sides]
+    function(*sides).square().sum().backward()
+    assert all(bool(side.grad.isfinite().all()) for side in sides)

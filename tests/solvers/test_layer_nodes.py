@@ -120,10 +120,10 @@ def test_coarse_winslow_grids_are_lifted_as_the_compiled_ones() -> None:
 
 
 def test_few_coarse_nodes_are_refused_and_many_change_nothing() -> None:
-    given = sides_of(domains(10, 9, 4))
+    sides = sides_of(domains(10, 9, 4))
     with pytest.raises(InputError, match=r"8 coarse nodes along a direction are too few"):
-        layer.winslow(*given, coarse=8)
-    assert torch.equal(layer.winslow(*given, coarse=10), layer.winslow(*given))
+        layer.winslow(*sides, coarse=8)
+    assert torch.equal(layer.winslow(*sides, coarse=10), layer.winslow(*sides))
 
 
 def test_conformal_nodes_are_those_of_the_converged_compiled_iteration() -> None:

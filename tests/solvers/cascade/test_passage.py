@@ -1,15 +1,19 @@
 """Passages of cascades: periodic sides, names, counts, folds, over blades of several kinds."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.lattice import smallest_jacobians
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.blocks import block_figures
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.solvers.blocking import unfolded
 from meshonet.solvers.blocking.decomposition.collapse.score import deviations
 from meshonet.solvers.cascade.cascade import Cascade
 from meshonet.solvers.cascade.cascade_layout import cascade_layout
@@ -183,3 +187,20 @@ def test_places_in_a_passage_are_axial_distances_and_pitches():
     np.testing.assert_allclose(passage.along(points), [0.25, -0.5], atol=1e-14)
     np.testing.assert_allclose(passage.of_zeta(passage.zeta(points)), points, atol=1e-14)
     assert passage.axis @ passage.pitch == pytest.approx(0.0, abs=1e-14)
+
+
+def test_cells_that_splines_fold_are_unfolded(monkeypatch):
+    multiplied = unfolded.multiplied
+
+    def crossed(layout, times):
+        fine = multiplied(layout, times)
+        inside = ~fine.mesh.wall_nodes[fine.mesh.quads].any(axis=1)
+        one, other = fine.mesh.quads[np.flatnonzero(inside)[0], :2]
+        nodes = fine.mesh.nodes.copy()
+        nodes[[one, other]] = nodes[[other, one]]
+        assert smallest_jacobians(nodes, fine.mesh.quads).min() < 0
+        return replace(fine, mesh=fine.mesh.with_nodes(nodes))
+
+    monkeypatch.setattr(unfolded, "multiplied", crossed)
+    mesh = cascade_layout(Cascade(blade(30.0), (0.0, 1.0)), cells=1000).mesh
+    assert smallest_jacobians(mesh.nodes, mesh.quads).min() > 0
