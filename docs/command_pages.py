@@ -1,4 +1,4 @@
-"""The pages made of what ``--help`` prints: reference/cli.md, and the manual page.
+"""The pages made of what ``--help`` prints: reference/commands, and the manual page.
 
 python docs/command_pages.py > meshonet.1
 """
@@ -18,18 +18,26 @@ _HEAD = """# Commands
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look up an option here: what `meshonet --help` and the `--help` of every command print.
-`python -m meshonet_cli` is the same program.
+Look up a command here. `meshonet COMMAND --help` prints its page; `python -m meshonet_cli` is the same program.
 """
-"""Start of the page."""
+"""Start of the page of all commands."""
+
+_COMMAND_HEAD = """# meshonet {name}
+
+<!-- made by python docs/make_pages.py; a test keeps it current -->
+
+Look up an option here: what `meshonet {name} --help` prints.
+"""
+"""Start of the page of one command."""
 
 
-def reference() -> str:
-    """Return the page in Markdown."""
-    lines = [_HEAD, *_block()]
-    for command in COMMANDS:
-        lines += [f"## {command.name}", "", *_block(command.name)]
-    return "\n".join([*lines, "## Exit codes", "", *_table(app.__doc__ or ""), ""])
+def reference() -> dict[str, str]:
+    """Return the pages in Markdown by file name: ``index.md`` and one of each command."""
+    names = [command.name for command in COMMANDS]
+    listed = ("```{toctree}", ":maxdepth: 1", "", *names, "```", "")
+    index = [_HEAD, *_block(), *listed, "## Exit codes", "", *_table(app.__doc__ or ""), ""]
+    pages = {f"{name}.md": "\n".join([_COMMAND_HEAD.format(name=name), *_block(name)]) for name in names}
+    return {"index.md": "\n".join(index), **pages}
 
 
 def _block(*words: str) -> tuple[str, ...]:

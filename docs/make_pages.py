@@ -1,6 +1,6 @@
 """Make the generated pages of docs/: python docs/make_pages.py (make text); seconds.
 
-In reference/: cli.md from the application, formats.md from the registry, models.md from the headers of the
+In reference/: commands from the application, formats.md from the registry, models.md from the headers of the
 shipped models, families.md from the families. In development/: blocking.md from the docstrings of modules.
 Pictures: make_pictures.py.
 """
@@ -138,7 +138,9 @@ def main() -> None:
     """Write everything."""
     (REFERENCE / "models.md").write_text(models_page(), encoding="utf-8")
     (DOCS / "benchmarks" / "models.md").write_text(errors_page(), encoding="utf-8")
-    (REFERENCE / "cli.md").write_text(reference(), encoding="utf-8")
+    (REFERENCE / "commands").mkdir(exist_ok=True)
+    for name, page in reference().items():
+        (REFERENCE / "commands" / name).write_text(page, encoding="utf-8")
     (REFERENCE / "formats.md").write_text(formats_page(), encoding="utf-8")
     (REFERENCE / "families.md").write_text(families_page(), encoding="utf-8")
     (DOCS / "development" / "blocking.md").write_text(blocking_page(), encoding="utf-8")
