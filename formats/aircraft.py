@@ -23,9 +23,9 @@ from meshonet.geometry.sections.stack import Stack
 
 
 def read_aircraft(data: Table, source: Source) -> Aircraft:
-    """Return the aircraft in a table of TOML; paths are relative to the folder of `source`.
+    """Return the aircraft that a table of a TOML file describes.
 
-    Raises InputError: an unknown key; an invalid value; an unreadable file; not exactly one body.
+    Paths are relative to the folder of `source`. Raises InputError: unknown key; invalid value; not one body.
     """
     data.only("kind", "name", "bodies", "wings", "half")
     folder = source.path.parent if source.path else Path()

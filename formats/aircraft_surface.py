@@ -50,10 +50,10 @@ class _Patches:
 
 
 def surface_body(row: Table, folder: Path) -> tuple[Body, AircraftAxes, tuple[str, ...]]:
-    """Return the body in the table `row`, the axes of its file, and notes.
+    """Return the body that the table `row` describes, the axes of its file, and notes for the user.
 
-    By default the body has the patches with a side in the plane of symmetry. Paths are relative to `folder`.
-    Raises InputError: a file without a surface; a body with holes, or not of half an aircraft.
+    The default of `patches` is all patches with a side in the plane of symmetry. Paths are relative to
+    `folder`. Raises InputError if the file has no surface, or if the body has holes or is not one half.
     """
     row.only("name", *KEYS)
     file = _read(row, folder)
@@ -88,10 +88,10 @@ def _lofted(cuts: BodyCuts, name: str) -> LoftedBody:
 
 
 def surface_wing(row: Table, folder: Path, axes: AircraftAxes) -> SurfaceWing:
-    """Return the wing in the table `row`, in the axes of the aircraft.
+    """Return the wing that the table `row` describes, in the `axes` of the aircraft.
 
-    By default the wing has the patches without a side in the plane of symmetry. Paths are relative to
-    `folder`. Raises InputError: a file without a surface; patches that do not enclose a wing.
+    The default of `patches` is all patches without a side in the plane of symmetry. Paths are relative to
+    `folder`. Raises InputError if the file has no surface, or if its patches do not enclose a wing.
     """
     row.only("on", "name", *KEYS)
     file = _read(row, folder)

@@ -22,12 +22,12 @@ _IN_ARCHIVE = re.compile(r"\.zip/", re.IGNORECASE)
 
 
 def member_names(path: str) -> Iterator[str]:
-    """Return the sorted names of an archive's members. Raises InputError: not a zip archive; unreadable."""
+    """Return the sorted names of the files in a zip archive. Raises InputError if it is unreadable."""
     return iter(sorted(name for name in _archive(path).NameToInfo if not name.endswith("/")))
 
 
 def split_member(text: str) -> tuple[str, str] | None:
-    """Return archive and member of ``a.zip/b/c.dat``; None for any other text."""
+    """Return archive and file of a path such as ``a.zip/b/c.dat``; None if no archive is in the path."""
     for match in _IN_ARCHIVE.finditer(text):
         if Path(text[: match.end() - 1]).is_file():
             return text[: match.end() - 1], text[match.end() :]
@@ -35,9 +35,9 @@ def split_member(text: str) -> tuple[str, str] | None:
 
 
 def read_member(path: str, name: str) -> bytes:
-    """Return the uncompressed bytes of a member of an archive.
+    """Return the uncompressed bytes of the file `name` in a zip archive.
 
-    Raises InputError: no such member; it is encrypted, damaged, too large or packed by an unknown method.
+    Raises InputError if it is missing, encrypted, damaged, too large or packed by an unknown method.
     """
     archive = _archive(path)
     info = archive.NameToInfo.get(name)

@@ -8,7 +8,7 @@ _HEAD = ("format", "endings", "reads", "writes", "names", "3D", "blocks", "many"
 
 
 def rows() -> list[dict[str, str]]:
-    """Return a row for each format, as texts by heading."""
+    """Return one row for each file format: a dictionary from column heading to text."""
     return [dict(zip(_HEAD, _row(record), strict=True)) for record in TABLE.values()]
 
 

@@ -25,15 +25,15 @@ class Conversion:
 
     Parameters
     ----------
-    extrude : height in z to which planar grids are extruded; None: not extruded.
+    extrude : height in z to which planar grids are extruded; None: they are not extruded.
     planes : number of planes of nodes along z (default 2) or around the axis (default of `Revolution`).
-    swap : exchange xi and eta.
+    swap : exchange the directions xi and eta.
     normalise : scale to unit chord or unit length.
-    coarsen : keep every `coarsen`-th node.
-    revolve : angle in degrees by which planar grids are revolved about `axis`; None: not revolved.
-    axis : axis of `revolve`, a line in the plane of the grid; None is the x axis.
-    copies : number of copies of a periodic grid beside each other, along each of its periods.
-    scale : factor on all lengths.
+    coarsen : k keeps every k-th node.
+    revolve : angle in degrees by which planar grids are revolved about `axis`; None: they are not revolved.
+    axis : axis of the revolution, a line in the plane of the grid; None is the x axis.
+    copies : number of copies of a periodic grid along each of its periods.
+    scale : factor by which all coordinates are multiplied.
     """
 
     extrude: float | None = None
@@ -47,14 +47,14 @@ class Conversion:
     scale: float = 1.0
 
     def turn(self) -> Revolution | None:
-        """Return the revolution about the axis, None if grids are not revolved."""
+        """Return the revolution about the axis; None if grids are not revolved."""
         turn = revolution(self.revolve, self.planes, self.axis)
         if turn is not None and self.extrude is not None:
             raise InputError("{extrude} and {revolve} both make grids 3D", "give one of them")
         return turn
 
     def heights(self) -> tuple[float, ...]:
-        """Return z of each plane, () without extrusion. Raises InputError: the height is not positive."""
+        """Return z of each plane of nodes, () without extrusion. Raises InputError: height not above 0."""
         if self.extrude is None:
             if self.planes is not None and self.revolve is None:
                 remedy = "give {extrude} or {revolve} as well"
@@ -84,9 +84,9 @@ class Conversion:
         return (shape.boundary(sampling) for shape in read_shapes(source, fmt))
 
     def of_boundaries(self, source: str, output: str, from_format: str | None, to_format: str | None) -> bool:
-        """Return whether boundaries are written instead of grids.
+        """Return whether the conversion writes boundaries instead of grids.
 
-        Boundaries are written if no change needs grids, and the format of the input or output has no grids.
+        It does so if the input or the output format has no grids, and no requested change needs grids.
         """
         changed = self.swap or self.coarsen > 1 or self.copies != 1 or self.scale != 1.0
         if changed or self.heights() or self.turn():
@@ -100,9 +100,9 @@ class Conversion:
         return source != "-" and format_of(open_source(source), from_format).read_grids is None
 
     def extruder(self, output: str, to_format: str | None) -> Callable[[Path, Iterable[Grid]], None] | None:
-        """Return the function that writes extruded or revolved grids to a file; None if grids stay planar.
+        """Return a function that extrudes or revolves grids and writes them; None if grids stay planar.
 
-        Raises InputError: the format stores only planar grids.
+        Raises InputError if the output format cannot store three-dimensional grids.
         """
         heights, turn = self.heights(), self.turn()
         if not heights and turn is None:
@@ -119,10 +119,10 @@ class Conversion:
 def plot3d_variant(
     words: str | None, source: str, output: str, from_format: str | None, to_format: str | None
 ) -> tuple[str | None, str | None]:
-    """Return the formats to read and to write, one of them with the Plot3D options `words`.
+    """Return the formats of input and output, where one is Plot3D with the options `words`.
 
-    The options apply to the output if that is Plot3D, else to the input. Raises InputError: an unknown
-    option; neither is Plot3D.
+    The options apply to the output if its format is Plot3D, else to the input. Raises InputError if an option
+    is unknown, or if neither format is Plot3D.
     """
     if words is None:
         return from_format, to_format
@@ -138,7 +138,7 @@ def plot3d_variant(
 
 
 def unused_iblank(grid: Grid | Boundary) -> str | None:
-    """Return a note on nodes that an iblank array marks; None without marks."""
+    """Return a note on nodes that have an iblank value other than 1; None without such nodes."""
     counts = grid.provenance.get("iblank") if isinstance(grid, Grid) else None
     marked = [f"{count} with {value}" for value, count in (counts or {}).items() if value != "1"]
     if not marked:

@@ -23,9 +23,9 @@ _SEWN = 1e-6  # largest distance at which edges of separate faces are joined, re
 
 
 def read_models(source: Source, *, kind: str) -> Iterator[CadModel]:
-    """Yield the model of a file of a `kind`, ``STEP`` or ``B-rep``, the format of Open Cascade.
+    """Yield the CAD model of a file; `kind` is its format, ``STEP`` or ``B-rep`` (that of Open Cascade).
 
-    Raises InputError: no Open Cascade; not a file of this kind; no faces.
+    Raises InputError if Open Cascade is not installed, the file has another format, or it has no faces.
     """
     try:
         from OCP.Message import Message

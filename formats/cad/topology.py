@@ -34,7 +34,7 @@ class _Numbers:
 
 
 def model_of(shape: Any, name: str, notes: tuple[str, ...]) -> CadModel:
-    """Return the faces of a shape. Raises InputError: there are no faces, or an edge has no vertex."""
+    """Return the faces of an Open Cascade shape. Raises InputError: no faces, or an edge without a vertex."""
     vertices, edges = _Numbers(), _Numbers()
     faces = tuple(_face(TopoDS.Face(face), edges) for face in _parts(shape, TopAbs_FACE))
     if not faces:
@@ -45,7 +45,7 @@ def model_of(shape: Any, name: str, notes: tuple[str, ...]) -> CadModel:
 
 
 def open_edges(shape: Any) -> int:
-    """Return the number of edges that belong to one face only."""
+    """Return the number of edges of an Open Cascade shape that belong to only one face."""
     numbers, uses = _Numbers(), []
     for face in _parts(shape, TopAbs_FACE):
         for edge in _parts(face, TopAbs_EDGE):

@@ -30,9 +30,9 @@ _FACES = ("FaceCenter", "IFaceCenter", "JFaceCenter", "KFaceCenter", "EdgeCenter
 
 
 def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[Face]:
-    """Yield the faces of block number `block` with a boundary condition, named after the condition's family.
+    """Yield each face of a zone that has a boundary condition, named after the family of the condition.
 
-    `counts` are the node counts of the zone along three indices; the third is 1 in a planar zone.
+    `block` is the number of the zone. `counts` are its node counts; the third is 1 if it is planar.
     """
     for _, group in children(zone, "ZoneBC_t"):
         for title, condition in children(group, "BC_t"):
@@ -54,7 +54,7 @@ def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[F
 def interfaces(
     base: Node, zone: Node, counts: Triple, block: int
 ) -> Iterator[tuple[str, FaceWindow, str, Points, Triple]]:
-    """Yield, for each interface: name, own nodes (window), donor's path and range (2, 3), index mapping."""
+    """Yield for each interface name, own nodes, donor's path, donor's nodes (2, 3) and index order."""
     for _, group in children(zone, "ZoneGridConnectivity_t"):
         for name, joint in children(group, "GridConnectivity1to1_t"):
             ranges = dict(children(joint, "IndexRange_t"))
@@ -70,9 +70,9 @@ def interfaces(
 
 
 def window_of(block: int, points: Points, counts: Triple) -> FaceWindow | None:
-    """Return the window from first to last node `points` (2, 3) of a block of `counts` nodes, or None.
+    """Return the window (rectangle of nodes) from the first to the last of the node indices `points` (2, 3).
 
-    None is returned if a point is outside the block.
+    Returns None if an index is outside the block, which has `counts` nodes along its three directions.
     """
     return _window(block, points) if _inside(points, counts) else None
 

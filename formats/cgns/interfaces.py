@@ -19,7 +19,7 @@ Integers = NDArray[np.int32]
 
 
 def range_of(side: Side, span: Range, counts: tuple[int, ...]) -> Integers:
-    """Return the first and the last node (2, d) of a part of a side of a zone of `counts` nodes."""
+    """Return the first and last node (2, d) of the part `span` of a side of a zone, counted from 1."""
     axis, end = PLACES[side]
     place = [0 if end == 0 else counts[axis] - 1] * 2
     rows = [*span[:axis], tuple(place), *span[axis:]]
@@ -27,11 +27,11 @@ def range_of(side: Side, span: Range, counts: tuple[int, ...]) -> Integers:
 
 
 def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid) -> None:
-    """Write each connection of `grid` as an interface in both of its `zones`, which have these `names`.
+    """Write each connection of `grid` as an interface into both zones that it connects.
 
-    A transform gives, for each direction of the zone, the direction of the donor; a step out of the zone
-    across the interface is a step into the donor.
-    https://cgns.github.io/standard/SIDS/multizone_interface.html
+    `zones` and `names` are the node and the name of the zone of each block. The transform of an interface
+    states, for each direction of the zone, the corresponding direction of the donor. A step out of the zone
+    corresponds to a step into the donor. https://cgns.github.io/standard/SIDS/multizone_interface.html
     """
     groups: dict[int, Node] = {}
     taken: dict[int, set[str]] = {}

@@ -25,7 +25,7 @@ _DATA = " data"  # name of the dataset of a node's data, with the leading blank 
 
 
 def root(file: h5py.File) -> Node:
-    """Make the root node of a new file, opened with ``track_order=True``."""
+    """Make and return the root node of a new CGNS file, which was opened with ``track_order=True``."""
     _label(file, "HDF5 MotherNode", "Root Node of HDF5 File", "MT")
     del file.attrs["flags"]
     file.create_dataset(" format", data=_codes("IEEE_LITTLE_32", 15))
@@ -35,7 +35,7 @@ def root(file: h5py.File) -> Node:
 
 
 def child(parent: Node, name: str, label: str, value: str | NDArray[Any] | None = None) -> Node:
-    """Add a node to `parent` and return it; the axes of an array `value` are in the order of HDF5."""
+    """Add a node to `parent` and return it; the axes of an array `value` must be in the order of HDF5."""
     data = _codes(value, len(value.encode())) if isinstance(value, str) else value
     blank = _blank(label, "MT" if data is None else _TYPES[data.dtype.name])
     own = name.encode()
@@ -52,7 +52,7 @@ def child(parent: Node, name: str, label: str, value: str | NDArray[Any] | None 
 
 
 def children(node: Node, label: str) -> Iterator[tuple[str, Node]]:
-    """Yield names and nodes with `label` below `node`; links to other places are skipped."""
+    """Yield name and node of each child of `node` that has the given label; links are skipped."""
     links = node.id.links
     for name in node.id:  # without h5py's objects, which take most of the time of files of many zones
         if links.get_info(name).type == h5l.TYPE_HARD:
@@ -62,7 +62,7 @@ def children(node: Node, label: str) -> Iterator[tuple[str, Node]]:
 
 
 def array(node: Node, ndim: int) -> NDArray[Any]:
-    """Return a node's array of rank `ndim`. Raises InputError: there is none; wrong type, rank or size."""
+    """Return the array of a node. Raises InputError: there is none, or its type, rank or size is wrong."""
     place = printable(str(node.name))
     data = own(node, _DATA)
     if not isinstance(data, h5py.Dataset) or data.is_virtual or data.external:
@@ -75,7 +75,7 @@ def array(node: Node, ndim: int) -> NDArray[Any]:
 
 
 def text(node: Node) -> str:
-    """Return a node's text. Raises InputError: see `array`."""
+    """Return the text of a node. Raises InputError if the node has none."""
     codes = array(node, 1)
     if codes.dtype.itemsize != 1:
         raise InputError("node holds no text", "write the file again", place=printable(str(node.name)))

@@ -48,10 +48,10 @@ class _Zone:
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grids of the structured zones; if there are several, each is named after its zone.
+    """Yield the grids of the structured zones of a CGNS file; several grids are named after their zones.
 
-    Patches without the metadata of this package are boundary conditions, named after their families.
-    Raises InputError: an ADF file; not HDF5; no structured zone; an invalid zone.
+    If meshonet did not write the file, the boundary conditions become patches, named after their families.
+    Raises InputError if the file is ADF or not HDF5, has no structured zone, or has an invalid zone.
     """
     if b"ADF Database Version" in source.head(32):
         raise InputError("is CGNS in an ADF container", "turn it into HDF5: adf2hdf OLD.cgns NEW.cgns")

@@ -31,7 +31,7 @@ _METRE = np.array([0, 1, 0, 0, 0], np.float64)
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write one zone for each block of each grid."""
+    """Write all grids into a CGNS file, with one zone for each block."""
     rest = iter(grids)
     first = at_least_one(rest)
     small = len(first.blocks) > 1 and sum(block.nodes.size for block in first.blocks) < _IN_MEMORY

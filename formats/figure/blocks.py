@@ -24,9 +24,9 @@ Lines = tuple[tuple[int, int], tuple[bool, bool]]
 def lines_of_blocks(
     grid: Grid, singles: Sequence[Grid], parts: Sequence[CellsInView | None], pixels: float, every: int | None
 ) -> list[Lines]:
-    """Return the grid lines to draw in each block, chosen so that they continue between blocks.
+    """Return which grid lines to draw in each block, so that drawn lines continue across block boundaries.
 
-    `singles` are the blocks as grids, `parts` the cells of each block in view.
+    `singles` has each block as a grid. `parts` has the visible cells of each block; None: no cell is visible.
     """
     steps = [[every or 1, every or 1] for _ in singles]
     flips = [[False, False] for _ in singles]
@@ -45,7 +45,7 @@ def lines_of_blocks(
 
 
 def outline_blocks(ax: Axes, grid: Grid) -> None:
-    """Draw the sides of all blocks, with thicker lines on the outer boundary."""
+    """Draw the sides of all blocks; sides on the outer boundary are thicker."""
     from matplotlib.collections import LineCollection
 
     sides = [block.face(side) for block in grid.blocks for side in SIDES]
@@ -55,7 +55,7 @@ def outline_blocks(ax: Axes, grid: Grid) -> None:
 
 
 def mark_vertices(ax: Axes, grid: Grid) -> None:
-    """Draw a dot at every irregular interior vertex, and a legend of the colours."""
+    """Draw a dot at each interior vertex where not four cells meet, and a legend of the colours."""
     points, cells = irregular_points(grid)
     kinds = (cells < 4, _FEW, "3 cells meet"), (cells > 4, _MANY, "5 or more cells meet")
     for among, colour, label in kinds:

@@ -46,10 +46,10 @@ _NAME = 48  # number of letters of a grid's name that fit above a view
 def draw(
     grid: Grid, colouring: Colouring | None = None, zoom: Box | None = None, every: int | None = None
 ) -> Figure:
-    """Return a figure of `grid`, or of the part in `zoom`; without `colouring`, only lines are drawn.
+    """Return a figure of a planar grid; without `colouring`, it shows grid lines only.
 
-    A grid around a small body also gets a view near the body. Every `every`-th line is drawn; None chooses
-    the step by the resolution. Raises InputError: a `zoom` without cells.
+    Only the box `zoom` is drawn; without it, a grid around a small body gets a second view near the body.
+    Each `every`-th line is drawn; None selects the step. Raises InputError if no cell is inside `zoom`.
     """
     if grid.topology == "blocks":
         planar(grid)
@@ -126,14 +126,14 @@ def _shown(colouring: Colouring | None, parts: list[CellsInView | None]) -> list
 
 
 def colour_bar(bar: Axes, colours: ScalarMappable, label: str, extend: str = "neither") -> None:
-    """Draw the colour scale."""
+    """Draw the colour scale into the axes `bar`."""
     bar.figure.colorbar(colours, cax=bar, extend=extend).set_label(label, color=INK, size=9)
     bar.ticklabel_format(axis="y", useOffset=False)
     bar.tick_params(labelsize=8, color=INK, labelcolor=INK)
 
 
 def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | None]:
-    """Return a figure with one axes per view, side by side with equal height, and one for the colour bar."""
+    """Return a figure, equally high axes for each view and, if `bar`, axes for the colour scale."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -161,7 +161,7 @@ def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | N
 
 
 def step_words(steps: list[int]) -> str:
-    """Return a text on the ascending `steps` between drawn lines; empty if all are drawn.
+    """Return a text about the ascending `steps` between drawn lines; empty if all lines are drawn.
 
     >>> step_words([1, 5]), step_words([2]), step_words([1])
     ('not all lines are drawn', 'every 2nd line', '')
@@ -172,7 +172,7 @@ def step_words(steps: list[int]) -> str:
 
 
 def note(ax: Axes, text: str) -> None:
-    """Write a line of text into the lower right corner; nothing if it is empty."""
+    """Write `text` into the lower right corner; an empty text writes nothing."""
     if not text:
         return
     paper = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 2.0}

@@ -27,14 +27,14 @@ _SAMPLE = 200_000  # number of cells that are examined to select the step betwee
 
 @dataclass(frozen=True)
 class Colouring:
-    """Values of the cells, and the colours that show them.
+    """Cell values and the colours that represent them.
 
     Parameters
     ----------
-    values : cell values (ni-1, nj-1); for several blocks a tuple with one array per block.
-    label : quantity and unit, for the colour bar.
-    limits : values at the ends of the colour scale; None: 1st and 99th percentile of the cells in view.
-    worst_is_low : whether small values are the bad ones, which get strong colours.
+    values : cell values (ni-1, nj-1); for several blocks, a tuple with an array for each block.
+    label : text at the colour scale: quantity and unit.
+    limits : values at the ends of the colour scale; None: 1st and 99th percentile of the visible cells.
+    worst_is_low : whether small values are bad; bad values get strong colours.
     """
 
     values: NDArray[Any] | tuple[NDArray[Any], ...]
@@ -44,12 +44,12 @@ class Colouring:
 
     @property
     def parts(self) -> tuple[NDArray[Any], ...]:
-        """Values of each block."""
+        """Values as a tuple with one array for each block."""
         return self.values if isinstance(self.values, tuple) else (self.values,)
 
     @property
     def scale(self) -> str:
-        """Name of the matplotlib colour map of these values."""
+        """Name of the matplotlib colour map."""
         return "YlGnBu_r" if self.worst_is_low else "YlGnBu"
 
     @property
@@ -62,7 +62,7 @@ _EVEN = 5e-3  # smallest half width of the colour scale relative to its middle, 
 
 
 def limits_of(colouring: Colouring | None, shown: Sequence[NDArray[Any]]) -> tuple[float, float]:
-    """Return the values at both ends of the colour scale for the values in view, `shown`."""
+    """Return the values at the ends of the colour scale, given the values `shown` of the visible cells."""
     if colouring is None:
         return 0.0, 1.0
     if colouring.limits:
@@ -78,14 +78,14 @@ def limits_of(colouring: Colouring | None, shown: Sequence[NDArray[Any]]) -> tup
 
 
 def padded(points: Floats, part: float) -> Box:
-    """Return the box of points (n, 2), larger on every side by a part of its longer extent."""
+    """Return the bounding box of points (n, 2), enlarged on each side by `part` times its longer side."""
     low, high = points.min(axis=0), points.max(axis=0)
     pad = part * float((high - low).max())
     return float(low[0] - pad), float(high[0] + pad), float(low[1] - pad), float(high[1] + pad)
 
 
 class CellsInView(NamedTuple):
-    """Index ranges around the cells in view, and the mask (i1-i0, j1-j0) of these cells."""
+    """Visible cells: `mask` (i1-i0, j1-j0) marks them among the cells with indices i0 to i1-1, j0 to j1-1."""
 
     i0: int
     i1: int
@@ -95,7 +95,7 @@ class CellsInView(NamedTuple):
 
 
 def in_view(grid: Grid, box: Box) -> CellsInView | None:
-    """Return the cells whose bounding boxes intersect `box`, or None if there are none."""
+    """Return the cells whose bounding boxes intersect `box`; None if there are none."""
     meets = _meets(grid.x, box[0], box[1]) & _meets(grid.y, box[2], box[3])
     columns, rows = np.flatnonzero(meets.any(axis=1)), np.flatnonzero(meets.any(axis=0))
     if not len(columns):
@@ -113,7 +113,7 @@ def paint(
     limits: tuple[float, float],
     colouring: Colouring,
 ) -> QuadMesh:
-    """Colour the cells of `part` by `values` (ni-1, nj-1); cells in one pixel get the worst of them."""
+    """Colour the cells `part` by `values` (ni-1, nj-1); a pixel with several cells shows the worst."""
     nodes = grid.nodes[part.i0 : part.i1 + 1, part.j0 : part.j1 + 1]
     shown = values[part.i0 : part.i1, part.j0 : part.j1]
     columns = _blocks(_extents(nodes, part.mask, 0) * pixels)
@@ -134,9 +134,9 @@ def rule(
     faint: bool,
     flipped: tuple[bool, bool] = (False, False),
 ) -> None:
-    """Draw every k-th grid line and the last; `steps` are k for lines i = const, and for j = const.
+    """Draw grid lines of the cells `part`; `steps` are the steps between drawn lines i = const and j = const.
 
-    In `flipped` directions, lines are counted from the last one.
+    The last line is always drawn. Where `flipped` is set, the lines are counted from the last line backwards.
     """
     from matplotlib.collections import LineCollection
 
@@ -150,7 +150,7 @@ def rule(
 
 
 def outline(ax: Axes, grid: Grid) -> None:
-    """Draw the outer edges with thicker lines, and fill the body inside an O or C grid."""
+    """Draw the outer edges with thicker lines; in an O or C grid, fill the body."""
     ends = () if grid.periodic else (grid.nodes[0], grid.nodes[-1])
     for edge in (grid.nodes[:, 0], grid.nodes[:, -1], *ends):
         ax.plot(edge[:, 0], edge[:, 1], color=INK, linewidth=0.9, zorder=4)
@@ -160,7 +160,7 @@ def outline(ax: Axes, grid: Grid) -> None:
 
 
 def body(grid: Grid) -> Floats:
-    """Return the nodes (n, 2) of the patch ``wall`` on the south side, or of the whole side."""
+    """Return the nodes (n, 2) of the south patch named ``wall``, else those of the whole south side."""
     for part in grid.patches:
         if part.side == "south" and part.name == "wall":
             return grid.nodes[part.start : part.stop + 1, 0]
@@ -170,7 +170,7 @@ def body(grid: Grid) -> Floats:
 def reduced(
     by: np.ufunc, values: NDArray[Any], columns: NDArray[np.intp], rows: NDArray[np.intp]
 ) -> NDArray[Any]:
-    """Return `values` reduced by `by` over the groups between consecutive `columns` and `rows`."""
+    """Return cell values reduced by the function `by` over groups that `columns` and `rows` bound."""
     joined: NDArray[Any] = by.reduceat(by.reduceat(values, columns[:-1], axis=0), rows[:-1], axis=1)
     return joined
 
@@ -202,7 +202,7 @@ def _blocks(sizes: Floats) -> NDArray[np.intp]:
 
 
 def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
-    """Return lengths and areas (n,) of sampled cells in view: along i, then along j."""
+    """Return two pairs of (lengths, areas) of sampled cells in view: lengths along i, then along j."""
     i, j = np.nonzero(part.mask)
     stride = max(1, len(i) // _SAMPLE)
     i, j = i[::stride] + part.i0, j[::stride] + part.j0
@@ -213,7 +213,7 @@ def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tup
 
 
 def line_step(length: Floats, area: Floats, pixels: float) -> int:
-    """Return the step 1, 2, 5, 10, ... between lines that are 6 pixels apart in half of the area.
+    """Return the step 1, 2, 5, 10, ... between lines that are 6 pixels or more apart in half of the area.
 
     `length` and `area` are those of `line_gaps`; `pixels` is the number of pixels per unit of length.
     """

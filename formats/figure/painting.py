@@ -36,7 +36,7 @@ def steps_of(sheet: CellSheet, axes: Floats, pixels: float, every: int | None) -
 
 @dataclass(frozen=True, eq=False)
 class Painted:
-    """Quadrilaterals (n, 4, 2) with colours (n, 4), outlines (m, 2, 2), and the depths of both."""
+    """Projected quadrilaterals (n, 4, 2), their colours (n, 4), outlines (m, 2, 2), depths of both."""
 
     quads: Floats
     depth: Floats
@@ -49,7 +49,7 @@ def painted(
     sheet: CellSheet, mask: Bools, steps: tuple[int, int], axes: Floats, colouring: Colouring | None,
     limits: tuple[float, float],
 ) -> Painted:  # fmt: skip
-    """Return the cells in `mask` (n-1, m-1) of a sheet, in groups of `steps`, projected onto `axes`."""
+    """Return the cells of `mask` (n-1, m-1) of a sheet in groups of `steps`, projected onto `axes`."""
     import matplotlib as mpl
 
     marks = [
@@ -105,5 +105,5 @@ def paint(ax: Axes, painted: Sequence[Painted]) -> None:
 
 
 def faint_ink(alpha: float) -> tuple[float, ...]:
-    """Return the colour of lines with the opacity `alpha`, 0 to 1."""
+    """Return the RGBA colour of lines with the opacity `alpha`, from 0 to 1."""
     return (*(int(INK[k : k + 2], 16) / 255 for k in (1, 3, 5)), alpha)

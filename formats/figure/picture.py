@@ -33,7 +33,7 @@ _RELATED = {
 
 @dataclass(frozen=True)
 class Picture(View):
-    """A view, and the `metric` that colours cells; None: lines only. Raises InputError: an unknown metric."""
+    """A view and the metric that colours cells (None: lines only). Raises InputError: unknown metric."""
 
     metric: str | None = "max_angle"
 
@@ -47,9 +47,9 @@ class Picture(View):
         super().__post_init__()
 
     def draw(self, kind: str, path: Path | BinaryIO, grids: Iterable[Grid], dots: int = DOTS) -> None:
-        """Draw the only grid of `grids` to `path`, as ``png``, ``svg``, ``pdf`` or ``html`` page.
+        """Draw the only grid of `grids` as a file of `kind` ``png``, ``svg``, ``pdf`` or ``html``.
 
-        Pages need a path, pictures may be written to an open file; `dots` are dots per inch of a ``png``.
+        `path` may be an open file, except for ``html``. `dots` is the number of dots per inch of a ``png``.
         """
         from meshonet.formats.figure.page.page import write_page
 
@@ -77,9 +77,9 @@ def write(
     view: View | None = None,
     dots: int = DOTS,
 ) -> None:
-    """Draw `grid` into a file of `kind` ``png``, ``svg`` or ``pdf``; equal input gives equal bytes.
+    """Draw `grid` as a file of `kind` ``png``, ``svg`` or ``pdf``; the same input gives the same bytes.
 
-    Raises InputError: a view without cells, or a view in space of a planar grid.
+    Raises InputError if no cell is in the view, or if the view is three-dimensional and the grid is planar.
     """
     import matplotlib as mpl
 

@@ -27,10 +27,10 @@ _AT_ONCE = 1 << 13  # number of nodes that are looked up together
 
 @dataclass(frozen=True, eq=False)
 class RowSections:
-    """Sections of the grid of a blade row, a volume around an axis.
+    """Sections of the volume grid of a blade row.
 
-    The axis is that of the rotation between periodic sides; without such sides, that of a full ring, or x.
-    Raises InputError: not a volume with patches `hub` and `shroud`.
+    The axis is that of the rotation between periodic sides. Without periodic sides, it is the axis of the
+    full ring, else the x axis. Raises InputError if `grid` is no volume with patches `hub` and `shroud`.
     """
 
     grid: Grid
@@ -58,7 +58,7 @@ class RowSections:
 
     @property
     def axis_name(self) -> str:
-        """Name of the axis: ``x``, ``y``, ``z``, or ``axis`` if it is not parallel to any of these."""
+        """Name of the axis: ``x``, ``y`` or ``z`` if it is parallel to one of them, else ``axis``."""
         direction = np.abs(self._axis[2])
         k = int(direction.argmax())
         return "xyz"[k] if direction[k] > _ALONG else "axis"
@@ -78,7 +78,7 @@ class RowSections:
 
     @cached_property
     def places(self) -> list[Floats]:
-        """For each block, axial position, radius and angle (ni, nj, nk, 3) of the nodes."""
+        """Axial position, radius and angle (ni, nj, nk, 3) of the nodes, an array for each block."""
         return [self._cylindrical(block.nodes) for block in self.grid.blocks]
 
     def _cylindrical(self, nodes: Floats) -> Floats:
@@ -135,7 +135,7 @@ class RowSections:
     def at(self, span: float, values: list[Floats] | None) -> Cut:
         """Return the section at the fraction `span` of the distance from hub to shroud.
 
-        `values` are the cell values of each block. Raises InputError: no cell is there.
+        `values` has the cell values of each block. Raises InputError if no cell is at this fraction.
         """
         hub, shroud = self._curves
         line = hub + span * (shroud - hub)
@@ -157,7 +157,7 @@ class RowSections:
         return made
 
     def meridional(self, values: list[Floats] | None) -> Cut:
-        """Return the section in x and r by a half-plane through the axis and the blade."""
+        """Return the section by a half-plane through the axis and the blade, in axial position and radius."""
         blades = {patch.block for patch in self.grid.patches if patch.name == "blade"}
         theta = [nodes[..., 2] for nodes in self.places]
         middle = float(np.mean([theta[k].mean() for k in sorted(blades) or range(len(theta))]))

@@ -19,7 +19,7 @@ _MOST = 12  # number of edges of a cell, the largest number of corners of a poly
 
 @dataclass(frozen=True)
 class Slice:
-    """A slice of a volume: a direction, 0 to 2, and an index or a coordinate along it."""
+    """A slice of a volume: a direction (0, 1, 2) and either a node index or a coordinate along it."""
 
     direction: int
     index: int | None = None
@@ -32,7 +32,7 @@ class Slice:
 
 
 def parse_slice(text: str) -> Slice:
-    """Return the slice of a text such as ``i=10``, ``k=-1`` or ``x=.5``. Raises InputError: another text."""
+    """Return the slice in a text such as ``i=10``, ``k=-1`` or ``x=.5``. Raises InputError: other text."""
     match = _SPEC.fullmatch(text)
     try:
         if match and match[1] in "ijk":
@@ -48,10 +48,10 @@ def parse_slice(text: str) -> Slice:
 
 @dataclass(frozen=True, eq=False)
 class CellSheet:
-    """A lattice of nodes (n, m, 3) in space, and optional values (n-1, m-1) of its cells.
+    """A surface of cells in space: nodes (n, m, 3) and optional cell values (n-1, m-1).
 
-    `outside` is 1 if the cross product of the first and the second direction points into the flow, -1 if out
-    of the flow, 0 if unknown.
+    `outside` is 1 if the cross product of its first and second direction points into the flow, -1 if it
+    points out of the flow, and 0 if this is unknown.
     """
 
     nodes: Floats
@@ -60,9 +60,9 @@ class CellSheet:
 
 
 def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet]:
-    """Return the grid surface of constant index `at`, for every block that has this index.
+    """Return the grid surface that the index `at` defines in each block that has this index.
 
-    Values are those of the adjacent cells. Raises InputError: no block has the index.
+    The values are those of the adjacent cells. Raises InputError if no block has the index.
     """
     index = at.index or 0
     sheets = []
@@ -83,14 +83,14 @@ def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """Polygons (n, 12, 2) in which a plane cuts n cells, filled up with the last corner; cell values (n,)."""
+    """Polygons in which a plane cuts cells, (n, 12, 2) with the last corner repeated; cell values (n,)."""
 
     polygons: Floats
     values: Floats | None
 
 
 def cut(grid: Grid, at: Slice, values: list[Floats] | None) -> Cut:
-    """Return the cut of cells by a plane of constant coordinate. Raises InputError: it intersects no cell."""
+    """Return the cells cut by a plane of constant coordinate. Raises InputError if it cuts none."""
     nodes = [block.nodes for block in grid.blocks]
     distances = [each[..., at.direction] - at.coordinate for each in nodes]
     flat = [np.delete(each, at.direction, axis=-1) for each in nodes]
@@ -106,13 +106,13 @@ def cut(grid: Grid, at: Slice, values: list[Floats] | None) -> Cut:
 
 
 def cut_where(distances: Sequence[Floats], flat: Sequence[Floats], values: list[Floats] | None) -> Cut:
-    """Return the polygons in which a surface intersects cells; all arguments have an entry per block.
+    """Return the polygons in which a surface cuts the cells of all blocks.
 
     Parameters
     ----------
-    distances : signed distances (ni, nj, nk) of nodes from the surface.
-    flat : coordinates (ni, nj, nk, 2) in which polygons are drawn.
-    values : values of cells.
+    distances : for each block, the signed distances (ni, nj, nk) of its nodes from the surface.
+    flat : for each block, the picture coordinates (ni, nj, nk, 2) of its nodes.
+    values : for each block, its cell values.
     """
     polygons, shown = [], []
     for number, (distance, plane) in enumerate(zip(distances, flat, strict=True)):

@@ -31,10 +31,9 @@ _FLAT = 1e-9  # largest extent of a plane grid surface along its normal, relativ
 
 
 def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure:
-    """Return a figure of a volume or surface; `colouring` has the values of its cells.
+    """Return a figure of a volume or a surface; `colouring` has its cell values.
 
-    Raises InputError: a slice of a surface, or one that does not exist; a zoom without cells, or of another
-    dimension.
+    Raises InputError if the grid does not have the slice, or if the zoom has no cells or another dimension.
     """
     values = [np.asarray(part) for part in colouring.parts] if colouring else None
     where = view.part

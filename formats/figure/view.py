@@ -20,15 +20,15 @@ class View:
 
     Parameters
     ----------
-    zoom : x0, x1, y0, y1, in space also z0, z1; cells outside are not drawn.
-    every : step between drawn lines; None: by the resolution of the picture.
+    zoom : box x0, x1, y0, y1, for grids in 3-D also z0, z1; cells outside are not drawn.
+    every : step between drawn lines; None: selected by the resolution of the picture.
     slice : slice of a volume, ``i=10``, ``k=-1`` or ``x=.5``; None: the walls, or the whole boundary.
-    seen_from : azimuth and elevation in degrees, for pictures in space; None is `SEEN_FROM`.
-    up : axis that points upwards in pictures in space, normal to the plane of elevation 0.
-    span : fractions of a blade row's span for sections, 0 at the hub, 1 at the shroud.
-    meridional : draw the meridional section of a blade row.
+    seen_from : azimuth and elevation of the viewer in degrees, for grids in 3-D; None is `SEEN_FROM`.
+    up : axis that points upwards in the picture, for grids in 3-D; elevation 0 is normal to it.
+    span : fractions (0 at the hub, 1 at the shroud) at which sections of a blade row are drawn.
+    meridional : whether the meridional section of a blade row is drawn.
 
-    Raises InputError: an unknown form of slice; a box without extent; `every` below 1.
+    Raises InputError if a parameter is invalid.
     """
 
     zoom: tuple[float, ...] | None = None
@@ -70,7 +70,7 @@ class View:
 
     @property
     def part(self) -> Slice | None:
-        """The parsed slice."""
+        """The slice as a `Slice`; None without a slice."""
         return parse_slice(self.slice) if isinstance(self.slice, str) else self.slice
 
     @property
@@ -92,7 +92,7 @@ class View:
 
 
 def check_flat(view: View) -> None:
-    """Raise InputError for settings that only grids in space have."""
+    """Raise InputError if `view` has a setting that applies only to three-dimensional grids."""
     settings = {"span": view.span or None, "meridional": view.meridional or None, "slice": view.slice}
     for name, value in (settings | {"seen_from": view.seen_from, "up": view.up}).items():
         if value is not None:
@@ -100,7 +100,7 @@ def check_flat(view: View) -> None:
 
 
 def flat_box(zoom: tuple[float, ...] | None, across: int | None = None) -> Box | None:
-    """Return the box `zoom` in the plane, without the axis `across`. Raises InputError: a box in space."""
+    """Return the planar box `zoom`, without its limits along `across`. Raises InputError: not planar."""
     if zoom is None:
         return None
     if len(zoom) == 6 and across is not None:
@@ -111,6 +111,6 @@ def flat_box(zoom: tuple[float, ...] | None, across: int | None = None) -> Box |
 
 
 def nothing_in(zoom: Sequence[float], low: Floats, high: Floats) -> InputError:
-    """Return the error for a box that shows nothing of a grid with corners `low` and `high` (2,) or (3,)."""
+    """Return the error for a `zoom` without cells in a grid with the extreme corners `low` and `high`."""
     spans = ", ".join(f"{name} {a:.4g} to {b:.4g}" for name, a, b in zip("xyz", low, high, strict=False))
     return InputError(f"zoom {zoom} shows none of the grid", f"it spans {spans}", parameter="zoom")

@@ -15,7 +15,7 @@ _MOST = 2.0**50  # largest integer coordinate; differences of such numbers are e
 
 @dataclass(frozen=True)
 class Packed:
-    """Base64 text of integers, their number, and the number of bytes of each."""
+    """Compressed integers: Base64 text, number of integers, and number of bytes of each integer."""
 
     text: str
     count: int
@@ -23,10 +23,10 @@ class Packed:
 
 
 def packed(numbers: NDArray[np.integer]) -> Packed:
-    """Return integers (n,) below 2^50 in magnitude as compressed text for ``unpack.js``.
+    """Return integers (n,) below 2^50 in magnitude as compressed text, which ``unpack.js`` reads.
 
-    Packing: differences -> unsigned (0, -1, 1, -2 ... as 0, 1, 2, 3 ...) -> bytes by significance -> deflate
-    -> base64.
+    The differences of successive integers are mapped to unsigned integers (0, -1, 1, -2 ... to 0, 1, 2, 3
+    ...). Their bytes, grouped by significance, are compressed by deflate and encoded as Base64.
 
     >>> packed(np.array([5, 6, 7])).width
     1
@@ -47,7 +47,7 @@ def rounding_step(shortest: float, extent: float) -> float:
 
 
 def shortest_edge(nodes: Floats, extent: float) -> float:
-    """Return the length of the shortest edge of `nodes` (..., d), except edges of zero length."""
+    """Return the length of the shortest edge of `nodes` (..., d) that is longer than 1e-14 `extent`."""
     least = extent
     for axis in range(nodes.ndim - 1):
         step = np.diff(nodes, axis=axis)

@@ -29,9 +29,9 @@ _BODY = """{body}
 
 
 def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: View | None = None) -> None:
-    """Write the page of `grid`, which opens with this `metric` and `view`.
+    """Write an interactive HTML page of `grid`, which initially shows this `metric` and `view`.
 
-    Raises InputError: a metric that the cells lack; a view without cells, or of another dimension.
+    Raises InputError if the cells do not have the metric, or if the view has no cells or another dimension.
     """
     start = _start(grid, metric, view or View())
     chosen = start["slice"]
@@ -40,12 +40,12 @@ def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: V
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the page of the only grid in `grids`."""
+    """Write an interactive HTML page of the only grid in `grids`."""
     write_page(path, only_one(grids, "a page"))
 
 
 def page_text(name: str, scene: Scene, start: dict[str, Any]) -> str:
-    """Return the page of a scene as text; `start` describes the initial view."""
+    """Return the HTML page of a scene as text; `start` describes the initial view."""
     import matplotlib as mpl
 
     table = mpl.colormaps["YlGnBu"](np.linspace(0.0, 1.0, 256))[:, :3]  # light to dark

@@ -32,9 +32,9 @@ _LAYERS = 3  # fewest layers across each direction of such a volume
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """Nodes (ni, nj, d) or (ni, nj, nk, 3) of a block, or of a patch normal to the direction `fixed`.
+    """Nodes (ni, nj, d) or (ni, nj, nk, 3) of a block or of a part of it.
 
-    `start` are the indices, in the block, of the first cell of the lattice.
+    `start` has the indices of its first cell in the block. `fixed` is the direction normal to a surface.
     """
 
     block: int
@@ -48,7 +48,7 @@ class Lattice:
         return self.nodes.shape[:-1]
 
     def facts(self) -> dict[str, Any]:
-        """Return the data that the program of the page needs."""
+        """Return the description of the lattice for the JavaScript of the page."""
         facts: dict[str, Any] = {"block": self.block, "counts": list(self.counts), "start": list(self.start)}
         return facts if self.fixed is None else facts | {"fixed": self.fixed}
 
@@ -57,9 +57,9 @@ class Lattice:
 class SceneSheet:
     """A layer of cells of a lattice.
 
-    `axis` is the direction normal to the layer; None: the lattice is a layer. `node` is the index of the
-    layer along `axis`, `ranges` are the first and last nodes along the other directions. In a large volume,
-    whose lattices are parts of blocks, the layer has the index `at` along `across` (i, j or k).
+    `axis` is the direction normal to the layer (None: the lattice is a layer). `node` is the layer's index
+    along it. `ranges` are first and last node along each other direction. In a large volume, whose lattices
+    are parts of blocks, the layer has the index `at` of its block along `across` (i, j or k).
     """
 
     lattice: int
@@ -72,22 +72,22 @@ class SceneSheet:
     at: int = 0
 
     def facts(self) -> dict[str, Any]:
-        """Return the data that the program of the page needs."""
+        """Return the description of the layer for the JavaScript of the page."""
         return dict(vars(self))
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Content of a page: facts for JSON, and arrays of numbers."""
+    """Content of a page: descriptions for JSON, and compressed arrays of numbers by name."""
 
     facts: dict[str, Any]
     numbers: dict[str, Packed] = field(default_factory=dict)
 
 
 def scene_of(grid: Grid, layer: tuple[str, int] | None = None, shown: str | None = None) -> Scene:
-    """Return the scene of a grid with all its metrics; the metric `shown` comes first.
+    """Return the content of the page of a grid with all its metrics; the metric `shown` comes first.
 
-    `layer`, direction (i, j or k) and index, adds a layer to the scene of a large volume.
+    `layer` is a direction (i, j or k) and an index. A large volume shows this layer in addition.
     """
     lattices, sheets = _whole(grid) if _fits(grid) else _in_part(grid, layer)
     low = np.min([lattice.nodes.reshape(-1, lattice.nodes.shape[-1]).min(axis=0) for lattice in lattices], 0)

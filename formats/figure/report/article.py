@@ -24,7 +24,7 @@ _TINY = 1e-300  # smallest divisor, so that a scale of zero length does not caus
 
 
 def article(label: str, report: QualityReport, gates: Sequence[Gate], number: int) -> str:
-    """Return the section of a page about the grid `label`; `number` is its anchor for links."""
+    """Return the HTML section on the grid `label`; other parts of the page link to it by its `number`."""
     grid = report.grid
     verdicts = _gates(report, gates) + _profile(report)
     values = {m.name: [np.asarray(v) for v in per_cell_of_blocks(grid, m.name)] for m in metrics_of(grid)}
@@ -46,7 +46,7 @@ def article(label: str, report: QualityReport, gates: Sequence[Gate], number: in
 
 
 def size_words(report: QualityReport) -> str:
-    """Return the numbers of blocks, nodes, cells and folded cells as text."""
+    """Return the numbers of nodes (or blocks), cells and folded cells of a grid as text."""
     grid, quality = report.grid, report.quality
     folded = f"{quality.folded:,} folded" if quality.folded else "none folded"
     if len(grid.blocks) == 1:
@@ -61,7 +61,7 @@ def passed(report: QualityReport, gates: Sequence[Gate]) -> bool:
 
 
 def verdict(name: str, words: str = "") -> str:
-    """Return ``pass``, ``warn`` or ``fail`` as a coloured word."""
+    """Return the verdict ``pass``, ``warn`` or ``fail``, or `words`, as HTML in its colour."""
     return f'<span class="{name}">{words or verdict_word(name)}</span>'
 
 
@@ -170,9 +170,9 @@ def _table(head: Iterable[str], rows: Iterable[Sequence[str]], words: int | None
 
 
 def histogram_svg(values: Floats, scale: Scale, limits: Sequence[float] = ()) -> str:
-    """Return a histogram of values (n,) as SVG, with marks at the `limits` within the scale.
+    """Return a histogram of values (n,) as SVG, with a mark at each of the `limits` inside the scale.
 
-    Heights follow the square root of the count, so that a few bad cells are visible.
+    The height of a bar is proportional to the square root of its count, so that a few bad cells are visible.
     """
     counts = np.array(histogram(values, scale), dtype=float)
     heights = np.sqrt(counts / max(counts.max(), 1.0)) * _HEIGHT

@@ -15,7 +15,7 @@ SHOWN = 20  # largest number of grids with pictures in a report; of more grids, 
 
 
 class QualityPage:
-    """Reports of the `SHOWN` worst grids, sorted by gates, then largest angle; `software` made the page."""
+    """Quality page of grids; the `SHOWN` worst (failed, then those of largest angle) are shown in detail."""
 
     def __init__(self, gates: Sequence[Gate] = (), software: str = "meshonet") -> None:
         self._gates, self._software = tuple(gates), software
@@ -24,7 +24,7 @@ class QualityPage:
         self._numbers = itertools.count()
 
     def add(self, label: str, report: QualityReport) -> None:
-        """Add the report of the grid `label`. Raises InputError: the grid lacks the figure of a gate."""
+        """Add the report of the grid `label`. Raises InputError if the grid lacks the quantity of a gate."""
         report = report.under(self._gates)
         good, angle = passed(report, self._gates), report.quality["max_angle"].max
         number = next(self._numbers)
@@ -37,11 +37,11 @@ class QualityPage:
 
     @property
     def passed(self) -> bool:
-        """Whether all grids so far have passed."""
+        """Whether all grids added so far have passed."""
         return all(good for *_, good in self._rows)
 
     def text(self) -> str:
-        """Return the page."""
+        """Return the page as HTML."""
         shown = sorted(self._worst, key=lambda entry: -entry[1])
         articles = [article(label, report, self._gates, -number) for _, number, label, report in shown]
         title = self._rows[0][0] if len(self._rows) == 1 else f"{len(self._rows)} grids"
