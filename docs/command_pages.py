@@ -26,7 +26,7 @@ _COMMAND_HEAD = """# meshonet {name}
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look up an option here: what `meshonet {name} --help` prints.
+Look up an option of `{name}` here. `meshonet {name} --help` prints the same text.
 """
 """Start of the page of one command."""
 

@@ -39,22 +39,20 @@ def convert(
         help="Files to read, or - for standard input. Without -o the last argument is the file to write.",
     )] = None,
     extrude: float | None = _option(
-        metavar="H", help="Extrude the planar grid by H along z, for planar flow in solvers that require "
-        "three-dimensional grids. The result has one layer of cells, or more with --planes.",
+        metavar="H", help="Extrude the planar grid by H along z. The result has one layer of cells, or more "
+        "with --planes.",
     ),
     planes: int | None = _option(
-        metavar="K", min=2, max=10_000, help="Number of planes of nodes for --extrude or --revolve, one more "
-        "than the layers of cells. [default: 2; in sectors and full rings as many as cells of at most 4 "
-        "degrees need]",
+        metavar="K", min=2, max=10_000, help="Number of planes of nodes for --extrude or --revolve. "
+        "[default: 2; in sectors and full rings enough for cells of at most 4 degrees]",
     ),
     plot3d: str | None = _output(
-        metavar="WORDS", help="Variant of the Plot3D file to write, or to read if the output has another "
-        "format: words with commas between them, at most one of each group. ascii/binary/fortran (fortran: "
-        "with record marks), multi/single (single: no block count), 2d/3d, no-iblank/iblank, little/big "
-        "(endian), float64/float32; for reading whole/planes (coordinates by block or by plane); for writing "
-        "span-k/span-i/span-j (file index of the third direction of volumes). The default for writing is the "
-        "first of each group, unless the extension implies another; for reading, give only what is not "
-        "recognised. In other commands: --from or --to plot3d:WORDS.",
+        metavar="WORDS", help="Variant of the Plot3D file to write or, if the output has another format, to "
+        "read. Give words with commas between them, at most one of each group: ascii/binary/fortran, "
+        "multi/single, 2d/3d, no-iblank/iblank, little/big, float64/float32; for reading also whole/planes; "
+        "for writing also span-k/span-i/span-j. The documentation's page on conventions of formats explains "
+        "them. [default: for writing the first word of each group, unless the extension implies another; for "
+        "reading as recognised]",
     ),
     swap: bool = _option(
         default=False, help="Exchange xi and eta of a four-sided grid. The result is still right-handed.",
@@ -68,13 +66,13 @@ def convert(
         "numbers of cells and the node indices of wall corners. [default: 1]",
     ),
     scale: float | None = _option(
-        metavar="S", help="Multiply all lengths by S; 0.001 converts millimetres to metres. --extrude and "
+        metavar="S", help="Multiply all lengths by S, e.g. by 0.001 for millimetres to metres. --extrude and "
         "--axis are in the new unit. [default: 1]",
     ),
     copies: str | None = _option(
-        metavar="K[xL]", help="Join K copies of a periodic grid, e.g. passages of a blade row up to the "
-        "whole annulus. KxL joins K copies along the first and L along the second of two periods, which the "
-        "quality report lists in this order. [default: 1]",
+        metavar="K[xL]", help="Join K copies of a periodic grid, e.g. passages of a blade row. KxL joins K "
+        "copies along the first period and L along the second, in the order of the quality report. [default: "
+        "1]",
     ),
     revolve: o.Revolve = None,
     axis: o.Axis = None,

@@ -20,16 +20,16 @@ def deform(
     gates: o.GateOptions,
     wall: list[str] | None = _option(
         metavar="[NAME=]FILE", help="New shape of a wall: a file with an outline, a designation such as "
-        "naca:2412, or a grid with equally many nodes on its wall. NAME is a wall or another named part of "
-        "the boundary; it may be omitted if the grid has one wall. Repeatable.",
+        "naca:2412, or a grid with equally many nodes on its wall. NAME, a wall or another named part of the "
+        "boundary, may be omitted if the grid has one wall. Repeatable.",
     ),
     rotate: list[str] | None = _option(
-        metavar="NAME=DEGREES@X,Y", help="Rotate the wall NAME in the plane, by DEGREES counter-clockwise "
-        "about the point (X, Y). Repeatable.",
+        metavar="NAME=DEGREES@X,Y", help="Rotate the wall NAME counter-clockwise by DEGREES about the point "
+        "(X, Y). Repeatable.",
     ),
     shift: list[str] | None = _option(
-        metavar="NAME=DX,DY[,DZ]", help="Translate the wall NAME by (DX, DY, DZ), after its rotation if "
-        "there is one. Repeatable.",
+        metavar="NAME=DX,DY[,DZ]", help="Translate the wall NAME by (DX, DY, DZ), after its rotation. "
+        "Repeatable.",
     ),
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,

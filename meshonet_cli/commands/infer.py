@@ -27,19 +27,19 @@ def infer(
     volume: o.VolumeOptions,
     blocks: o.BlocksName = "auto",
     model: str | None = _option(
-        metavar="NAME|PATH", help="Neural operator that makes the grid: the name of a shipped model (see "
-        "meshonet models), a .safetensors file, or base for the conformal solver without a network. Not for "
-        "C grids, which are always marched. [default: no operator; the method described above]",
+        metavar="NAME|PATH", help="Neural operator that makes the grid: a shipped model (meshonet models "
+        "lists them), a .safetensors file, or base, the conformal solver without a network. Not for C grids. "
+        "[default: no operator]",
     ),
     polish: str = _option(
-        default="auto", metavar="auto|off|N", help="Number of solver iterations after the neural operator: "
-        "elliptic around bodies, variational in four-sided domains. off: none. auto: as many as suit the "
-        "model. Without --model, off or N selects the default model for the topology.",
+        default="auto", metavar="auto|off|N", help="Number of solver iterations after the neural operator. "
+        "off: none. auto: as many as suit the model. Without --model, off or N selects the default model for "
+        "the topology.",
     ),
     answer: Literal["valid", "pasted", "raw"] = _option(
-        default="valid", help="Treatment of the grid that a network predicts. raw: unchanged; its boundary "
-        "nodes can differ from the given ones. pasted: with the given boundary nodes. valid: as pasted, with "
-        "folded cells repaired.",
+        default="valid", help="Treatment of the grid that a network predicts. raw: none; its boundary nodes "
+        "can differ from the given ones. pasted: the given boundary nodes replace the predicted ones. valid: "
+        "as pasted, and folded cells are repaired.",
     ),
     device: Literal["cpu", "cuda"] | None = _option(
         help="Evaluate networks with torch on this device, all grids of a batch together. --polish auto "
@@ -47,18 +47,17 @@ def infer(
     ),
     fallback: bool = _option(
         default=False, help="Use the solver that the network imitates if the expected error of the network "
-        "is above 0.03 or its grid has folded cells.",
+        "is above 0.03 or if its grid has folded cells.",
     ),
     refine: o.Refine = 0,
 ) -> int:
     """Make grids by the method that suits the kind of shape.
 
-    The default method is the best in benchmarks for the kind of shape. O grids around bodies are made by a
-    conformal map, or with a first cell by marching from the wall. C grids are marched from the wall.
-    Four-sided domains are filled by the variational method, or with a first cell by Winslow's equations. All
-    other planar domains are split into blocks. Volumes inside six faces are filled by the variational method.
-    With a first cell, the volume outside a surface is marched from it. A neural operator makes the grid only
-    if --model, --polish, --device or --fallback is given; the report then gives the expected error.
+    O grids are made by a conformal map, or with a first cell by marching from the wall. C grids are marched.
+    Four-sided grids are made by the variational method, or with a first cell by Winslow's equations. Other
+    planar domains are split into blocks. Volumes inside six faces are made by the variational method. With a
+    first cell, the volume outside a surface is marched. A neural operator makes the grid only with --model,
+    --polish, --device or --fallback; the report then gives the expected error.
     """
     from meshonet_cli.tasks.grids import write_grids
 

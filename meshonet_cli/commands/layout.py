@@ -25,8 +25,8 @@ class LayoutFiles(Files):
 
     output: Annotated[str, o.option_of(o.IO)(
         "-o", "--output", metavar="LAYOUT.json", help="File to write, or - for standard output. For several "
-        "inputs: a pattern such as 'dir/{stem}.json', with {stem} (of the input file), {name} (of the "
-        "shape) or {index} (from 0).",
+        "inputs: a pattern such as 'dir/{stem}.json'. {stem} stands for the name of the input file, {name} "
+        "for that of the shape, {index} for its number from 0.",
     )]
     from_format: o.From = None
     skip_existing: o.SkipExisting = False
@@ -42,8 +42,8 @@ def layout(
     blocks: o.BlockOptions,
     run: o.RunOptions,
     far_field: float | None = _sampling(
-        metavar="R", help="Distance of the far field from the middle of all bodies, as a multiple of their "
-        "largest extent together. [default: 15]",
+        metavar="R", help="Distance of the far field from the middle of all bodies, divided by the largest "
+        "extent of all bodies together. [default: 15]",
     ),
     first_cell: o.FirstCell = None, y_plus: o.YPlusAtWalls = None, reynolds: o.Reynolds = None,
     length: o.Length = None,

@@ -27,8 +27,8 @@ class PictureFiles(Files):
 
     output: Annotated[str, _output(
         "-o", "--output", metavar="PICTURE", help="Picture (.png, .svg or .pdf) or interactive page (.html) "
-        "to write, or - for standard output. For several inputs: a pattern such as 'dir/{stem}.png', with "
-        "{stem} (of the input file), {name} (of the shape) or {index} (from 0).",
+        "to write, or - for standard output. For several inputs: a pattern such as 'dir/{stem}.png'. {stem} "
+        "stands for the name of the input file, {name} for that of the shape, {index} for its number from 0.",
     )]
     to_format: str | None = _output(
         metavar="FORMAT", help="Format of the picture: png, svg, pdf or html. [default: from the extension; "
@@ -44,26 +44,26 @@ def plot(
     run: o.InputOptions,
     metric: str = _option(
         default="max_angle", metavar="METRIC", help="Metric that colours the cells: one in the report of "
-        "meshonet quality; growth (along grid lines); or non_orthogonality, face_skewness or box_ratio of "
-        "checkMesh. none: grid lines only.",
+        "meshonet quality, growth, or non_orthogonality, face_skewness or box_ratio of checkMesh. none: grid "
+        "lines only.",
     ),
     zoom: str | None = _option(
-        metavar="x0,x1,y0,y1", help="Show only this region: x0,x1,y0,y1 of a planar grid, x0,x1,y0,y1,z0,z1 "
-        "in space. For a --slice four numbers may limit its two axes instead: y0,y1,z0,z1 in the plane "
-        "x=2.9, whose y axis points to the right. [default: the whole grid]",
+        metavar="x0,x1,y0,y1", help="Show only this region of a planar grid; in space give "
+        "x0,x1,y0,y1,z0,z1. For a --slice, four numbers may limit its two axes instead: y0,y1,z0,z1 in the "
+        "plane x=2.9. [default: the whole grid]",
     ),
     slice_: str | None = _option(
-        "--slice", metavar="SLICE", help="Draw this slice of a volume: a grid surface of constant index, "
-        "such as i=10 or k=-1 (the last), or a plane such as x=.5. [default: the walls of the volume instead "
-        "of a slice; if it has no walls, its whole boundary]",
+        "--slice", metavar="SLICE", help="Draw this slice of a volume: a grid surface such as i=10 or k=-1 "
+        "(the last), or a plane such as x=.5. [default: no slice but the walls; without walls the whole "
+        "boundary]",
     ),
     span: str | None = _option(
-        metavar="S,...", help="Draw sections of a blade row, side by side, at these fractions of the span, "
-        "between 0 (hub) and 1 (shroud).",
+        metavar="S,...", help="Draw sections of a blade row side by side, at these fractions of the span, "
+        "from 0 (hub) to 1 (shroud).",
     ),
     meridional: bool = _option(
         default=False, help="Draw the meridional section of a blade row, in the coordinates x and r: the "
-        "cells cut by a half-plane through the axis and the blade.",
+        "cells that a half-plane through the axis and the blade cuts.",
     ),
     seen_from: str | None = _option(
         metavar="AZIMUTH,ELEVATION", help="Direction from which volumes and surfaces are seen: azimuth and "

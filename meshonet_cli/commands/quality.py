@@ -28,17 +28,16 @@ def quality(
     ),
     html: str | None = _output(
         metavar="F.html", help="Write a report page with pictures, histograms, the worst cells, and the "
-        "results of --fail-on and --profile. Of more than 20 grids it shows the 20 worst.",
+        "results of --fail-on and --profile. It shows at most the 20 worst grids.",
     ),
     per_cell: str | None = _output(
         metavar="F.vts", help="Write all metrics of every cell into this file: .vts, or .vtm for a "
         "multi-block grid.",
     ),
     compare: str | None = _check(
-        metavar="OTHER", help="File with reference grids of the same size. The report then has the relative "
-        "L2 distance from the reference over all nodes and near walls; the largest distance of all nodes "
-        "and of boundary nodes; the folded cells of the reference; and the largest and the mean angle, "
-        "divided by those of the reference.",
+        metavar="OTHER", help="File with reference grids of the same size. The report then gives the "
+        "distances of nodes from the reference, its folded cells, and the largest and the mean angle divided "
+        "by those of the reference.",
     ),
     pair: Literal["auto", "name", "order"] | None = _check(
         help="Rule that assigns grids to the references of --compare. name: equal names. order: first to "
@@ -47,8 +46,8 @@ def quality(
     ),
     reynolds: float | None = _check(
         metavar="RE", help="Reynolds number, based on --length. The report then gives y+ of the first cells "
-        "at each wall, as on a turbulent flat plate; 'y_plus>2' in --fail-on refers to the largest of all "
-        "walls. [default: no y+]",
+        "at each wall, as on a turbulent flat plate. --fail-on 'y_plus>2' tests the largest. [default: no "
+        "y+]",
     ),
     length: float | None = _check(
         metavar="L", help="Reference length of --reynolds, in the unit of the grid. [default: 1]",

@@ -28,27 +28,26 @@ def sample_boundary(
     )] = None,
     family: str | None = _option(
         metavar="NAME", help="Make shapes with random parameters instead of reading files. arch, hexagon, "
-        "wrench, semicircle, airfoil and hole: the families of the MeshONet paper, with one parameter each. "
-        "procedural: airfoils. four-sided: four-sided domains. bodies: bodies in far fields. Without --res, "
-        "boundaries have 101x101 nodes.",
+        "wrench, semicircle, airfoil, hole: families of the MeshONet paper. procedural: airfoils. "
+        "four-sided: four-sided domains. bodies: bodies in far fields. Without --res, boundaries have "
+        "101x101 nodes.",
     ),
     count: int | None = _option(metavar="N", min=1, help="Number of shapes of the --family. [default: 1]"),
     spread: str | None = _option(
-        "--range", metavar="A:B", help="Interval of the parameter of arch, hexagon, wrench, semicircle, "
-        "airfoil or hole. [default: the interval of the MeshONet paper]",
+        "--range", metavar="A:B", help="Interval of the parameter of a family of the MeshONet paper. "
+        "[default: the interval in the paper]",
     ),
     seed: int | None = _option(
         metavar="S", min=0, help="Seed of the random numbers of --family. [default: 0]",
     ),
     split: str | None = _option(
-        metavar="HOW", help="Reserve a sixth of the shapes of the --family for tests. interpolation: from "
-        "the middle of the parameter range. extrapolation: from one end of it. random: at random. The .h5 "
-        "file stores the split for the command train; FILE.h5#test reads the test shapes. [default: no "
-        "split]",
+        metavar="HOW", help="Reserve a sixth of the shapes for tests. interpolation: from the middle of the "
+        "parameter range. extrapolation: from one end of it. random: at random. The .h5 file stores the "
+        "split for meshonet train; FILE.h5#test reads the test shapes. [default: no split]",
     ),
     sensors: int | None = _option(
-        metavar="M", min=2, help="Store M boundary nodes of each shape in the array sensors of the .h5 "
-        "file, as the input of neural operators. [default: no sensors]",
+        metavar="M", min=2, help="Store M boundary nodes of each shape in the .h5 file, in the array "
+        "sensors, as the input of neural operators. [default: no sensors]",
     ),
 ) -> int:
     """Place nodes on the four edges of a boundary.

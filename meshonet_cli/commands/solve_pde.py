@@ -22,8 +22,8 @@ EXAMPLES = (
 _option = o.option_of(o.METHOD)
 
 AUTO = (
-    "hyperbolic outside a body or surface with a first cell, and for C grids if none of {coarse}, {refine}, "
-    "{tol}, {max_cycles} and {initial} is given; variational for multi-block grids and inside six faces; "
+    "hyperbolic outside a body or surface with a first cell, and for C grids unless {coarse}, {refine}, "
+    "{tol}, {max_cycles} or {initial} is given; variational for multi-block grids and inside six faces; "
     "else winslow"
 )
 SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves} | {"auto": AUTO}
@@ -50,18 +50,17 @@ def solve_pde(
     tol: float | None = _option(
         metavar="T", help="Stop when the residual is below T times the residual of transfinite "
         "interpolation. The variational method stops when no node moves by more than about T times the "
-        "square root of the area of the domain. [default: stop when the iteration error is below the "
-        "discretisation error]",
+        "square root of the area. [default: stop when the iteration error is below the discretisation error]",
     ),
     max_cycles: int | None = _option(
         metavar="N", min=1, help="Largest number of multigrid cycles, or of iterations of the variational "
-        "method on all nodes. [default: 30 cycles; 200 iterations]",
+        "method. [default: 30 cycles; 200 iterations]",
     ),
     coarse: str = _option(
         default="auto", metavar="auto|off|N", help="Solve on at most N x N nodes and interpolate to --res by "
-        "splines. off: solve on all nodes. auto: in four-sided domains, N = 257 for winslow with more than "
-        "512 nodes along a side, N = 129 for variational with more than 257. In all other cases, and with "
-        "--tol, --max-cycles or --initial: off.",
+        "splines. off: solve on all nodes. auto: in four-sided domains, 257 for winslow with more than 512 "
+        "nodes along a side, 129 for variational with more than 257; in all other cases, and with --tol, "
+        "--max-cycles or --initial, off.",
     ),
     refine: o.Refine = 0,
     initial: str | None = _option(
@@ -76,15 +75,13 @@ def solve_pde(
     wall_angle: o.WallAngle = None,
     repair_margin: int | None = o.option_of(o.CHECKS)(
         metavar="CELLS", min=2, max=24, help="Width, in cells, of the region around folded cells in which "
-        "the repair moves nodes. Larger values take more time and give smoother grids. [default: 6, and "
-        "more if cells stay folded]",
+        "the repair moves nodes. [default: 6, and more if cells stay folded]",
     ),
 ) -> int:
     """Make elliptic, variational or marched grids.
 
-    A volume is filled inside six faces, which are given as a volume grid or as six patches. With a first
-    cell, the volume outside a surface is marched from its patches. A given multi-block grid is smoothed,
-    across the interfaces of its blocks too.
+    A volume grid or six patches give the faces of a volume, which is filled. With a first cell, the volume
+    outside a surface is marched from its patches. A multi-block grid is smoothed, also across interfaces.
     """
     from meshonet_cli.tasks.grids import initial_grid, write_grids
 

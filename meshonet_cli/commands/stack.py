@@ -32,17 +32,15 @@ class VolumeFiles(Files):
 def stack(
     sections: Annotated[list[str], typer.Argument(
         metavar="SECTIONS.toml", show_default=False,
-        help="File with two or more sections, or - for standard input. A section of a wing or blade has an "
-        "airfoil (a file or naca:2412), a chord, its position z and, where needed, x, y and twist, or sweep "
-        "and dihedral. A section of a duct has an outline instead: circle:RADIUS or a file with a closed "
-        "curve. The file of a blade row has profiles, hub and shroud instead; the file of an aircraft has a "
-        "body and wings, described by numbers or by surface files (Plot3D, CGNS or VTK).",
+        help="File that describes the shape, or - for standard input. A wing or blade: sections with an "
+        "airfoil, a chord and a position. A duct: sections with an outline. A blade row: profiles, hub and "
+        "shroud. An aircraft: a body and wings. The guides in the documentation list the entries of each.",
     )],
     files: VolumeFiles,
     run: o.RunOptions,
     gates: o.GateOptions,
     around: int | None = _sampling(
-        metavar="N", help="Odd number of nodes around each section. The first node is also the last and "
+        metavar="N", help="Odd number of nodes around each section; the first node is also the last and "
         "counts twice. [default: 129]",
     ),
     span: int | None = _sampling(
@@ -50,9 +48,8 @@ def stack(
         "in ducts and blades with unevenly spaced sections]",
     ),
     base: float | None = _sampling(
-        metavar="H", help="Smallest height of trailing edges of wings and blades, in chords of each "
-        "section. Thinner trailing edges are opened to this height. [default: 0.005; 0.001 for wings from "
-        "surface files]",
+        metavar="H", help="Smallest height of trailing edges, in chords of each section. Thinner trailing "
+        "edges are opened to this height. [default: 0.005; 0.001 for wings from surface files]",
     ),
     cells: int | None = _sampling(
         metavar="N", help="Approximate number of cells around a wing or blade (instead of --around, --span "
@@ -73,18 +70,18 @@ def stack(
         "round]",
     ),
     revolve: float | None = _volume(
-        metavar="DEGREES", help="Bend the z axis of a blade or duct around --axis, by this angle in degrees "
-        "from the first to the last section. [default: straight]",
+        metavar="DEGREES", help="Bend the z axis of a blade or duct around --axis, by this angle from the "
+        "first section to the last. [default: straight]",
     ),
     axis: o.Axis = None,
     surface: bool = _volume(
-        default=False, help="Write only the patches of the surface, for other programs or for solve-pde.",
+        default=False, help="Write only the surface patches, for other programs or for solve-pde.",
     ),
     layers: o.Layers = None,
     first_cell: float | None = _layer(
         "--first-cell", "--wall-spacing", metavar="H", help="Height of the first cell at every wall, in "
-        "longest chords, or for ducts in the unit of the file. [default: 0.001; in ducts about the height of "
-        "the cells in the middle]",
+        "longest chords; in ducts in the unit of the file. [default: 0.001; in ducts about the height of the "
+        "cells in the middle]",
     ),
     y_plus: o.YPlus = None,
     reynolds: o.Reynolds = None,
@@ -93,8 +90,8 @@ def stack(
         "longest chord; in ducts the largest extent of the sections]",
     ),
     growth: float | None = _layer(
-        metavar="G", help="Largest ratio of the heights of neighbouring cells along a grid line away from "
-        "the wall. The number of rows follows from it. Not with --layers. [default: 1.2]",
+        metavar="G", help="Largest ratio of the heights of neighbouring cells on a grid line from a wall. It "
+        "determines the number of rows. Not with --layers. [default: 1.2]",
     ),
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
@@ -102,8 +99,7 @@ def stack(
 ) -> int:
     """Make volume grids of wings, ducts, blade rows and aircraft.
 
-    A TOML file describes the shape by cross-sections. The grid surrounds a wing or an aircraft, fills a duct
-    from the first section to the last, or fills one passage of a row of blades.
+    The grid surrounds a wing, blade or aircraft, fills a duct, or fills one passage of a blade row.
     """
     from meshonet_cli.tasks.volumes import write_stacks
 

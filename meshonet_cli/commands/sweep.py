@@ -32,8 +32,8 @@ def sweep(
     names: Annotated[list[str], typer.Argument(
         metavar="OUTLINE... [PATH]", show_default=False,
         help="Cross-sections, each swept to a grid of its own: circle:RADIUS or a file with a closed curve, "
-        "a domain, a layout or a planar grid. The last argument is the path: a TOML file with lines "
-        "and arcs, or a file with one point x y z per line. With --revolve there is no path.",
+        "a domain, a layout or a planar grid. The last argument is the path, unless --revolve is given: a "
+        "TOML file with lines and arcs, or a file with one point x y z per line.",
     )],
     run: o.RunOptions,
     gates: o.GateOptions,
@@ -43,47 +43,46 @@ def sweep(
         "with a first cell, as many as --growth needs]",
     ),
     around: int | None = _sampling(
-        metavar="N", help="Number of cells around a circle, a multiple of four. [default: 88; with --cells, "
-        "as many as it requires, but at least 84 to keep the area within 0.1 %]",
+        metavar="N", help="Number of cells around a circle, a multiple of four. [default: 88; with --cells "
+        "as many as it requires, but at least 84]",
     ),
     planes: int | None = _volume(
-        metavar="K", help="Number of planes of nodes along the path or around the axis. [default: as many "
-        "as needed for cells that turn by at most 4 degrees and, along a path, are at most three times as "
-        "long as wide; 2 in a wedge]",
+        metavar="K", help="Number of planes of nodes along the path or around the axis. [default: enough for "
+        "cells that turn by at most 4 degrees and, along a path, are at most three times as long as wide; 2 "
+        "in a wedge]",
     ),
     up: str | None = _volume(
         metavar="X,Y,Z", help="Direction of the y axis of the section at the start of the path. [default: "
         "0,0,1, or 0,1,0 for a path that starts along z]",
     ),
     twist: float = _volume(
-        default=0.0, metavar="DEGREES", help="Angle in degrees by which the section rotates about the path "
-        "from start to end.",
+        default=0.0, metavar="DEGREES", help="Angle by which the section rotates about the path from start "
+        "to end.",
     ),
     scale: float = _volume(
         default=1.0, metavar="F", help="Size of the section at the end of the path, divided by its size at "
-        "the start. To change the unit use convert --scale.",
+        "the start.",
     ),
     revolve: o.Revolve = None,
     axis: o.Axis = None,
     cells: int | None = o.option_of(o.DOMAIN)(
-        metavar="N", help="Approximate number of cells in the section; a circle has more if its area would "
-        "be wrong by over 0.1 %. [default: set by --around for a circle, else 2500]",
+        metavar="N", help="Approximate number of cells in the section. [default: set by --around for a "
+        "circle, else 2500]",
     ),
     cell_size: float | None = o.option_of(o.DOMAIN)(
         metavar="H", help="Edge length of cells away from walls, in the unit of the section, instead of "
         "--cells.",
     ),
     layout: str | None = o.option_of(o.DOMAIN)(
-        metavar="LAYOUT.json", help="Use the blocks in this file for the section; meshonet layout writes it. "
-        "[default: new blocks]",
+        metavar="LAYOUT.json", help="Use the blocks in this file, which meshonet layout wrote, for the "
+        "section. [default: new blocks]",
     ),
     walls: o.Walls = None,
     first_cell: str | None = o.option_of(o.BOUNDARY_LAYER)(
         "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, "
-        "in the unit of the section. WALL=H,WALL=H makes a multi-block section with layers at the named "
-        "walls only. Without names, layers are at all sides of a four-sided section, at holes, and at an "
-        "outer curve without corners, but not at sides named inlet, outlet, axis or symmetry. [default: no "
-        "layers]",
+        "in the unit of the section. H applies to the sides of a four-sided section, to holes, and to an "
+        "outer curve without corners, but not to sides named inlet, outlet, axis or symmetry. WALL=H,WALL=H "
+        "makes a multi-block section with layers at the named walls only. [default: no layers]",
     ),
     y_plus: o.YPlusAtWalls = None,
     reynolds: o.Reynolds = None,
@@ -92,9 +91,8 @@ def sweep(
         "extent of the section]",
     ),
     growth: float | None = o.option_of(o.BOUNDARY_LAYER)(
-        metavar="G", help="Largest ratio of the heights of neighbouring cells along a grid line away from "
-        "the wall. The number of rows of a four-sided section follows from it, unless --res gives NJ. "
-        "[default: 1.2]",
+        metavar="G", help="Largest ratio of the heights of neighbouring cells on a grid line from a wall. It "
+        "determines the number of rows of a four-sided section, unless --res gives NJ. [default: 1.2]",
     ),
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,

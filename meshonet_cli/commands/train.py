@@ -30,9 +30,9 @@ class TrainOptions:
         "meshnet. [default: strip for datasets of boundaries, else meshonet]",
     )
     split: str | None = _option(
-        metavar="HOW|FILE", help="Rule that reserves shapes for tests: interpolation (from the middle of "
-        "the parameter range), extrapolation (from one end) or random; or a file with the word train or "
-        "test for each shape. [default: the split stored in the dataset]",
+        metavar="HOW|FILE", help="Choice of the shapes reserved for tests. interpolation: from the middle of "
+        "the parameter range. extrapolation: from one end of it. random: at random. FILE: a file with the "
+        "word train or test for each shape. [default: the split stored in the dataset]",
     )
     epochs: int | None = _option(
         metavar="N", min=1, help="Number of passes over the shapes. [default: strip 24, quad 64, others "
@@ -55,11 +55,11 @@ class TrainOptions:
         "all: all points. [default: 1200]",
     )
     held_out: int | None = _option(
-        metavar="N", min=0, help="Number of shapes that are used only to monitor the loss, not for "
-        "training. [default: strip the last 300, quad 600, others 0]",
+        metavar="N", min=0, help="Number of shapes that only monitor the loss and are not used for training. "
+        "[default: strip the last 300, quad 600, others 0]",
     )
     initial: str | None = _option(
-        metavar="NAME|PATH", help="Model with the weights from which the training of a quad operator starts. "
+        metavar="NAME|PATH", help="Model from whose weights the training of a quad operator starts. "
         "[default: random weights]",
     )
     patience: int | None = _option(
@@ -108,8 +108,8 @@ def train(
     options: TrainOptions,
     settings: list[str] | None = _option(
         metavar="NAME=VALUE", help="Set a parameter of the model, e.g. sensors=80, or a weight in the loss "
-        "of the quad operator, e.g. folds=3. The documentation lists all on the page on operators of the "
-        "MeshONet paper. Repeatable.",
+        "of the quad operator, e.g. folds=3. The documentation's page on operators of the MeshONet paper "
+        "lists all. Repeatable.",
     ),
     log_csv: str | None = _output(
         metavar="FILE", help="Write the loss, its terms, the learning rate and the time of each epoch to a "

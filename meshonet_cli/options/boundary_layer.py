@@ -9,38 +9,38 @@ _option = option_of(BOUNDARY_LAYER)
 
 # fmt: off
 WallAngle = Annotated[float | None, _option(
-    metavar="DEGREES", help="Angle between grid lines and walls in degrees, for --method steger-sorenson. It "
-    "applies to sides with a first cell; if no side has one, to south and north, or to the wall of a body. "
-    "[default: 90]",
+    metavar="DEGREES", help="Angle in degrees between grid lines and walls, for --method steger-sorenson. It "
+    "applies to sides with a first cell. If no side has one, it applies to south and north, or to the wall "
+    "of a body. [default: 90]",
 )]
 Slide = Annotated[bool | None, _option(
-    "--slide/--no-slide", help="Move wall nodes along the walls, so that grid lines leave the walls at right "
-    "angles: along south and north of a four-sided domain, or along all sides of a given multi-block grid. "
-    "[default: --slide if --method is auto, this command places the wall nodes, and south or north has a "
-    "first cell; else --no-slide]",
+    "--slide/--no-slide", help="Move wall nodes along the walls until grid lines leave the walls at right "
+    "angles: on south and north of a four-sided domain, or on all sides of a multi-block grid that is read. "
+    "[default: --slide with --method auto if south or north has a first cell and the input has no nodes on "
+    "them; else --no-slide]",
 )]
 FirstCell = Annotated[str | None, _option(
     "--first-cell", "--wall-spacing", metavar="H|WALL=H,...", help="Height of the first cell at walls, in "
     "the unit of the input. In a one-block grid around a body the unit is the chord of an airfoil, or the "
-    "largest extent (longer side of the bounding box) of another body. WALL=H,WALL=H gives layers to the "
-    "named walls only. Without names, the walls are south, north and sides named wall of a four-sided "
-    "domain, and the holes of a multi-block grid. A multi-block grid without holes has walls only if a side "
-    "is named inlet, outlet, axis or symmetry: all its other sides are then walls. [default: no layers]",
+    "largest extent of another body. H applies to the body; to south, north and sides named wall of a "
+    "four-sided domain; to the holes of a multi-block grid. In a multi-block grid without holes, of which a "
+    "side is named inlet, outlet, axis or symmetry, it applies to all its other sides. WALL=H,WALL=H applies "
+    "to the named walls only. [default: no layers]",
 )]
 YPlus = Annotated[float | None, _option(
-    metavar="Y", help="y+ at the height of the first cell, instead of --first-cell; at the centre of the "
-    "cell y+ is half of it. The height follows from --reynolds for a turbulent flat plate.",
+    metavar="Y", help="y+ at the height of the first cell, instead of --first-cell; at the cell centre it is "
+    "half of this. The height follows from --reynolds for a turbulent flat plate.",
 )]
 YPlusAtWalls = Annotated[str | None, _option(
-    metavar="Y|WALL=Y,...", help="y+ at the height of the first cell, instead of --first-cell; at the centre "
-    "of the cell y+ is half of it. WALL=Y,WALL=Y selects walls as --first-cell does. The height follows from "
-    "--reynolds for a turbulent flat plate.",
+    metavar="Y|WALL=Y,...", help="y+ at the height of the first cell, instead of --first-cell; at the cell "
+    "centre it is half of this. The height follows from --reynolds for a turbulent flat plate. WALL=Y,WALL=Y "
+    "applies to the named walls only.",
 )]
 Length = Annotated[float | None, _option(
-    metavar="L", help="Reference length of --reynolds, in the unit of --first-cell. [default: of a body, "
-    "chord or largest extent; of a four-sided domain, distance from the first to the farthest node of south; "
-    "of a multi-block grid, largest extent of all holes, or of the domain if it has none; of a marched "
-    "volume, 1]",
+    metavar="L", help="Reference length of --reynolds, in the unit of --first-cell. [default: chord or "
+    "largest extent of a body; in a four-sided domain, distance from the first to the farthest node of "
+    "south; in a multi-block grid, largest extent of all holes, or without holes of the domain; 1 for a "
+    "marched volume]",
 )]
 Reynolds = Annotated[float | None, _option(
     metavar="RE", help="Reynolds number for --y-plus, based on --length.",
@@ -68,17 +68,17 @@ class LayerOptions:
     reynolds: Reynolds = None
     length: Length = None
     chord_fraction: float = _option(
-        default=0.5, metavar="X", help="Distance from the leading edge, as a fraction of --length, at which "
-        "the flat plate has the given y+.",
+        default=0.5, metavar="X", help="Position on the flat plate that has the given y+, as a fraction of "
+        "--length.",
     )
     growth: float | None = _option(
-        metavar="G", help="Largest ratio of the heights of neighbouring cells along a grid line away from "
-        "the wall. The number of rows follows from it, unless --res gives NJ. [default: 1.2 for multi-block "
-        "grids and marched volumes; otherwise set by the number of rows]",
+        metavar="G", help="Largest ratio of the heights of neighbouring cells on a grid line from a wall. It "
+        "determines the number of rows, unless --res gives NJ. [default: 1.2 for multi-block grids and "
+        "marched volumes; otherwise set by the number of rows]",
     )
     constant_layers: int | None = _option(
-        metavar="K", min=1, help="Number of rows at the wall with the height of the first cell, before "
-        "cells grow. [default: 1]",
+        metavar="K", min=1, help="Number of rows at the wall that are as high as the first cell. [default: "
+        "1]",
     )
 
 
@@ -87,8 +87,8 @@ class SideOptions:
     """First cells at single sides of four-sided domains."""
 
     spacing_south: float | None = _option(
-        metavar="H", help="Height of the first cell at the south side of a four-sided domain, in the unit "
-        "of the input. [default: the height that --first-cell gives]",
+        metavar="H", help="Height of the first cell at the south side of a four-sided domain, in the unit of "
+        "the input. [default: as --first-cell]",
     )
     spacing_north: float | None = _option(metavar="H", help="The same for the north side.")
     spacing_west: float | None = _option(metavar="H", help="The same for the west side.")

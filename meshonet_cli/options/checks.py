@@ -21,8 +21,7 @@ AllowInvalid = Annotated[bool, _option(help="Write the grid even if it has folde
 
 
 LeaveOutFailed = Annotated[bool, _option(
-    help="Do not write grids that fail a --fail-on or --profile; print a line for each. The exit code stays "
-    "1.",
+    help="Do not write grids that fail a --fail-on or --profile. The exit code is still 1.",
 )]
 
 
@@ -43,16 +42,13 @@ class GateOptions:
 
     fail_on: list[str] | None = _option(
         metavar="GATE", help="Exit with code 1 if this condition holds, e.g. 'max_angle>170', "
-        "'skewness.p99>0.8' (99th percentile) or 'folded>0'. Metrics include folded, max_angle, skewness, "
-        "growth, wall_growth, equal_wall_cells, far_field, non_orthogonality, face_skewness, box_ratio and, "
-        "for multi-block grids, irregular; the documentation's page on quality lists all. The condition "
-        "replaces the --profile limit of the same metric. A table shows which of several grids pass. "
-        "Repeatable.",
+        "'skewness.p99>0.8' (99th percentile) or 'folded>0'. It replaces the --profile limit of the same "
+        "metric. The documentation's page on quality lists all metrics. Repeatable.",
     )
     profile: list[Profile] | None = _option(
-        metavar="openfoam|pointwise|verdict|viscous", help="Check the grid against the thresholds of another "
-        "program or guideline, listed on the documentation's page on quality. Each threshold gives pass, "
-        "warn or FAIL; FAIL exits with code 1. Repeatable.",
+        metavar="openfoam|pointwise|verdict|viscous", help="Check the grid against the limits of another "
+        "program or guideline, which the documentation's page on quality lists. Each limit gives pass, warn "
+        "or FAIL; FAIL exits with code 1. Repeatable.",
     )
 
     def criteria(self, leave_out: bool = False, *, more: Sequence[str] = ()) -> "Criteria | None":

@@ -15,9 +15,8 @@ BlocksName = Annotated[Literal["auto", "single"], _option(
     "several. single: one.",
 )]
 Walls = Annotated[str | None, _option(
-    metavar="NAME,NAME", help="Names of the walls with layers: holes, or named parts of a boundary curve. "
-    "Such a part must end at corners of about 90 degrees; layers of two parts meet at their common corner. "
-    "Needs --first-cell or --y-plus. [default: see --first-cell]",
+    metavar="NAME,NAME", help="Names of the walls with layers: holes, or named parts of a boundary curve "
+    "that end at corners of about 90 degrees. Needs --first-cell or --y-plus. [default: see --first-cell]",
 )]
 
 
@@ -26,8 +25,8 @@ class BlockOptions:
     """Division of a domain into blocks. Each of these options except --assemble makes a multi-block grid."""
 
     assemble: bool = _option(
-        default=False, help="Combine all inputs into one domain: bodies in a common far field or, if one "
-        "input encloses the others, inside this input. Each wall is named after its file.",
+        default=False, help="Combine all inputs into one domain. If one input encloses the others, they are "
+        "inside it; otherwise all are bodies in a common far field. Each wall is named after its file.",
     )
     cells: int | None = _option(
         metavar="N", help="Approximate number of cells in all blocks together. [default: 2500; 20000 with "
@@ -35,24 +34,22 @@ class BlockOptions:
     )
     cell_size: float | None = _option(
         metavar="H", help="Edge length of cells away from walls, in the unit of the input, instead of "
-        "--cells. Edges are shorter at layers and longer towards a distant far field.",
+        "--cells. Cells are smaller at layers and larger near a distant far field.",
     )
     layout: str | None = _option(
-        metavar="LAYOUT.json", help="Use the blocks in this file, which meshonet layout wrote for the same "
-        "or a similar domain. For a grid with layers, run meshonet layout with a first cell. In meshonet "
-        "layout: fit these blocks to DOMAIN and write them with about --cells cells. [default: new blocks]",
+        metavar="LAYOUT.json", help="Use the blocks in this file, which meshonet layout wrote for this "
+        "domain or a similar one. For a grid with layers, write the file with a first cell too. The command "
+        "layout fits these blocks to DOMAIN and writes them. [default: new blocks]",
     )
     periodic: list[str] | None = _option(
-        metavar="SIDE,SIDE", help="Make the nodes of two named sides of the outer boundary match; one must "
-        "be a translation of the other. Formats that support periodic sides mark the two. Repeat the option "
-        "for a second pair. A GeoJSON file may have the property periodic instead.",
+        metavar="SIDE,SIDE", help="Make the nodes of two named sides of the outer boundary match. One side "
+        "must be a translation of the other. Repeat the option for a second pair.",
     )
 
     walls: Walls = None
     count: str | None = _option(
-        metavar="SIDE=N,...", help="Number of cells along each named side of the domain, e.g. inlet=40. "
-        "Opposite sides of a block have equal numbers, so some combinations are impossible. [default: set by "
-        "--cells]",
+        metavar="SIDE=N,...", help="Number of cells along named sides of the domain, e.g. inlet=40. Opposite "
+        "sides of a block have equal numbers, so some combinations are impossible. [default: set by --cells]",
     )
 
     def parameters(self) -> dict[str, Any]:
@@ -75,8 +72,8 @@ class DomainOptions(BlockOptions):
 
     pitch: str | None = _option(
         metavar="DX,DY", help="Vector from one blade of a cascade to the next, in the unit of the input. The "
-        "input is one blade; the grid fills the passage around it, whose two periodic sides have matching "
-        "nodes. Not with --layout: a passage always has the same blocks.",
+        "input is one blade. The grid fills the passage around it; the nodes of its two periodic sides "
+        "match. Not with --layout.",
     )
     inlet: float | None = _option(
         metavar="L", help="Length of the passage upstream of the blade, in axial chords. Needs --pitch. "

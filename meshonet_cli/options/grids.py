@@ -46,10 +46,9 @@ class GridOptions(RunOptions, GateOptions, FileOptions):
 
 # fmt: off
 Refine = Annotated[int, option_of(METHOD)(
-    metavar="K", min=0, max=8, help="Number of refinements: solve, then halve all cells and solve again, K "
-    "times. The finest of these K + 1 nested grids is written; convert --coarsen extracts the others. --res, "
-    "--wake-nodes, --cells and --cell-size apply to the coarsest grid; --first-cell, --growth and "
-    "--base-nodes to the finest. Of a marched grid only the finest is made.",
+    metavar="K", min=0, max=8, help="Halve all cells K times, and solve again after each time. The finest "
+    "grid is written; convert --coarsen extracts the others. --res, --wake-nodes, --cells and --cell-size "
+    "apply to the coarsest grid; --first-cell, --growth and --base-nodes apply to the finest.",
 )]
 # fmt: on
 

@@ -29,31 +29,30 @@ Grids = Annotated[list[str], typer.Argument(
     "listed in FILE.",
 )]
 Output = Annotated[str, _option(
-    "-o", "--output", metavar="FILE", help="File to write, or - for standard output. For several inputs: "
-    "one .h5 file, or a pattern such as 'dir/{stem}.vts', with {stem} (of the input file), {name} (of the "
-    "shape) or {index} (from 0).",
+    "-o", "--output", metavar="FILE", help="File to write, or - for standard output. For several inputs: one "
+    ".h5 file, or a pattern such as 'dir/{stem}.vts'. {stem} stands for the name of the input file, {name} "
+    "for that of the shape, {index} for its number from 0.",
 )]
 From = Annotated[str | None, _option(
-    metavar="FORMAT", help="Format of the input, as in meshonet convert --list-formats. [default: from the "
-    "extension or the content]",
+    metavar="FORMAT", help="Format of the input; meshonet convert --list-formats lists all. [default: from "
+    "the extension or the content]",
 )]
 To = Annotated[str | None, _option(
-    metavar="FORMAT", help="Format of the output, as in meshonet convert --list-formats. [default: from the "
-    "extension; hdf5 on standard output]",
+    metavar="FORMAT", help="Format of the output; meshonet convert --list-formats lists all. [default: from "
+    "the extension; hdf5 on standard output]",
 )]
 SkipExisting = Annotated[bool, _option(
-    help="Do not replace existing output files or parts of a dataset; skip their inputs.",
+    help="Skip inputs whose output file, or part of a dataset, already exists.",
 )]
 Threads = Annotated[int | None, _option(
-    metavar="N", min=1, max=64, help="Number of threads for each grid; the result does not depend on it. "
+    metavar="N", min=1, max=64, help="Number of threads for each grid, without effect on the result. "
     "[default: cores divided by processes]",
 )]
 AsJson = Annotated[bool, _option("--json", help="Print one JSON object per result on standard output.")]
 PartSize = Annotated[int | None, _option(
-    metavar="N", min=1, max=1_000_000, help="Write the dataset out.h5 in parts of N inputs each: "
-    "out/part-00000.h5, out/part-00001.h5 and so on; out.h5 presents them as one. --skip-existing continues "
-    "an unfinished dataset. [default: with --shard or more than 10,000 inputs, parts of up to 256 MiB; else "
-    "no parts]",
+    metavar="N", min=1, max=1_000_000, help="Write the dataset out.h5 in parts of N inputs each, "
+    "out/part-00000.h5 and so on, which out.h5 presents as one. [default: parts of up to 256 MiB with "
+    "--shard or more than 10,000 inputs; else no parts]",
 )]
 Debug = Annotated[bool, _option(help="Show the traceback of errors.")]
 
@@ -89,12 +88,12 @@ class InputOptions(PrintOptions):
     """Selection of inputs from folders, zip archives and lists; shards; messages."""
 
     pick: list[str] | None = _option(
-        metavar="PATTERN", help="Of folders, .zip files and lists, use only files whose name matches "
-        "PATTERN, e.g. 'naca*'. Case does not matter. Repeatable.",
+        metavar="PATTERN", help="Use only files whose name matches PATTERN, e.g. 'naca*', of folders, .zip "
+        "files and lists. Case does not matter. Repeatable.",
     )
     shard: str | None = _option(
-        metavar="K/N", help="Process every N-th input (of a dataset in parts, every N-th part) from the K-th "
-        "on, 1 <= K <= N, so that N jobs share the work.",
+        metavar="K/N", help="Process only every N-th input from the K-th on, so that N jobs share the work; "
+        "of a dataset in parts, every N-th part.",
     )
 
     def inputs(
@@ -131,12 +130,12 @@ class RunOptions(InputOptions):
         default=1, metavar="N", min=1, max=1024, help="Number of processes that share the inputs.",
     )
     engine: EngineName = _option(
-        default="processes", help="Engine of the processes. processes: --jobs processes of this machine. "
-        "dask: a Dask cluster. mpi: the ranks of mpiexec -n N meshonet ...",
+        default="processes", help="What runs the processes. processes: this machine. dask: a Dask cluster. "
+        "mpi: mpiexec -n N meshonet ..., on N ranks.",
     )
     scheduler: str | None = _option(
-        metavar="ADDRESS", help="Address of the scheduler for --engine dask, e.g. tcp://head:8786. "
-        "[default: a cluster of --jobs processes on this machine]",
+        metavar="ADDRESS", help="Address of the Dask scheduler, e.g. tcp://head:8786. [default: a cluster of "
+        "--jobs processes on this machine]",
     )
 
     def batch(self, inputs: Any, files: Files) -> "Batch":

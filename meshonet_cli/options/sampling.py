@@ -25,7 +25,7 @@ _option = option_of(SAMPLING)
 Resolution = Annotated[str | None, _option(
     "--res", metavar="N|NIxNJ[xNK]", help="Number of nodes: N along every direction, or NI along xi (around "
     "a body), NJ along eta (away from it) and NK along zeta (volumes). If --growth determines the number of "
-    "rows, N is NI. For a multi-block grid N is the number of cells along its largest extent. [default: the "
+    "rows, N is NI. In a multi-block grid N is the number of cells along its largest extent. [default: the "
     "nodes of the input; 200x100 for airfoils and outlines]",
 )]
 
@@ -38,15 +38,15 @@ class SamplingOptions:
     topology: TopologyName = _option(
         default="auto", help="Topology of the grid. quad: four-sided. o: around a body. c: around an airfoil "
         "and its wake; NI includes both sides of the wake. auto: c around an airfoil with a sharp trailing "
-        "edge and a first cell (not in tfi); o around other airfoils and outlines with fewer than four "
-        "convex corners; else quad.",
+        "edge and a first cell (not in tfi); o around other airfoils, and around outlines with fewer than "
+        "four convex corners; else quad.",
     )
     spacing: SpacingName = _option(
         default="auto", help="Distribution of the nodes along walls. uniform: equal cells. cosine, tanh: "
         "smaller cells at both ends of a side, or at leading and trailing edge. curvature: smaller cells "
         "also at bends. conformal: equal steps on the circle to which a conformal map takes the body. auto: "
-        "curvature in C grids and with a first cell (not in tfi). In all other grids: conformal around "
-        "airfoils and smooth bodies (tanh with --le-spacing or --te-spacing); else uniform.",
+        "curvature in C grids and with a first cell (not in tfi); else conformal around airfoils and smooth "
+        "bodies (tanh with --le-spacing or --te-spacing); else uniform.",
     )
     le_spacing: float | None = _option(
         metavar="H", help="Length of the wall cells at the leading edge, in chords. [default: set by "
@@ -57,16 +57,15 @@ class SamplingOptions:
         "--spacing]",
     )
     te: Literal["auto", "exact", "round", "wedge"] = _option(
-        default="auto", help="Shape of a blunt trailing edge. exact: unchanged; grid angles at its two "
-        "corners are about 45 degrees off 90. round: rounded corners with angles at most 10 degrees off 90. "
+        default="auto", help="Shape of a blunt trailing edge. exact: unchanged. round: corners rounded. "
         "wedge: closed by a wedge, up to four base heights long. auto: wedge in C grids that are not "
         "marched, and in C grids without a first cell if the base is at most 0.005 chords high; else exact.",
     )
     far_field: float | None = _option(
         metavar="R", help="Smallest distance of the far field from the middle of the body. Its unit is the "
-        "chord of a single airfoil, or the largest extent of all bodies together. For lift and drag use 100 "
-        "or more. A volume is marched over this distance, in the unit of its surface. [default: 15; for a "
-        "volume 15 largest extents]",
+        "chord of a single airfoil, the largest extent of all bodies together, or for a marched volume the "
+        "unit of its surface. For lift and drag use 100 or more. [default: 15; for a volume 15 largest "
+        "extents]",
     )
     wake: float | None = _option(
         metavar="L", help="Length of the wake of a C grid, from the trailing edge, in chords. [default: as "
@@ -77,25 +76,21 @@ class SamplingOptions:
         "[default: about a fifth of NI]",
     )
     base: float | None = _option(
-        metavar="T", help="Open a trailing edge thinner than T chords to this thickness; both sides move "
-        "apart in proportion to the distance from the leading edge. --te applies to this base. [default: "
-        "unchanged]",
+        metavar="T", help="Open a trailing edge thinner than T chords to this thickness. --te applies to the "
+        "base that results. [default: unchanged]",
     )
     base_nodes: int | None = _option(
         metavar="N", help="Number of nodes on the base of a blunt trailing edge, including its two corners; "
-        "odd for an O grid, whose seam is in the middle of the base. [default: derived from the base height "
-        "and the cells next to it]",
+        "odd for an O grid. [default: derived from the base height and the cells next to it]",
     )
     smooth: float | None = _option(
-        metavar="TOL", help="Smooth noisy or coarsely rounded airfoil coordinates by splines within TOL "
-        "chords of the points. Give 3 standard deviations of the noise, or one unit of the last digit: 1e-4 "
-        "for four decimals. A corner stays if it is more than 2 TOL off the line between the third points "
-        "before and after it. A base lower than TOL is closed. The report lists the changes. Needs SciPy. "
-        "[default: off]",
+        metavar="TOL", help="Replace noisy or rounded airfoil coordinates by splines within TOL chords of "
+        "the points. Give three standard deviations of the noise, or one unit of the last digit: 1e-4 for "
+        "four decimals. A base lower than TOL is closed. Needs SciPy. [default: off]",
     )
     corners: str = _option(
-        default="auto", metavar="auto|I,J,K,L", help="Indices, from 0, of four points of an outline, in "
-        "order from the south-west, that become the corners of a four-sided grid. auto: the four sharpest "
+        default="auto", metavar="auto|I,J,K,L", help="Indices, from 0, of the four points of an outline that "
+        "become the corners of a four-sided grid, the south-west corner first. auto: the four sharpest "
         "corners.",
     )
     normalise: bool = _option(

@@ -12,13 +12,13 @@ _option = option_of(VOLUME)
 
 # fmt: off
 Layers = Annotated[int | None, _option(
-    metavar="N", min=3, help="Number of nodes along each grid line of a marched volume from the surface to "
-    "the far field, including both ends. [default: as many as --growth needs]",
+    metavar="N", min=3, help="Number of nodes of a marched volume on each grid line from the surface to the "
+    "far field, including both ends. [default: as many as --growth needs]",
 )]
 
 Revolve = Annotated[float | None, _option(
-    metavar="DEGREES", help="Turn the planar grid about --axis by this angle in degrees: up to 10 into a "
-    "wedge of one cell, below 360 into a sector, 360 into a full ring.",
+    metavar="DEGREES", help="Turn the planar grid about --axis by this angle. Up to 10 degrees give a wedge "
+    "of one cell, less than 360 a sector, 360 a full ring.",
 )]
 Axis = Annotated[str | None, _option(
     metavar="x|y|X,Y,DX,DY", help="Axis of --revolve: x, y, or the line through (X, Y) in the direction "
@@ -61,13 +61,11 @@ class VolumeOptions:
         "plane normal to an axis are in a plane of symmetry, others are free]",
     )
     poles: Literal["replace", "refuse"] = _option(
-        default="replace", help="Treatment of poles: sides of surface patches that are a single point, as "
-        "at the nose of a fuselage. replace: a four-sided core patch and a few rows around it. refuse: an "
-        "error.",
+        default="replace", help="Treatment of sides of surface patches that are a single point, as at the "
+        "nose of a fuselage. replace: a four-sided core patch and a few rows around it. refuse: an error.",
     )
     energy: Literal["angles", "shape"] | None = _option(
         help="Functional that is minimised inside six faces. angles: favours right angles and gradual "
-        "changes of length, also for long and thin cells. shape: favours cells like cubes, by the inverse "
-        "mean ratio |T|²/(3 det(T)^⅔) of the Jacobian matrices T (metric 303 of TMOP). [default: angles]",
+        "changes of length. shape: favours cells like cubes (metric 303 of TMOP). [default: angles]",
     )
 # fmt: on
