@@ -29,21 +29,21 @@ class Format:
     Parameters
     ----------
     name : name of the format for users.
-    suffixes : extensions in lower case, with the dot.
+    suffixes : file extensions in lower case, with the dot.
     description : short description for users.
-    read_shapes : function that yields shapes; None for formats of grids, and those that are not read.
+    read_shapes : function that yields shapes; None if the format has grids only or is not read.
     read_grids, write_grids, write_boundaries, write_layouts : functions; None if not supported.
     sniff : function that recognises a file by its first `HEAD_BYTES` bytes.
-    names_patches : whether the format stores names of patches and the topology.
-    blocks : how planar blocks are written: ``kept``, or ``merged`` into one unstructured mesh; empty: not.
-    space : kinds of three-dimensional grids that are read and written.
+    names_patches : whether the format stores the topology and the names of patches.
+    blocks : how planar blocks are written: ``kept``, ``merged`` into one unstructured mesh, or empty for not.
+    space : kinds of three-dimensional grids that can be read and written.
     many : whether one file can contain several grids or boundaries.
     one_size : whether all samples of a file must have the same node counts and topology.
-    beside : whether more files are written next to the file, so that streams are impossible.
-    fills_folder : whether the file stands for its folder, which has one grid.
-    choices : groups of options; the name may be followed by one word of each group.
-    reads_options : whether `read_grids` takes ``options`` as `write_grids` does.
-    suffix_options : by extension, the option that the extension implies when a file is written.
+    beside : whether a file needs other files next to it, so that it cannot be written to a stream.
+    fills_folder : whether a grid fills a folder, for which its file stands.
+    choices : groups of options that exclude each other; a user may append options to the name.
+    reads_options : whether `read_grids` has a parameter ``options``, as `write_grids` has.
+    suffix_options : for an extension, the option that it implies when a file is written.
     """
 
     name: str
@@ -67,7 +67,7 @@ class Format:
     suffix_options: Mapping[str, str] = field(default_factory=dict)
 
     def file_at(self, path: str) -> str:
-        """Return the file to write for a user's `path`; a format that fills folders gets one inside it.
+        """Return the file to write for a user's `path`; for formats that fill folders, it is in that folder.
 
         >>> case = Format("openfoam", (".foam",), "", fills_folder=True)
         >>> case.file_at("runs/first"), case.file_at("runs/first/case.foam")
@@ -79,9 +79,9 @@ class Format:
         return str(place / f"{place.resolve().name}{self.suffixes[0]}")
 
     def with_options(self, text: str) -> Format:
-        """Return the format with options, words separated by commas; later ones replace earlier ones.
+        """Return the format with options, words between commas; words after a colon replace earlier ones.
 
-        Raises InputError: an unknown word, or two that exclude each other.
+        Raises InputError if an option is unknown, or if two exclude each other.
         """
         if not text.strip(":"):
             return self
@@ -115,13 +115,13 @@ class Format:
 
 
 def later(function: str, /, *args: Any, **settings: Any) -> Any:
-    """Import and call `function`, ``package.module:name``; a `partial` of `later` imports nothing."""
+    """Import and call `function`, named ``package.module:name``, only now; return its result."""
     module, _, name = function.partition(":")
     return getattr(importlib.import_module(module), name)(*args, **settings)
 
 
 def only_one(grids: Iterable[Grid], what: str) -> Grid:
-    """Return the only grid of `grids`. Raises InputError: none or several; `what` names the file."""
+    """Return the only grid of `grids`. Raises InputError: none or several; its message starts with `what`."""
     several = iter(grids)
     first = at_least_one(several)
     if next(several, None) is not None:
@@ -133,7 +133,7 @@ def only_one(grids: Iterable[Grid], what: str) -> Grid:
 
 
 def at_least_one(grids: Iterator[Grid]) -> Grid:
-    """Return the next of `grids`; raise InputError if there is none."""
+    """Return the next grid of `grids`. Raises InputError if there is none."""
     first = next(grids, None)
     if first is None:
         raise InputError("there is no grid to write", "check the input")
@@ -141,7 +141,7 @@ def at_least_one(grids: Iterator[Grid]) -> Grid:
 
 
 def kinds_in_space(grid: Grid) -> tuple[Space, ...]:
-    """Return the kinds of blocks of a three-dimensional grid, () for a planar one."""
+    """Return the kinds of blocks of a three-dimensional grid, volumes or surfaces; () for a planar grid."""
     if grid.form == "plane":
         return ()
     directions = {len(block.counts) for block in grid.blocks if block.nodes.shape[-1] == 3}
@@ -157,7 +157,7 @@ def size_of(sample: Boundary | Grid) -> str:
 
 
 def size_remedy(own: str, first: str) -> str:
-    """Return the options that give a sample of size `own` the size `first` (`size_of`)."""
+    """Return how to make a sample of the size `own` as large as `first`; both are texts of `size_of`."""
     kinds = {size.partition(" of ")[0].rpartition(" ")[2] for size in (own, first)}
     if "blocks" not in kinds:
         return "set {res} and {topology}"

@@ -23,8 +23,8 @@ _IS_DATASET = re.compile(r"\.(?:h5|hdf5)(?:#[a-z0-9,:]+)?$", re.IGNORECASE)
 class Numbered(NamedTuple):
     """An input, and the numbers of its members (shapes or grids) among the members of all inputs.
 
-    `first` is the number of the first member of the input; None: members are numbered as they are read.
-    `step` is the difference of successive numbers, 0 for a single member.
+    `first` is the number of its first member; None: members are numbered as they are read. `step` is the
+    difference between successive numbers, 0 for a single member.
     """
 
     text: str | InputError
@@ -34,19 +34,19 @@ class Numbered(NamedTuple):
 
 @dataclass(frozen=True)
 class Inputs:
-    """Inputs as the user named them; iterating yields the files that they stand for, or errors.
+    """Inputs as the user named them. Iteration yields a file for each, or an InputError.
 
     Parameters
     ----------
-    words : the inputs.
-    suffixes : endings of files taken from folders and archives; none: all that can be read.
-    pick : patterns (``naca*``) for file names in folders, archives and lists, with or without extension,
-        regardless of case; a pattern with a ``/`` is compared with the path.
-    shard : (k, n): `own` and `parts` yield every n-th input from input number k on (from 1).
+    words : files, folders, zip archives, lists (``@FILE``), designations and ``-`` for standard input.
+    suffixes : extensions of files taken from folders and archives; empty: all that can be read.
+    pick : patterns (``naca*``) for file names in folders, archives and lists; upper and lower case are equal
+        and the extension may be left out. A pattern with a ``/`` is compared with the whole path.
+    shard : (k, n): `own` and `parts` yield each n-th input, beginning with the k-th.
     grids_only : whether only files with grids are taken from folders and archives.
 
-    Raises InputError: standard input is named twice, or a terminal; an invalid shard; patterns without a
-    folder, archive or list.
+    Raises InputError if standard input occurs twice or is a terminal, if the shard is invalid, or if patterns
+    are given without a folder, archive or list.
     """
 
     words: tuple[str, ...]
@@ -79,7 +79,7 @@ class Inputs:
         yield from Walk(self).files()
 
     def own(self) -> Iterator[Numbered]:
-        """Yield the inputs of the shard; for a dataset, only every n-th of its samples is taken."""
+        """Yield the inputs of the shard; in datasets, each sample counts as an input."""
         k, n = self.shard
         if n == 1:
             yield from map(Numbered, self)
@@ -94,9 +94,9 @@ class Inputs:
             number += count
 
     def parts(self, size: int) -> Iterator[tuple[int, tuple[str | InputError, ...]]]:
-        """Yield number and inputs of each part of the shard; a part has `size` inputs or samples.
+        """Yield number and inputs of each part of the shard; `size` inputs or dataset samples form a part.
 
-        Shard k of n has every n-th part, so that parts do not depend on the shard.
+        Shard k of n has every n-th part. The content of a part therefore does not depend on the shard.
         """
         number, left = 0, size
         entries: list[str | InputError] = []
@@ -116,7 +116,7 @@ class Inputs:
             yield number, tuple(entries)
 
     def more_than(self, count: int) -> bool:
-        """Return whether there are more than `count` inputs; no further inputs are searched for."""
+        """Return whether there are more than `count` inputs, without a search for further inputs."""
         return (self._begun if count < _BEGINNING else sum(1 for _ in islice(self, count + 1))) > count
 
     @cached_property
@@ -125,7 +125,7 @@ class Inputs:
         return len(list(islice(self, _BEGINNING)))
 
     def count(self) -> int | None:
-        """Return the number of members of the shard, one per file or sample; None if an input is a pipe."""
+        """Return the number of files and samples in the shard; None if an input is standard input."""
         if any(word in ("-", "@-") for word in self.words):
             return None
         return -(-sum(count for _, _, count in self._counted()) // self.shard[1])
@@ -137,7 +137,7 @@ class Inputs:
             yield entry, samples, 1 if samples is None else len(samples)
 
     def first(self) -> str:
-        """Return the first input. Raises InputError: there is none."""
+        """Return the first input. Raises InputError if it is invalid."""
         first = next(iter(self))
         if isinstance(first, InputError):
             raise first
@@ -145,12 +145,12 @@ class Inputs:
 
     @cached_property
     def stdin(self) -> bytes:
-        """Standard input, which is read once."""
+        """Content of standard input, which is read only once."""
         return sys.stdin.buffer.read()
 
 
 def is_dataset(entry: str) -> bool:
-    """Return whether an input is a dataset, or some of its samples, by its name.
+    """Return whether the name of an input is that of a dataset or of samples of a dataset.
 
     >>> is_dataset("wings.h5#0:3"), is_dataset("wing.dat")
     (True, False)
@@ -159,7 +159,7 @@ def is_dataset(entry: str) -> bool:
 
 
 def samples_in(entry: str | InputError) -> DatasetSamples | None:
-    """Return the samples of an input that is a dataset; None for other inputs and unreadable ones."""
+    """Return the samples of an input that is a dataset; None if it is something else or unreadable."""
     if isinstance(entry, InputError) or not is_dataset(entry):
         return None
     from meshonet.formats.hdf5.read import samples_of

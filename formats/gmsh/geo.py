@@ -16,7 +16,7 @@ from meshonet.geometry.blocks.grid import Grid
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the outer edges of the only grid of `grids`, with a line for each cell edge."""
+    """Write the outer edges of the only grid of `grids` as lines, one for each cell edge."""
     grid = only_one(grids, "a .geo file")
     mesh = unstructured(grid)
     loops = [loop for k, number in enumerate(node_numbers(grid)) for loop in _loops(grid, k, number + 1)]

@@ -36,7 +36,7 @@ CellGroup: TypeAlias = "tuple[str, Indices]"  # name of a group of cells and the
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the only grid of `grids`: cells, and boundary elements in groups named after patches."""
+    """Write the only grid of `grids`; its boundary elements form groups named after patches."""
     grid = only_one(grids, "a .msh file")
     refuse_collapsed(grid, "a .msh file")
     mesh = unstructured(grid)
@@ -62,7 +62,7 @@ def _affine(motion: Motion) -> list[float]:
 
 
 def quotable(name: str) -> str:
-    """Return `name` with characters replaced that cannot stand between double quotes."""
+    """Return `name` with a replacement for each character that may not stand between double quotes."""
     return printable(name).replace('"', "'")
 
 

@@ -24,9 +24,9 @@ _AGAIN = "write the file again"  # remedy for a damaged file
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Yield the shapes that the lines of a mesh enclose.
+    """Yield the shapes that the line elements of a mesh enclose.
 
-    Raises InputError: not a Gmsh mesh of a known version; three dimensions; lines that are not closed curves.
+    Raises InputError: not a Gmsh mesh of a known version; not a planar mesh; lines that are not closed.
     """
     data = source.read_bytes()
     version, binary, order = _format(data)

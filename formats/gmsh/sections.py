@@ -19,7 +19,7 @@ Elements: TypeAlias = "list[tuple[int, int, Indices]]"
 
 
 class NumberedNodes(NamedTuple):
-    """Tags (n,) and points (n, 3)."""
+    """Nodes of a Gmsh mesh: their tags (n,) and points (n, 3)."""
 
     tags: Indices
     points: Floats
@@ -75,7 +75,7 @@ class _Stream:
 
 
 def nodes(section: bytes, version: str, binary: bool, order: str) -> NumberedNodes:
-    """Return the nodes of a section ``$Nodes``."""
+    """Return the nodes in the section ``$Nodes``; `order` is the byte order if it is `binary`."""
     stream = _Stream(section, binary, order)
     if version == "4.1":
         return _blocks_of_nodes(stream)
@@ -104,7 +104,7 @@ def _blocks_of_nodes(stream: _Stream) -> NumberedNodes:
 def elements(
     section: bytes, version: str, binary: bool, order: str, tags: dict[tuple[int, int], int]
 ) -> Elements:
-    """Return the elements of ``$Elements``; in 4.1, `tags` has groups of entities by dimension and tag."""
+    """Return the elements in ``$Elements``; `tags` are the physical groups by (dimension, tag) of entity."""
     stream = _Stream(section, binary, order)
     if version == "4.1":
         blocks = _blocks_of_elements(stream, tags)
@@ -162,7 +162,7 @@ def _lines_22(stream: _Stream) -> Iterator[tuple[int, int, Indices]]:
 
 
 def physical_tags(section: bytes, binary: bool, order: str) -> dict[tuple[int, int], int]:
-    """Return the first physical group of each entity (dimension, tag) of ``$Entities``."""
+    """Return the first physical group of each entity in ``$Entities``, by the entity's (dimension, tag)."""
     groups_of: dict[tuple[int, int], int] = {}
     if not section:
         return groups_of

@@ -36,7 +36,7 @@ _TEXT = np.dtype([("length", "<u4"), ("heap", "<u8"), ("index", "<u4")])
 
 
 class Checked:
-    """An open dataset: `count` samples with one `topology`; in version 2 with `blocks` blocks each."""
+    """An open dataset: `count` samples of the same `topology`, with `blocks` blocks each in version 2."""
 
     def __init__(self, file: h5py.File, source: Source) -> None:
         self._file, self._source = file, source
@@ -93,13 +93,13 @@ class Checked:
         return name in self._file
 
     def kept(self, split: str) -> Sequence[int]:
-        """Return the indices of the samples of a split, or of all samples."""
+        """Return the indices of the samples of a split; of all samples if `split` is empty."""
         if not split:
             return range(self.count)
         return [k for k in range(self.count) if self.text("split", k) == split]
 
     def sample(self, name: str, k: int) -> Floats:
-        """Return row `k` of a checked numeric dataset as float64."""
+        """Return row `k` of the numeric dataset `name` as float64."""
         first, rows = self._rows.get(name, (0, np.empty(0)))
         if not first <= k < first + len(rows):
             first, rows = k, self._rows_from(self._file[name], k)
@@ -107,7 +107,7 @@ class Checked:
         return np.array(rows[k - first], dtype=np.float64)
 
     def nodes(self, name: str, k: int) -> Floats:
-        """Return row `k` of a dataset of nodes in planar layout; large rows are read in parts."""
+        """Return row `k` of a dataset of nodes; each coordinate is contiguous in memory."""
         data = self._file[name]
         if 8 * int(np.prod(data.shape[1:])) <= LARGE:
             return self.sample(name, k)
@@ -127,7 +127,7 @@ class Checked:
             return data[k : k + 1]
 
     def text(self, name: str, k: int) -> str:
-        """Return text `k` of dataset `name`; empty if it does not exist."""
+        """Return entry `k` of the dataset of texts `name`; empty if there is no such dataset or entry."""
         import h5py
 
         if name not in self._texts:
@@ -144,13 +144,13 @@ class Checked:
         return printable(text) if name in ("names", "titles", "split") else text
 
     def parameter_names(self) -> tuple[str, ...]:
-        """Return the names of the columns of the dataset ``parameters``."""
+        """Return the column names of the dataset ``parameters``."""
         names = np.atleast_1d(self._dataset("parameters").attrs.get("names", []))
         return tuple(printable(_text(name)) for name in names)
 
     @contextlib.contextmanager
     def place(self, k: int) -> Iterator[None]:
-        """Name sample `k` in errors raised inside."""
+        """Return a context in which errors become an InputError that names sample `k`."""
         try:
             yield
         except InputError as error:
@@ -184,14 +184,14 @@ class Checked:
 
 
 def own(group: h5py.Group, name: str) -> Any:
-    """Return the member `name` of `group`; None if it is missing or a link to another place."""
+    """Return the member `name` of `group`; None if it is missing or a link to another object."""
     import h5py
 
     return group.get(name) if isinstance(group.get(name, getlink=True), h5py.HardLink) else None
 
 
 def check_stored(data: h5py.Dataset, what: str, place: str = "") -> None:
-    """Raise InputError if the shape of `data`, called `what`, is impossible for the bytes that are stored."""
+    """Raise InputError if far fewer bytes are stored than the shape of `data` needs; `what` names it."""
     if data.size * data.dtype.itemsize > _DEFLATE_LIMIT * max(data.id.get_storage_size(), 1):
         problem = f"{what} claims shape {data.shape} but holds next to nothing"
         raise InputError(problem, "write the file again", place=place)
@@ -199,17 +199,16 @@ def check_stored(data: h5py.Dataset, what: str, place: str = "") -> None:
 
 @contextlib.contextmanager
 def checked(source: Source) -> Iterator[Checked]:
-    """Open `source` as a dataset; errors of the HDF5 library become InputError."""
+    """Return a context with the dataset in `source`; errors of the HDF5 library become InputError."""
     with opened(source) as file:
         yield Checked(file, source)
 
 
 @contextlib.contextmanager
 def opened(source: Source, *, texts: bool = True) -> Iterator[h5py.File]:
-    """Open `source` for reading; errors of the HDF5 library inside the context become InputError.
+    """Return a context with the HDF5 file `source`, open for reading; errors of HDF5 become InputError.
 
-    Without `texts`, the file is not searched for damaged texts, and texts of variable length must not be
-    read.
+    Without `texts`, the check for damaged texts is left out, and texts of variable length must not be read.
     """
     import h5py
 
@@ -243,7 +242,7 @@ def _text(value: object) -> str:
 
 
 def check_heaps(source: Source) -> None:
-    """Raise InputError if the sizes of texts in a heap do not add up to the size of the heap."""
+    """Raise InputError if, in a heap of texts of variable length, the lengths do not add up to the heap's."""
     if source.size > _MOST_SEARCHED:
         return
     with source.open() as stream, contextlib.ExitStack() as stack:

@@ -50,7 +50,7 @@ class _Disc(io.FileIO):
 def created(path: Path, *, in_memory: bool = False, **options: Any) -> Iterator[h5py.File]:
     """Return a context with a new HDF5 file; `options` are h5py's. Raises OSError: it cannot be written.
 
-    With `in_memory` the whole file is written at the end, which is faster for many objects.
+    With `in_memory` the whole file is written at the end, which is faster if it has many objects.
     """
     import h5py
 

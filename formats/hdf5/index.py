@@ -23,7 +23,7 @@ _AGAIN = "repeat the command that made it, with {skip_existing}"  # remedy for p
 
 
 class Failed(NamedTuple):
-    """A sample that could not be made: input, name, error, and whether another try may succeed."""
+    """A sample that could not be made: input, name, error, and whether it may succeed if tried again."""
 
     text: str
     member: str
@@ -33,10 +33,10 @@ class Failed(NamedTuple):
 
 @dataclass
 class PartFacts:
-    """Description of a part of a dataset, read from the part's file.
+    """Description of a part (one file) of a dataset.
 
-    `size` is the same in all parts. `columns` has length, row shape and type of each dataset. `common` has
-    digests of what the provenances of all grids of the part have in common.
+    `size` is a text on node counts and topology, which all parts have in common. `columns` has length, row
+    shape and type of each HDF5 dataset. `common` has digests of the provenance entries that all grids share.
     """
 
     path: Path
@@ -52,7 +52,7 @@ class PartFacts:
 
 
 def part_facts(path: Path) -> PartFacts:
-    """Return the description of the part at `path`. Raises InputError: it cannot be read."""
+    """Return the description of the part in the file `path`. Raises InputError if it cannot be read."""
     facts = PartFacts(path)
     source = Source(printable(str(path)), path=path)
     with opened(source, texts=False) as file:
@@ -92,7 +92,7 @@ def _datasets(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a dataset: samples `start` to `stop` of the index."""
+    """A part of a dataset: samples `start` to `stop` - 1 of the index."""
 
     source: Source
     start: int
@@ -106,9 +106,9 @@ class Part:
 
 
 def shown_parts(file: h5py.File, source: Source) -> list[Part] | None:
-    """Return the parts of the open index `source`, in order; None if it is not an index.
+    """Return the parts to which the open index `source` refers, in order; None if the file is no index.
 
-    Raises InputError: a part is missing, or elsewhere than beside the index; rows that are not consecutive.
+    Raises InputError if a part is missing or not beside the index, or if the rows are not consecutive.
     """
     import h5py
 
@@ -148,7 +148,7 @@ def _parts(mappings: Any, index: Path, split: str) -> Iterator[Part]:
 
 
 def write_index(file: Path, index: Path, parts: Sequence[PartFacts]) -> None:
-    """Write to `file`, later renamed to `index`, the index of `parts`. Raises InputError: sizes differ."""
+    """Write the index of `parts` into `file`, later renamed `index`. Raises InputError: sizes differ."""
     filled = [facts for facts in parts if facts.count]
     first = filled[0]
     for facts in filled[1:]:

@@ -2,7 +2,7 @@
 
 
 class UniqueNames:
-    """The names that samples of a dataset, or of a part of a dataset, have been given so far.
+    """Names of the samples of a dataset so far; each new name is made unique.
 
     >>> names = UniqueNames()
     >>> [names.add(name) for name in ("tip", "root", "tip", "", "", "tip")]
@@ -13,7 +13,7 @@ class UniqueNames:
         self._last: dict[str, int] = {}  # number of the last sample of each name
 
     def add(self, name: str) -> str:
-        """Return `name`, with a number appended if a sample has this name already; empty stays empty."""
+        """Return `name`, with a number appended if another sample has it; an empty name stays empty."""
         unique, number = name, self._last.get(name, 1)
         while name and unique in self._last:
             number += 1

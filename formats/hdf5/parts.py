@@ -29,24 +29,24 @@ State = Literal["missing", "complete", "extended"]
 
 
 class Input(NamedTuple):
-    """The name of an input as the user gave it, and a digest of the input's content."""
+    """The name of an input as the user gave it, and a digest of its content."""
 
     text: str
     digest: str
 
 
 class OtherPartsError(InputError):
-    """Error: existing parts belong to another dataset than the one that is being made."""
+    """Error: the existing parts do not belong to the dataset that is being made."""
 
 
 @dataclass(frozen=True)
 class PartFiles:
-    """The files of a dataset in parts.
+    """The files of a dataset in parts: one file for each part, and an index.
 
     Parameters
     ----------
     index : path of the index.
-    request : digest of the settings of all parts (`digest_of`).
+    request : digest (`digest_of`) of the settings, which are the same for all parts.
     part_size : number of inputs of each part; the last part may have fewer.
     """
 
@@ -60,45 +60,45 @@ class PartFiles:
         return self.index.with_suffix("")
 
     def path(self, number: int) -> Path:
-        """Return the file of a part, counted from 0."""
+        """Return the path of a part; parts are counted from 0."""
         return self.folder / f"part-{number:05d}.h5"
 
     def numbers(self) -> list[int]:
-        """Return the numbers of the existing parts, in order."""
+        """Return the numbers of the existing parts, in ascending order."""
         if not self.folder.is_dir():
             return []
         names = (_NAME.fullmatch(entry.name) for entry in self.folder.iterdir())
         return sorted(int(match[1]) for match in names if match)
 
     def check(self, *, skip_existing: bool) -> None:
-        """Raise OtherPartsError if the existing parts were made with other settings."""
+        """Raise OtherPartsError if `skip_existing` is set and parts were made with other settings."""
         for number in self.numbers()[:1] if skip_existing else ():
             self.facts(number)
 
     def refuse(self, number: int) -> NoReturn:
-        """Raise OtherPartsError for an existing part."""
+        """Raise OtherPartsError because this part already exists."""
         remedy = f"continue with {{skip_existing}}, or remove the parts: rm -r {printable(str(self.folder))}"
         raise OtherPartsError("is there already", remedy, source=printable(str(self.path(number))))
 
     def facts(self, number: int) -> PartFacts:
-        """Return the description of a part. Raises InputError: it cannot be read."""
+        """Return the description of a part. Raises InputError: unreadable, or made with other settings."""
         facts = part_facts(self.path(number))
         if facts.request != self.request:
             self._refuse(facts.path, "was made with other options or another size of parts")
         return facts
 
     def size_there(self) -> int:
-        """Return the `part_size` of the existing parts, 0 if there are none."""
+        """Return the `part_size` of the existing parts; 0 if there are none."""
         for number in self.numbers()[:1]:
             return part_facts(self.path(number)).part_size
         return 0
 
     def state(self, number: int, inputs: Sequence[Input]) -> State:
-        """Return the state of a part: ``complete``, ``missing``, or to be ``extended``.
+        """Return the state of a part: ``missing``, ``complete``, or ``extended`` if it is to be extended.
 
         A part is to be extended if there are more `inputs` than it was made of, or if a failed input has
-        changed or may succeed now. Raises OtherPartsError: the part was made of other inputs or settings;
-        InputError: it cannot be read.
+        changed or may succeed now. Raises OtherPartsError if the part was made of other inputs or settings,
+        InputError if it cannot be read.
         """
         if not self.path(number).exists():
             return "missing"
@@ -119,9 +119,10 @@ class PartFiles:
         self, number: int, kind: str, samples: Iterable[Boundary | Grid], inputs: Sequence[Input],
         failed: list[Failed],
     ) -> int:  # fmt: skip
-        """Write a part atomically and return its number of samples; failed samples are added to `failed`.
+        """Write the part `number` atomically and return its number of samples.
 
-        Raises InputError: samples of different sizes; a path that cannot be written.
+        `failed` lists the failed samples; it may grow while `samples` are read. Raises InputError if the
+        samples have different sizes, or if the file cannot be written.
         """
         count = 0
         name: Kind = "meshonet-grid" if kind == "grids" else "meshonet-boundary"
@@ -140,7 +141,7 @@ class PartFiles:
     def build(self) -> int:
         """Write the index of the existing parts and return its number of samples.
 
-        Several processes may do so at once: the last one finds all parts. Raises InputError: parts differ.
+        Several processes may do so at the same time. Raises InputError if the parts do not fit together.
         """
         numbers, count = None, 0
         while numbers != (numbers := self.numbers()):
@@ -158,5 +159,5 @@ class PartFiles:
 
 
 def digest_of(*texts: str) -> str:
-    """Return the digest of texts, in hexadecimal digits."""
+    """Return the digest of all `texts` together, in hexadecimal digits."""
     return hashlib.sha256("\0".join(texts).encode("utf-8", "surrogateescape")).hexdigest()[:32]

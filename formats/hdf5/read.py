@@ -28,18 +28,18 @@ T = TypeVar("T")
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Return an iterator over boundaries, outer edges of grids, or domains of multi-block grids.
 
-    An invalid sample raises InputError, after which the iterator continues.
+    An invalid sample raises InputError; the iterator then continues with the next sample.
     """
     return map(call, samples_read(source, _boundary))
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Return an iterator over the grids; it continues after an invalid sample, which raises InputError."""
+    """Return an iterator over the grids. After an invalid grid, which raises InputError, it continues."""
     return map(call, samples_read(source, _grid))
 
 
 def samples_read(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Callable[[], T]]:
-    """Yield functions that read one sample each, so that an error in a sample does not end the generator."""
+    """Yield a function for each sample, which reads it: an invalid sample does not end the iteration."""
     with opened(source) as file:
         parts = shown_parts(file, source)
         if parts is None:
@@ -73,7 +73,7 @@ def _raise(error: Exception) -> NoReturn:
 
 
 def kept_of(parts: Sequence[Part], split: str) -> Sequence[int]:
-    """Return the indices of the samples of a split, or of all samples, counted through all parts."""
+    """Return the indices, counted through all parts, of the samples of a split; all if it is empty."""
     if not split:
         return range(parts[-1].stop)
     kept: list[int] = []
@@ -85,7 +85,7 @@ def kept_of(parts: Sequence[Part], split: str) -> Sequence[int]:
 
 
 def rows_of(kept: Sequence[int], source: Source) -> Sequence[int]:
-    """Return the sample numbers in `kept` that `source.rows` selects; raise InputError if there are none."""
+    """Return the sample indices in `kept` that `source.rows` selects. Raises InputError if there are none."""
     if not kept:
         remedy = "mark samples where they are made, by {family} and {split}"
         raise InputError(f"no sample is marked {source.split!r}", remedy)
@@ -148,7 +148,7 @@ def _patch(name: str, side: Side, start: int, stop: int, block: int = 0, *more: 
 
 @dataclass(frozen=True)
 class DatasetSamples:
-    """Samples of a dataset, selected by the indices `rows` among those of a split, or among all."""
+    """Samples of a dataset. `rows` are their indices among those of `split`, or among all if it is empty."""
 
     name: str
     split: str
@@ -158,7 +158,7 @@ class DatasetSamples:
         return len(self.rows)
 
     def digests(self) -> Iterator[str]:
-        """Yield a digest of the stored data of each of these samples."""
+        """Yield a digest of the data of each sample; for an invalid sample, the text of the error."""
         for digest in samples_read(open_source(self.named(0, len(self.rows))), _digest):
             try:
                 yield digest()
@@ -166,7 +166,7 @@ class DatasetSamples:
                 yield str(error)
 
     def named(self, start: int, stop: int, step: int = 1) -> str:
-        """Return the input text for every `step`-th of the samples from `start` to `stop`."""
+        """Return the input that selects each `step`-th sample from `start` to `stop` - 1: ``FILE#0:9:2``."""
         rows = self.rows[start:stop:step]
         split = f"{self.split}," if self.split else ""
         words = f"{rows[0]}" if len(rows) == 1 else f"{rows.start}:{rows.stop}"
@@ -184,7 +184,7 @@ def _digest(data: Checked, k: int) -> str:
 
 
 def samples_of(text: str) -> DatasetSamples:
-    """Return the samples that an input selects. Raises InputError: no dataset, or no such samples."""
+    """Return the samples that an input such as ``FILE#0:9`` selects. Raises InputError: no such samples."""
     source = open_source(text)
     with in_source(source.name), opened(source) as file:
         parts = shown_parts(file, source)

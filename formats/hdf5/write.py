@@ -32,7 +32,7 @@ Kind = Literal["meshonet-boundary", "meshonet-grid"]
 
 
 class Writer:
-    """A dataset written sample by sample (see `writing`). Raises InputError: another size or topology."""
+    """Writer of a dataset, sample by sample. All samples must have the same size and topology."""
 
     def __init__(self, file: h5py.File, kind: Kind) -> None:
         self._file = file
@@ -47,7 +47,7 @@ class Writer:
         self._common: dict[str, Any] = {}  # what the provenances of all grids say
 
     def append(self, sample: Boundary | Grid) -> None:
-        """Add a grid to a dataset of grids, or a boundary to a dataset of boundaries."""
+        """Add a boundary or grid. Raises InputError: its size or topology is not that of the first sample."""
         self._check_size(sample)
         arrays = _arrays_of(sample)
         if isinstance(sample, Grid):
@@ -110,9 +110,9 @@ class Writer:
         self._held.setdefault(name, []).append((self._count, value))
 
     def note(self, facts: Mapping[str, str], digests: Sequence[str], failed: Sequence[str]) -> None:
-        """Write how the samples were made: facts, digests of inputs, and texts about failed samples.
+        """Write how samples were made: `facts` by name, digests of inputs, and texts about failed samples.
 
-        Facts are attributes of fixed length, which are read without a search for damage.
+        The facts become attributes of fixed length, which can be read without a check for damaged texts.
         """
         size, connections = self._first or ("", "")
         joined = f", connected as {_digest(connections)}" if connections else ""
@@ -123,19 +123,19 @@ class Writer:
         self.note_failed(failed)
 
     def note_failed(self, failed: Sequence[str]) -> None:
-        """Write texts about failed samples, if there are any."""
+        """Write texts about failed samples; nothing if there are none."""
         import h5py
 
         if failed:
             self._file.create_dataset("failed", data=list(failed), dtype=h5py.string_dtype())
 
     def close(self) -> None:
-        """Write the collected samples; what all provenances have in common is written as attributes."""
+        """Write the remaining samples, and as attributes the provenance entries that all grids share."""
         self.flush()
         self._file.attrs.update({_attribute(name): fact for name, fact in self._common.items()})
 
     def flush(self) -> None:
-        """Write the collected samples."""
+        """Write the samples that have been collected in memory."""
         held, self._held, self._bytes = self._held, {}, 0
         for name, entries in held.items():
             data = self._row(name)
@@ -178,7 +178,7 @@ def _put(data: h5py.Dataset, row: int, value: Floats) -> None:
 
 @contextlib.contextmanager
 def writing(path: Path, kind: Kind) -> Iterator[Writer]:
-    """Return a context with the writer of a new dataset; an exception leaves the appended samples in it."""
+    """Return a context with the writer of a new dataset; after an exception, the samples so far are kept."""
     with created(path) as file:
         writer = Writer(file, kind)
         try:
@@ -188,15 +188,15 @@ def writing(path: Path, kind: Kind) -> Iterator[Writer]:
 
 
 def write_boundaries(path: Path, boundaries: Iterable[Boundary], failed: Sequence[Failed] = ()) -> None:
-    """Write boundaries of the same size and topology, one at a time.
+    """Write a dataset of boundaries, which must have the same size and topology, one at a time.
 
-    `failed` lists samples that could not be made or are left out; it may grow while boundaries are read.
+    `failed` lists samples that could not be made or were left out; it may grow while boundaries are read.
     """
     _write(path, "meshonet-boundary", boundaries, failed)
 
 
 def write_grids(path: Path, grids: Iterable[Grid], failed: Sequence[Failed] = ()) -> None:
-    """Write grids of the same size and topology, one at a time; for `failed` see `write_boundaries`."""
+    """Write a dataset of grids, which must have the same size and topology; see `write_boundaries`."""
     _write(path, "meshonet-grid", grids, failed)
 
 

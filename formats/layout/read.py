@@ -29,7 +29,7 @@ MOST_BYTES = 256 << 20  # largest file in bytes; parsing takes many times its si
 
 
 def read_layout(source: Source) -> Layout:
-    """Return the layout of a file. Raises InputError: not JSON; not a layout; parts that do not match."""
+    """Return the block layout in a JSON file. Raises InputError if it is no consistent layout."""
     try:
         data = json.loads(source.bytes_below(MOST_BYTES, "a layout").decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
@@ -49,20 +49,20 @@ def read_layout(source: Source) -> Layout:
 
 
 def layout_of(text: str) -> Layout:
-    """Return the layout of the file `text`, or of standard input for ``-`` (`read_layout`)."""
+    """Return the block layout in a file, or in standard input if `text` is ``-``; errors as `read_layout`."""
     source = open_source(text)
     with in_source(source.name):
         return read_layout(source)
 
 
 def read_shapes(source: Source) -> Iterator[DomainShape]:
-    """Yield the domain of a layout as a shape that keeps its blocks."""
+    """Yield the domain of a block layout, as a shape that keeps its blocks."""
     layout = read_layout(source)
     yield DomainShape(layout.mesh.domain, layout=layout)
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the blocks of a layout as a coarse grid."""
+    """Yield the blocks of a block layout as a coarse grid."""
     yield to_grid(read_layout(source), source.stem)
 
 

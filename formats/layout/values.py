@@ -14,17 +14,17 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class Values:
-    """A JSON object and its place, such as ``faces[3]``; invalid values raise InputError."""
+    """A JSON object and its place, such as ``faces[3]``; an unsuitable value of a key raises InputError."""
 
     data: dict[str, Any]
     place: str = ""
 
     def error(self, problem: str) -> InputError:
-        """Return the error for this place."""
+        """Return an error that names this place."""
         return InputError(problem, "write the layout again", place=self.place)
 
     def rows(self, key: str) -> list[Values]:
-        """Return the objects of a non-empty list."""
+        """Return a non-empty list of objects."""
         rows = self.data.get(key)
         if not isinstance(rows, list) or not rows or not all(isinstance(row, dict) for row in rows):
             raise self.error(f"{key} are no list of objects")
@@ -45,7 +45,7 @@ class Values:
         return value
 
     def texts(self, key: str) -> list[str]:
-        """Return non-empty texts."""
+        """Return a list of non-empty texts."""
         values = self.data.get(key)
         if not isinstance(values, list) or not all(isinstance(each, str) and each for each in values):
             raise self.error(f"{key} are no texts")
@@ -63,14 +63,14 @@ class Values:
         return self._below(key, self.data.get(key), below)
 
     def numbers(self, key: str, below: int) -> list[int]:
-        """Return integers from 0 to `below` - 1."""
+        """Return a list of integers from 0 to `below` - 1."""
         values = self.data.get(key)
         if not isinstance(values, list):
             raise self.error(f"{key} are no list")
         return [self._below(key, value, below) for value in values]
 
     def entry(self, key: str, k: int, of: int, below: int) -> int:
-        """Return entry `k` of the list of `of` integers from 0 to `below` - 1 at `key`."""
+        """Return entry `k` of a list of `of` integers from 0 to `below` - 1."""
         values = self.data.get(key)
         if not isinstance(values, list) or len(values) != of:
             raise self.error(f"{key} are not {of} numbers")
@@ -82,7 +82,7 @@ class Values:
         return value
 
     def array(self, values: Any, what: str) -> Floats:
-        """Return `values` as finite numbers (n,) or (n, 2); `what` names them in errors."""
+        """Return `values` as an array of finite numbers; `what` names it in errors."""
         try:
             array = np.array(values if values is not None else [None], dtype=np.float64)
         except (ValueError, TypeError, OverflowError):
@@ -99,7 +99,7 @@ class Values:
         return float(array[0]), float(array[1])
 
     def points(self, key: str, *, least: int = 1, one: bool = False) -> Floats:
-        """Return at least `least` points (n, 2); with `one`, a single point as (1, 2)."""
+        """Return at least `least` points (n, 2); with `one`, a single point x, y as (1, 2)."""
         array = self.array(self.data.get(key), key)
         array = array[None] if one else array.reshape(0, 2) if not array.size else array
         if array.ndim != 2 or array.shape[1] != 2 or len(array) < least:

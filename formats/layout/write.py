@@ -18,7 +18,7 @@ NAME, VERSION = "meshonet-layout", 1  # format and version in the file
 
 
 def write_layouts(path: Path, layouts: Iterable[Layout]) -> None:
-    """Write the only layout of `layouts`. Raises InputError: there are several."""
+    """Write the only block layout of `layouts` as JSON. Raises InputError if there are several."""
     first, *others = layouts
     if others:
         remedy = "write one file each ({output} 'name-{{index}}.json')"
@@ -27,7 +27,7 @@ def write_layouts(path: Path, layouts: Iterable[Layout]) -> None:
 
 
 def as_text(layout: Layout) -> str:
-    """Return the JSON of a layout, with one line per loop, vertex, edge and face."""
+    """Return a block layout as JSON, with one line for each boundary loop, vertex, edge and face."""
     parts = []
     for key, value in as_dict(layout).items():
         rows = isinstance(value, list) and value and isinstance(value[0], dict)
@@ -41,7 +41,7 @@ def _dumped(value: Any) -> str:
 
 
 def as_dict(layout: Layout) -> dict[str, Any]:
-    """Return a layout as a dictionary for JSON (`meshonet.formats.layout`)."""
+    """Return a block layout as a dictionary for JSON; `meshonet.formats.layout` describes its keys."""
     domain = layout.mesh.domain
     drawn = _WrittenLayout(layout)
     facts: dict[str, Any] = {

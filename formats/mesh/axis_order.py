@@ -12,12 +12,12 @@ _ROWS = 16  # number of rows copied at a time, so that source and destination st
 
 
 def first_fastest(values: NDArray[Any], dtype: str | np.dtype[Any]) -> NDArray[Any]:
-    """Return `values` (ni, nj) or (ni, nj, nk) as a flat array of type `dtype`, i fastest."""
+    """Return `values` (ni, nj) or (ni, nj, nk) as a flat array of type `dtype`; index i varies fastest."""
     return np.ascontiguousarray(values.T, dtype).reshape(-1)
 
 
 def nodes_of(coordinates: Sequence[NDArray[Any]]) -> Floats:
-    """Return float64 nodes (..., d) from d coordinates, in planar layout (`meshonet.geometry.arrays`)."""
+    """Return float64 nodes (..., d) from d arrays of coordinates; each coordinate is contiguous in memory."""
     nodes = np.empty((len(coordinates), *coordinates[0].shape))
     for row, values in zip(nodes, coordinates, strict=True):
         for start in range(0, values.shape[1], _ROWS):

@@ -15,7 +15,7 @@ Indices = NDArray[np.int64]
 
 
 def cells_of(number: Indices) -> Indices:
-    """Return the node numbers (m, 4 or 8) of the cells of a block of node `number` (ni, nj[, nk])."""
+    """Return the nodes (m, 4 or 8) of each cell of a block with the node numbers (ni, nj[, nk])."""
     if number.ndim == 2:
         return _flat(ring_of(number))
     below, above = ring_of(number[:, :, :-1]), ring_of(number[:, :, 1:])
@@ -23,7 +23,7 @@ def cells_of(number: Indices) -> Indices:
 
 
 def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
-    """Return consecutive cell numbers, from 0, of blocks with the given node counts; i varies fastest."""
+    """Return cell numbers, from 0 through all blocks, for blocks of these node counts; i varies fastest."""
     shapes = [tuple(n - 1 for n in count) for count in counts]
     ends = np.cumsum([0, *(int(np.prod(shape)) for shape in shapes)])
     return [
@@ -33,9 +33,9 @@ def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
 
 
 def faces_of(side_numbers: Indices, side: Side) -> Indices:
-    """Return the edges (k, 2) or quadrilaterals (k, 4) of a side part with node numbers (n,) or (n, m).
+    """Return the edges (k, 2) or quadrilaterals (k, 4) of a part of a side with node numbers (n,) or (n, m).
 
-    Edges have the domain on their left; normals of quadrilaterals point out of the domain.
+    Edges have the domain on their left. The normals of quadrilaterals point out of the domain.
     """
     if side_numbers.ndim == 1:
         rows = np.stack([side_numbers[:-1], side_numbers[1:]], axis=-1)

@@ -18,7 +18,7 @@ Indices = NDArray[np.int64]
 
 
 def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, Bools]]:
-    """Yield block, side, direction of edges, and the mask (n-1, m) or (n, m-1) of edges of zero length."""
+    """Yield block, side, direction and mask (n-1, m) or (n, m-1) of the edges of zero length on a side."""
     for number, block in enumerate(grid.blocks):
         for side in sides_of(block.counts) if len(block.counts) == 3 else ():
             face = block.face(side)
@@ -29,9 +29,9 @@ def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, Bools]]:
 
 
 def with_collapsed(grid: Grid, numbers: list[Indices]) -> list[Indices]:
-    """Return node `numbers` of all blocks, in which coincident neighbours on a side share a number.
+    """Return the node `numbers` of all blocks; both ends of an edge of zero length get the same number.
 
-    Numbers have no gaps. Without degenerate sides, the arrays `numbers` are returned.
+    The new numbers have no gaps. Without edges of zero length, `numbers` itself is returned.
     """
     edges = list(collapsed_edges(grid))
     if not edges:
@@ -47,7 +47,7 @@ def with_collapsed(grid: Grid, numbers: list[Indices]) -> list[Indices]:
 
 
 def refuse_collapsed(grid: Grid, what: str) -> None:
-    """Raise InputError for a volume with degenerate sides, which the format `what` cannot store."""
+    """Raise InputError if a volume has edges of zero length on a side; `what` names the format."""
     for block, side, direction, same in collapsed_edges(grid):
         place = [int(index) for index in np.argwhere(same)[0]]
         axes = [name for axis, name in enumerate("ijk") if axis != PLACES[side][0]]

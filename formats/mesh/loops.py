@@ -17,29 +17,29 @@ from meshonet.geometry.polygon.area import polygon_area
 
 @dataclass(frozen=True)
 class EdgeLoop:
-    """A closed curve: point numbers (n,) in order, and the names of the edges from point to point."""
+    """A closed curve: its point numbers (n,) in order, and the name of the edge that starts at each point."""
 
     nodes: Indices
     names: tuple[str, ...]
 
     def reversed(self) -> "EdgeLoop":
-        """Return the curve in the opposite direction, starting at the same point."""
+        """Return the curve in the opposite direction, with the same first point."""
         return EdgeLoop(np.roll(self.nodes[::-1], 1), self.names[::-1])
 
     def begun_at(self, place: int) -> "EdgeLoop":
-        """Return the curve starting at its point with the index `place`."""
+        """Return the curve with its point at index `place` as the first."""
         return EdgeLoop(np.roll(self.nodes, -place), (*self.names[place:], *self.names[:place]))
 
     @property
     def changes(self) -> list[int]:
-        """Indices of points at which the name changes."""
+        """Indices of the points at which the name of the edges changes."""
         return [k for k in range(len(self.names)) if self.names[k] != self.names[k - 1]]
 
 
 def closed_loops(edges: Mapping[str, Indices], points: Floats) -> list[EdgeLoop]:
-    """Return the closed curves of named edges (k, 2), each in the direction of its first edge.
+    """Return the closed curves that named edges (k, 2) form, each in the direction of its first edge.
 
-    Raises InputError: a point at which only one edge ends, or more than two.
+    Raises InputError if one edge, or more than two edges, end at a point.
     """
     ends = np.concatenate([np.empty((0, 2), np.int64), *edges.values()])
     names = [name for name, rows in edges.items() for _ in range(len(rows))]
@@ -71,7 +71,7 @@ def _followed(flat: list[int], twin: list[int], names: list[str]) -> list[EdgeLo
 
 
 def with_loop_names(grid: Grid) -> Grid:
-    """Return a planar grid with patches on outer edges: ``outer``; around bodies ``body``, ``body2``, ..."""
+    """Return a planar grid whose outer edges are patches: ``outer``, or ``body``, ``body2`` ... on bodies."""
     outer = grid.outer_patches()
     unnamed = [
         p

@@ -13,11 +13,11 @@ Facts: TypeAlias = Mapping[str, Sequence[str]]  # texts by key
 
 
 def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]]:
-    """Return topology, name, patches and provenance of `grid` as texts by key, for `grid_with`.
+    """Return topology, name, patches and provenance of `grid` as lists of texts by key, for `grid_with`.
 
-    A patch is ``side start stop name``; kinds and ranges along the second direction are added where needed.
-    In a multi-block grid the texts are those of one `block`; `number` is the number of the grid in the file.
-    The first block has connections and provenance. An extruded grid has the texts of its planar grid.
+    The texts are those of one `block`; only the first has connections and provenance. `number` is the number
+    of the grid in the file. A patch is ``side start stop name``; keys for its kind and its range along the
+    second direction are added if needed. An extruded grid has the texts of its planar grid.
     """
     space = grid.form != "plane"
     if space:
@@ -57,10 +57,10 @@ def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]
 
 
 def plain(value: object) -> object:
-    """Return a value as JSON can represent it: NumPy's numbers and arrays as Python's, others as text."""
+    """Return a value that JSON can store: NumPy numbers and arrays become Python's, all else becomes text."""
     return value.tolist() if hasattr(value, "tolist") else str(value)
 
 
 def connections_text(connections: Iterable[Connection]) -> str:
-    """Return connections as JSON: their fields in order, the transform as an object or null."""
+    """Return connections as JSON: each is a list of its fields in order; its motion is an object or null."""
     return json.dumps([[*astuple(c)[:-1], asdict(c.transform) if c.transform else None] for c in connections])

@@ -24,21 +24,20 @@ from meshonet.geometry.errors import InputError
 
 
 def number_of_grid(facts: Facts) -> int | None:
-    """Return the number, in the file, of the multi-block grid to which a block belongs, or None."""
+    """Return the number, in its file, of the multi-block grid to which a block belongs; None: to none."""
     words = facts["block"][0].split() if facts.get("block") else []
     return int(words[0]) if len(words) == 2 and all(w.isdecimal() and len(w) < 9 for w in words) else None
 
 
 def says_in_space(facts: Facts) -> bool:
-    """Return whether the facts describe a three-dimensional block."""
+    """Return whether metadata (`facts`) describe a three-dimensional block."""
     return list(facts.get("coordinates", ())) == ["3"]
 
 
 def nodes_by_facts(coordinates: Sequence[Floats], facts: Facts) -> Floats:
-    """Return the nodes of a block from x, y[, z], each (n1, n2, n3), planar or in space.
+    """Return the nodes of a block, planar or in 3-D, from x, y[, z], each (n1, n2, n3).
 
-    Raises InputError: the block is not planar, and `facts` (texts of its file) do not say that it is in
-    space.
+    Raises InputError if the block is not planar and its metadata `facts` do not say that it is in 3-D.
     """
     if not says_in_space(facts):
         return planar(coordinates)
@@ -46,9 +45,9 @@ def nodes_by_facts(coordinates: Sequence[Floats], facts: Facts) -> Floats:
 
 
 def grid_of_blocks(blocks: Sequence[tuple[Floats, Facts]], name: str = "") -> Grid:
-    """Return the grid of blocks in any order, given by their nodes and the texts (facts) of their files.
+    """Return the grid of blocks given in any order, each by its nodes and its metadata.
 
-    Raises InputError: a block is missing or repeated; connections do not match the nodes.
+    Raises InputError if a block is missing or repeated, or if the connections do not match the nodes.
     """
     rows = sorted(
         ((int(facts["block"][0].split()[1]), nodes, facts) for nodes, facts in blocks), key=itemgetter(0)
@@ -71,9 +70,10 @@ def _grid(blocks: Sequence[tuple[Floats, Facts]], name: str) -> Grid:
 
 
 def grid_with(nodes: Floats, facts: Facts, name: str = "") -> Grid:
-    """Return the grid of `nodes` with the `facts` of its file; `name` is its name if the facts have none.
+    """Return the grid of a block with these metadata (`facts`); `name` applies if they have no name.
 
-    A missing planar topology is recovered. A block of a multi-block grid becomes a grid without connections.
+    If `facts` lack the topology of a planar grid, it is found by position. A block of a multi-block grid
+    becomes a grid without connections.
     """
     if says_in_space(facts):
         alone = number_of_grid(facts) is None
@@ -127,7 +127,7 @@ def _part(text: str) -> Patch:
 
 
 def connections_from(text: str) -> tuple[Connection, ...]:
-    """Return the connections of a JSON text (`connections_text`)."""
+    """Return the connections in a JSON text that `connections_text` has made."""
     try:
         rows = json.loads(text or "[]")
         return tuple(

@@ -20,9 +20,9 @@ _DIGITS = range(1, 18)  # possible numbers of significant digits of a translatio
 
 
 def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
-    """Return a connection of `blocks` with the motion between its two sides.
+    """Return `connection` with the motion (translation or rotation) that maps its side onto the donor's side.
 
-    Raises InputError: sides of different node counts; no translation or rotation makes nodes coincide.
+    Raises InputError if the sides have different node counts, or if no motion makes their nodes coincide.
     """
     own, donor = connection.nodes(lambda block, side: blocks[block].face(side))
     if own.shape != donor.shape:
@@ -40,10 +40,9 @@ def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
 
 
 def like_others(connection: Connection, motions: list[Motion]) -> Connection:
-    """Return a periodic connection, its motion replaced by a nearly equal one of `motions`.
+    """Return a periodic connection with a nearly equal motion of `motions` in place of its own.
 
-    If there is none, the motion is added to `motions`. Sides of equal or inverse motions thus agree bitwise
-    where they meet.
+    If there is none, its motion is added to `motions`. Nearly equal motions thus become bitwise equal.
     """
     for known in motions:
         for each in (connection, connection.reversed()):

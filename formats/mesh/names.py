@@ -10,9 +10,9 @@ from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
 def words(
     names: Iterable[str], limit: int = 64, taken: Iterable[str] = (), *, letter: bool = False
 ) -> dict[str, str]:
-    """Return a different word of ASCII letters, digits and ``_.+-`` for each of `names`.
+    """Return for each of `names` a different word of ASCII letters, digits and ``_.+-``.
 
-    A word has at most `limit` characters, is not one of `taken`, and starts with a letter if `letter` is set.
+    A word has at most `limit` characters and is not one of `taken`. With `letter`, it starts with a letter.
 
     >>> words(["wall", "no-slip wall", "no-slip,wall", "Ω"])
     {'wall': 'wall', 'no-slip wall': 'no-slip_wall', 'no-slip,wall': 'no-slip_wall-2', 'Ω': 'part'}
@@ -31,7 +31,7 @@ def words(
 
 
 def unused(stem: str, used: Container[str], limit: int = 64) -> str:
-    """Return `stem`, with a number appended if it is one of `used`, in at most `limit` characters."""
+    """Return `stem`, of at most `limit` characters, with a number appended if `used` contains it."""
     word, count = stem, 1
     while word in used:
         count += 1
@@ -40,14 +40,14 @@ def unused(stem: str, used: Container[str], limit: int = 64) -> str:
 
 
 def kind_said(name: str, word: str, known: Sequence[tuple[str, Kind]]) -> Kind:
-    """Return the kind of a patch by its `name`, or else by the file's `word`."""
+    """Return the kind of a patch by its name or, if that says nothing, by the `word` in the file."""
     by_word: Kind = next((kind for sign, kind in known if word.startswith(sign)), "other")
     by_name = kind_of(name)
     return by_word if by_name == "other" else by_name
 
 
 def kinds(grid: Grid, patches: Iterable[Patch]) -> dict[str, Kind]:
-    """Return the kind of boundary for each name of `patches`; an unnamed patch of a body is a wall."""
+    """Return the kind of boundary for each patch name; an unnamed patch of a body is a wall."""
     kind: dict[str, Kind] = {}
     for patch in patches:
         body = grid.around_body and patch.side == "south" and patch.kind in ("other", "interface")

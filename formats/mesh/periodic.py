@@ -22,14 +22,14 @@ _OPPOSITE = {2: [1, 0], 4: [0, 3, 2, 1]}  # order of the nodes in the partner's 
 
 
 class NamedFaces(NamedTuple):
-    """Faces, each as node numbers (k, 2 or 4), and the number (k,) of the cell of each face."""
+    """Node numbers (k, 2 or 4) of faces, and for each the number (k,) of its cell."""
 
     faces: Indices
     cells: Indices
 
 
 class PeriodicPair(NamedTuple):
-    """Named faces, and the corresponding faces of the partner, to which `motion` maps them."""
+    """Two periodic boundaries, each with its name and faces; `motion` maps the first onto its partner."""
 
     name: str
     partner: str
@@ -39,12 +39,12 @@ class PeriodicPair(NamedTuple):
 
     @property
     def faces(self) -> Indices:
-        """Node numbers (k, 2 or 4) of the first side."""
+        """Node numbers (k, 2 or 4) of the faces of the first boundary."""
         return self.own.faces
 
     @property
     def nodes(self) -> Indices:
-        """(n, 2) distinct pairs of a node of the first side and its partner on the other side."""
+        """Distinct pairs (n, 2) of a node of the first boundary and the corresponding node of the partner."""
         opposite = self.opposite.faces[:, _OPPOSITE[self.faces.shape[1]]]
         rows = np.stack([self.faces.ravel(), opposite.ravel()], axis=1)
         return np.asarray(np.unique(rows, axis=0))
@@ -53,9 +53,9 @@ class PeriodicPair(NamedTuple):
 def outer_parts(
     grid: Grid, numbers: Sequence[Indices]
 ) -> tuple[dict[str, NamedFaces], tuple[PeriodicPair, ...]]:
-    """Return the outer faces by name (periodic ones last), and the periodic pairs.
+    """Return the boundary faces by name, with periodic ones last, and the pairs of periodic boundaries.
 
-    `numbers` are the node numbers of each block. Unnamed faces get the name of their side.
+    `numbers` has the node numbers of each block. Unnamed faces get the name of their side.
     """
     cells = cell_numbers([block.counts for block in grid.blocks])
     pieces: dict[str, list[NamedFaces]] = {}
@@ -78,10 +78,10 @@ def outer_parts(
 def periodic_pairs(
     grid: Grid, numbers: Sequence[Indices], cells: Sequence[Indices], taken: Iterable[str]
 ) -> list[PeriodicPair]:
-    """Return the pairs of periodic sides of a grid, one for each motion and pair of names.
+    """Return the pairs of periodic boundaries of a grid, one for each motion and pair of patch names.
 
-    `numbers` and `cells` are node and cell numbers of each block. Unnamed pairs are periodic1 and periodic2
-    and so on, except names in `taken`.
+    `numbers` and `cells` have node and cell numbers of each block. Unnamed boundaries are called periodic1,
+    periodic2 and so on; names in `taken` are left out.
     """
     motions: list[Motion] = []
     by_motion: dict[tuple[int, str, str], list[tuple[NamedFaces, NamedFaces]]] = {}
@@ -126,13 +126,13 @@ def _parts(
 
 
 def cells_beside(connection: Connection, cells: Sequence[Indices]) -> tuple[Indices, Indices]:
-    """Return the numbers of the cells on both sides of a connection; those at one index adjoin."""
+    """Return the numbers of the cells on both sides of a connection; cells at the same index are adjacent."""
     own, donor = cells_at(connection, lambda block, side: face_of(cells[block][..., None], side))
     return own[..., 0], donor[..., 0]
 
 
 def donor_range(each: Connection) -> Range:
-    """Return the donor's range, with first and last node exchanged along reversed directions."""
+    """Return the donor's node range; along a reversed direction, its first node has the greater index."""
     span = list(each.donor_range)
     for way in each.orientation:
         if way < 0:
@@ -141,7 +141,7 @@ def donor_range(each: Connection) -> Range:
 
 
 def patch_on(grid: Grid, connection: Connection) -> str:
-    """Return the name of the patches on a connection's first side; empty if their names differ."""
+    """Return the patch name on the first side of a connection; empty if there are several names."""
     own = [patch for patch in grid.patches if patch.block == connection.block]
     counts = grid.blocks[connection.block].counts
     owners = owners_of(own, counts, (), connection.side)

@@ -15,10 +15,10 @@ _SEAM = 1e-6  # largest distance between joined sides, relative to their first e
 
 
 def boundary_of(grid: Grid) -> Shape:
-    """Return the four outer edges of `grid`, with its topology, patches and name.
+    """Return the outer edges of `grid` as a boundary with its topology, patches and name.
 
     A multi-block grid gives its domain, with its blocks if they share complete sides. A three-dimensional
-    grid gives a shape. Raises InputError: edges that are not a boundary; see also `layout_of`.
+    grid gives a shape. Raises InputError if the edges do not form a boundary or the blocks no layout.
     """
     if grid.form != "plane":
         return SpatialShape(grid)
@@ -36,11 +36,11 @@ def boundary_of(grid: Grid) -> Shape:
 
 
 def recovered(nodes: Floats, name: str = "") -> Grid:
-    """Return the grid of usable `nodes` (ni, nj, 2), with its topology found by position.
+    """Return the grid of `nodes` (ni, nj, 2); its topology follows from nodes that coincide.
 
-    Left-handed nodes are reversed along i. In an O grid the first and the last column are equal, or the first
-    and the last row; then i and j are exchanged. The smaller closed side becomes south. In a C grid the last
-    nodes of a side are its first nodes in reverse; this side becomes south.
+    In an O grid the first and the last column coincide, and the smaller closed side becomes south. If the
+    first and the last row coincide, i and j are exchanged. In a C grid the last nodes of a side are its first
+    nodes in reverse; this side becomes south. Left-handed nodes are reversed along i.
     """
     nodes = usable(nodes)
     nodes = nodes[::-1] if is_left_handed(nodes) else nodes
@@ -61,9 +61,9 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
 
 
 def usable(nodes: Floats) -> Floats:
-    """Return `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3) unchanged.
+    """Return `nodes` (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3) unchanged if they can be those of a grid.
 
-    Raises InputError: one node along a direction; a coordinate that is not finite or above `LARGEST`.
+    Raises InputError if a direction has only one node, or a coordinate is not finite or above `LARGEST`.
     """
     if min(nodes.shape[:-1]) < 2:
         counts = " x ".join(map(str, nodes.shape[:-1]))
@@ -77,13 +77,13 @@ def usable(nodes: Floats) -> Floats:
 
 
 def is_left_handed(nodes: Floats) -> bool:
-    """Return whether the area of a block of `nodes` (ni, nj, 2) is negative."""
+    """Return whether the signed area of a block of `nodes` (ni, nj, 2) is negative."""
     outline = np.concatenate([nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]])
     return polygon_area(outline) < 0
 
 
 def known_topology(text: str) -> Topology:
-    """Return `text` as a topology. Raises InputError: it is not the name of a topology."""
+    """Return `text` as a topology. Raises InputError if it is none of quad, o and c."""
     for topology in TOPOLOGIES:
         if text == topology:
             return topology

@@ -24,7 +24,7 @@ _SURFACES = ContextVar("_SURFACES", default=False)
 
 @contextmanager
 def surfaces_wanted() -> Iterator[None]:
-    """Return a context in which flat patches are read as surfaces in space."""
+    """Return a context in which flat patches in space are read as surfaces, not as planar grids."""
     token = _SURFACES.set(True)
     try:
         yield
@@ -34,9 +34,9 @@ def surfaces_wanted() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class IndexedNodes:
-    """Nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) of a block; `axes` are the file's indices for i, j, k.
+    """Nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) of a block, and how its indices relate to the file's.
 
-    `reversed` says whether i runs against its index in the file.
+    `axes` are the file's indices for i, j and k. If `reversed`, i runs against its index in the file.
     """
 
     nodes: Floats
@@ -55,13 +55,13 @@ class _Slice(NamedTuple):
 
 
 def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> list[IndexedNodes]:
-    """Return the nodes of all blocks of a file; `places` name the blocks in messages.
+    """Return the nodes of each block of a file, given as coordinates x, y[, z] of shape (n1, n2, n3) each.
 
-    A slice has one plane of nodes with a constant coordinate, or two such planes one cell apart. If all
-    blocks are slices with the same constants of the same coordinate, they are planar, and this coordinate is
-    left out. Otherwise, and within `surfaces_wanted`, a block of one plane is a surface patch, any other a
-    volume. Left-handed planar blocks and volumes are reversed along i. Coordinates x, y[, z] are (n1, n2,
-    n3), of any number type and order. Raises InputError: a block without cells.
+    A block is a slice if its nodes have a constant coordinate in one plane, or in each of two planes one cell
+    apart. If all blocks are slices at the same positions, they are planar, and this coordinate is left out.
+    Otherwise, or in `surfaces_wanted`, a block of one plane is a surface patch, any other a volume.
+    Left-handed planar blocks and volumes are reversed along i. `places` name the blocks in messages. Raises
+    InputError if a block has no cells.
     """
     with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
         slices = []
@@ -78,7 +78,7 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
 
 
 def planar(coordinates: Sequence[Floats]) -> Floats:
-    """Return the nodes (ni, nj, 2) of a planar block of equal planes. Raises InputError: planes differ."""
+    """Return the nodes (ni, nj, 2) of a block whose planes are all equal. Raises InputError: they differ."""
     with np.errstate(all="ignore"):
         cut = _slice_of(coordinates, most=max(coordinates[0].shape))
         if cut:

@@ -32,9 +32,9 @@ from meshonet.geometry.errors import in_place
 
 @dataclass(frozen=True)
 class FileBlock:
-    """A block of a file: coordinates x, y[, z], each (n1, n2, n3), name, and place for messages.
+    """A block of a file: coordinates x, y[, z], each (n1, n2, n3), its name, and its place for messages.
 
-    `iblank` has the number of nodes with each iblank value. `facts` are the texts of `facts_of`.
+    `iblank` has the number of nodes with each iblank value. `facts` are its metadata (`facts_of`).
     """
 
     coordinates: Sequence[Floats]
@@ -45,7 +45,7 @@ class FileBlock:
 
 
 def described_grids(blocks: Iterable[FileBlock], name: str) -> Iterator[Grid]:
-    """Yield the grids of blocks whose texts (facts) state the topology; blocks of a grid are consecutive."""
+    """Yield the grids of blocks whose metadata state the topology; blocks of a grid must be consecutive."""
     for number, group in groupby(blocks, key=lambda block: number_of_grid(block.facts)):
         read = ((block, in_place(block.place)(_described)(block)) for block in group)
         if number is not None:
@@ -61,9 +61,9 @@ def _described(block: FileBlock) -> Floats:
 
 
 def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Grid:
-    """Return the grid of a file with one block, using its texts (`facts`) if there are any.
+    """Return the grid of a file with one block, using its metadata `facts` if there are any.
 
-    Raises InputError: facts that do not match the nodes; see also `grids_of_file`.
+    Raises InputError if the metadata do not match the nodes; other errors are those of `grids_of_file`.
     """
     if facts.get("topology"):
         return grid_with(nodes_by_facts(coordinates, facts), facts, name)
@@ -77,12 +77,12 @@ def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Gri
 def grids_of_file(
     blocks: Sequence[FileBlock], faces: Sequence[Face], pairs: Sequence[Pair], name: str
 ) -> Iterator[Grid]:
-    """Yield the grids of a file `name`, made of its `blocks`; `lattices` decides whether they are planar.
+    """Yield the grids of a file; `lattices` decides whether its blocks are planar.
 
-    Blocks that touch form one grid, and so do all surface patches; other blocks are separate. Several grids
-    are named after their blocks, or by `name` and a number. Unnamed edges of planar blocks get names
-    (`meshonet.formats.mesh.loops`). Raises InputError: a block without cells; unusable nodes; interfaces that
-    do not coincide.
+    Blocks that touch form one grid, and all surface patches form one grid. Other blocks are separate grids.
+    If there are several, each has the name of its block, else `name` with a number. Unnamed outer edges of
+    planar blocks get names. Raises InputError: a block without cells; unusable nodes; interfaces that do not
+    coincide.
     """
     if blocks:
         read = lattices([block.coordinates for block in blocks], [block.place for block in blocks])

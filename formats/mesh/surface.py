@@ -37,8 +37,8 @@ class MeshBoundary:
 
     Parameters
     ----------
-    edges : point numbers (k, 2) of edges by name, "" for no name; empty: edges of only one cell.
-    cells : point numbers (m, 3 or 4), one array per kind of cell.
+    edges : point numbers (k, 2) of the edges of each name; if empty, edges with only one cell are taken.
+    cells : point numbers (m, 3 or 4), an array for each kind of cell.
     """
 
     points: Floats
@@ -47,12 +47,12 @@ class MeshBoundary:
 
 
 def shapes_of(surface: MeshBoundary, name: str) -> Iterator[Shape]:
-    """Yield the shapes that the closed curves of `surface` form.
+    """Yield the shapes that the closed curves of a mesh boundary form.
 
-    A four-sided domain keeps its nodes if opposite sides have equal numbers of nodes, and without cells at
-    least three. A body and a far field keep their nodes if there is an O grid between them. Corners come from
-    cells, or from names that change four times; the south side has the file's first edge. Raises InputError:
-    too few or too many edges; edges that form no closed curves; a curve in a hole.
+    A four-sided domain keeps its nodes if opposite sides have equal numbers of nodes, at least three if there
+    are no cells. Corners come from cells, or from names that change four times; the south side has the first
+    edge of the file. A body and a far field keep their nodes if an O grid is between them. Raises InputError
+    if edges are too few, too many or not closed, or if a curve lies in a hole.
     """
     edges = surface.edges or {"": _free_edges(surface.cells)}
     count = sum(map(len, edges.values()))
@@ -77,7 +77,7 @@ def shapes_of(surface: MeshBoundary, name: str) -> Iterator[Shape]:
 
 
 def noted(shape: Shape, notes: tuple[str, ...]) -> Shape:
-    """Return a shape with `notes` on what was left out of its file."""
+    """Return `shape` with additional `notes` about parts of its file that were left out."""
     if isinstance(shape, Labelled):
         noted(shape.shape, notes)
     elif isinstance(shape, Outline | Airfoil):
@@ -220,7 +220,7 @@ def _labelled(shape: Shape, loops: list[EdgeLoop], points: Floats) -> Shape:
 
 
 def flat(points: Floats) -> Floats:
-    """Return x, y (n, 2) of points (n, 2 or 3). Raises InputError: z is not constant."""
+    """Return x and y (n, 2) of points (n, 2 or 3). Raises InputError if z is not constant."""
     if points.shape[1] > 2 and len(points):
         z = points[:, 2]
         if not np.ptp(z) <= 1e-6 * max(float(np.ptp(points[:, :2])), 1e-300):

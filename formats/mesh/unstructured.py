@@ -22,14 +22,14 @@ CELLS = {2: "line", 4: "quad", 8: "hexahedron"}  # meshio's names of cells by th
 
 @dataclass(frozen=True)
 class Unstructured:
-    """Nodes without duplicates, quadrilaterals or hexahedra, and the named boundary.
+    """Nodes without duplicates, quadrilaterals or hexahedra, and the named boundary faces.
 
     Parameters
     ----------
     points : (n, 2 or 3), in the unit of the grid.
-    cells : (m, 4) or (m, 8) node numbers in the order of `meshonet.formats.mesh.cell_faces`, i fastest.
-    faces : (k, 2) edges or (k, 4) quadrilaterals by name (`faces_of`); periodic ones are last.
-    periodic : pairs of names in `faces` whose rows correspond to each other.
+    cells : (m, 4) or (m, 8) node numbers, ordered as in `meshonet.formats.mesh.cell_faces`; i varies fastest.
+    faces : for each name, (k, 2) edges or (k, 4) quadrilaterals (`faces_of`); periodic ones are last.
+    periodic : pairs of periodic boundaries.
     """
 
     points: Floats
@@ -39,9 +39,9 @@ class Unstructured:
 
 
 def unstructured(grid: Grid) -> Unstructured:
-    """Return `grid` with connected nodes merged; all blocks have the same dimension.
+    """Return `grid`, whose blocks have the same dimension, as an unstructured mesh with merged nodes.
 
-    Faces inside the domain belong to no part. Unnamed outer faces get the name of their side.
+    Only outer faces belong to the boundary. Unnamed faces get the name of their side.
     """
     numbers = node_numbers(grid)
     parts, pairs = outer_parts(grid, numbers)
@@ -51,7 +51,7 @@ def unstructured(grid: Grid) -> Unstructured:
 
 
 def points_of(grid: Grid, numbers: Sequence[Indices]) -> Floats:
-    """Return the nodes (n, d) of a grid in the order of node `numbers`, each once."""
+    """Return the nodes (n, d) of a grid in the order of the node numbers `numbers`, each once."""
     count = 1 + max(int(number.max()) for number in numbers)
     points = np.empty((count, grid.blocks[0].nodes.shape[-1]))
     for number, block in zip(numbers, grid.blocks, strict=True):
@@ -60,14 +60,14 @@ def points_of(grid: Grid, numbers: Sequence[Indices]) -> Floats:
 
 
 def with_z(points: Floats) -> Floats:
-    """Return points (n, 2) in the plane z = 0; points (n, 3) are returned unchanged."""
+    """Return points (n, 2) with z = 0 added; points (n, 3) are returned unchanged."""
     return points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
 
 
 def node_numbers(grid: Grid) -> list[Indices]:
-    """Return, for each block, node numbers (ni, nj[, nk]); connected nodes share a number.
+    """Return the node numbers (ni, nj[, nk]) of each block; connected nodes share a number.
 
-    Numbers start at 0 and have no gaps, in the order of the blocks, i fastest.
+    Numbers start at 0, have no gaps and ascend from block to block; i varies fastest.
     """
     counts = [block.counts for block in grid.blocks]
     return list(shared_nodes(counts, grid.connections, order="F"))

@@ -17,9 +17,9 @@ _SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.ite
 
 
 class FaceWindow(NamedTuple):
-    """A rectangle of nodes on a face of a block: indices, from 0, of two opposite corners.
+    """A rectangle of nodes on a face of a block, given by the indices, from 0, of two opposite corners.
 
-    An index may be smaller at the last corner than at the first: files describe connections in this way.
+    Along reversed directions of a connection, the last corner has a smaller index than the first.
     """
 
     block: int
@@ -28,7 +28,7 @@ class FaceWindow(NamedTuple):
 
 
 class Face(NamedTuple):
-    """A range of a face with a name."""
+    """A rectangle of nodes on a face of a block, with the name and kind of its boundary."""
 
     window: FaceWindow
     name: str
@@ -36,9 +36,9 @@ class Face(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Two connected ranges of faces, and the name of the connection in the file.
+    """Two connected rectangles of nodes, and the name of the connection in the file.
 
-    `partner` has, for each index of the block of `own`, the donor's index along the same lines.
+    `partner` has, for each index of the first block, the donor's index that varies along the same lines.
     """
 
     own: FaceWindow
@@ -48,7 +48,7 @@ class Pair(NamedTuple):
 
 
 class SidePart(NamedTuple):
-    """A range of a side; for each direction of the side, the index of the file, and the sign 1 or -1."""
+    """A node range of a side; for each direction of the side, the file's index and the sign 1 or -1."""
 
     side: Side
     range: Range
@@ -57,9 +57,9 @@ class SidePart(NamedTuple):
 
 
 def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | None:
-    """Return the part of a side that a window covers, or None. Raises InputError: no such part.
+    """Return the range of a side that a window (rectangle of nodes) covers. Raises InputError: no such range.
 
-    None is returned for a window that is no part of a single side, such as an edge of a volume.
+    Returns None if the window is not on a single side, such as an edge of a volume.
     """
     if not 0 <= window.block < len(lattices):
         problem = f"a face of block {window.block + 1} is named and there are {len(lattices)}"
@@ -87,7 +87,7 @@ def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | 
 
 
 def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
-    """Return the patch that a face describes. None and errors: see `part_of`."""
+    """Return the patch that a face of the file describes; None and errors are those of `part_of`."""
     part = part_of(face.window, lattices)
     if part is None:
         return None
@@ -97,9 +97,9 @@ def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
 
 
 def connection_of(pair: Pair, lattices: Sequence[IndexedNodes]) -> Connection | None:
-    """Return the connection of a pair, without a motion; None and errors: see `part_of`.
+    """Return the connection of a pair, without a motion; None and errors are those of `part_of`.
 
-    Also raises InputError: indices that do not correspond.
+    Also raises InputError if the indices of the two rectangles do not correspond.
     """
     here, there = part_of(pair.own, lattices), part_of(pair.donor, lattices)
     if here is None or there is None:
